@@ -8,9 +8,7 @@
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec3};
-use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
-use staya_controller::time::Instant;
 use staya_sim::engine::simulate_own;
 use staya_sim::scenario::{Overrides, Scenario};
 use std::{collections::BTreeSet, error::Error, ops::ControlFlow, path::Path};
@@ -52,28 +50,32 @@ struct Auction {
     bid: Option<Bid>,
 }
 
-impl Teamwork for Auction {}
+struct Bids;
 
-impl Guidance<f32> for Auction {
-    type Input<'a> = InPlane<'a, f32>;
-    type Destination = Roams;
-    type Workspace = ();
+impl Protocol for Bids {
     type Payload = Option<Bid>;
+    type Message = Never;
+    type Order = Never;
+}
+
+impl Law<f32> for Auction {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = Bids;
+    type Workspace = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32, Option<Bid>>,
+        view: &View<'_, f32, Option<Bid>>,
         _: &InPlane<'_, f32>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        let way_m = |task: u8| place(task).since::<f32>(input.state.position);
+        let way_m = |task: u8| place(task).since::<f32>(view.state.position);
         let own = |task: u8| Bid { task, distance_mm: (way_m(task).norm() * 1000.0) as u32 };
         // Of two equal bids, the one of the lower robot id wins.
         let is_outbid = |own: &Bid| {
             let rank = |bid: &Bid, id: RobotId| (bid.distance_mm, id);
-            let bids = input.neighbors.iter().filter_map(|other| Some((other.payload?, other.id)));
-            bids.filter(|(bid, _)| bid.task == own.task).any(|(bid, id)| rank(&bid, id) < rank(own, input.id))
+            let bids = view.neighbors.iter().filter_map(|other| Some((other.payload?, other.id)));
+            bids.filter(|(bid, _)| bid.task == own.task).any(|(bid, id)| rank(&bid, id) < rank(own, view.id))
         };
         let kept = self.bid.map(|bid| own(bid.task)).filter(|bid| !is_outbid(bid));
         let open = || (0..TASKS).map(own).filter(|bid| !is_outbid(bid)).min_by_key(|bid| bid.distance_mm);
@@ -82,14 +84,10 @@ impl Guidance<f32> for Auction {
         let way_m: Vec3<f32> = way_m(bid.task);
         let status = Status { is_at_goal: way_m.norm() <= NEAR_M, ..Status::default() };
         let action = Action::Velocity { wish_mps: (way_m * 2.0).clamp_norm(0.8), way_m: Some(way_m) };
-        Ok(Decision { action, status, ..Decision::default() })
+        Ok(Decision { action, status })
     }
 
-    fn has_own_goal(&self) -> bool {
-        true
-    }
-
-    fn payload(&mut self, _: Instant) -> Option<Bid> {
+    fn payload(&mut self, _: &mut Radio<'_, Never>) -> Option<Bid> {
         self.bid
     }
 }

@@ -8,7 +8,6 @@
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec3};
-use staya_controller::rand::Rng;
 use staya_controller::time::Instant;
 use staya_sim::engine::simulate_own;
 use staya_sim::scenario::{Overrides, Scenario};
@@ -27,45 +26,45 @@ struct Meeting {
     belief_m: Option<[f32; 2]>,
 }
 
-impl Teamwork for Meeting {}
+struct Estimates;
 
-impl Guidance<f32> for Meeting {
-    type Input<'a> = InPlane<'a, f32>;
-    type Destination = Roams;
-    type Workspace = ();
+impl Protocol for Estimates {
     /// At most 9 bytes, in a frame of at most 30 after each beacon.
     type Payload = Option<[f32; 2]>;
+    type Message = Never;
+    type Order = Never;
+}
+
+impl Law<f32> for Meeting {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = Estimates;
+    type Workspace = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32, Option<[f32; 2]>>,
+        view: &View<'_, f32, Option<[f32; 2]>>,
         _: &InPlane<'_, f32>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        let place = input.state.position.since::<f32>(Position::default());
+        let place = view.state.position.since::<f32>(Position::default());
         let [mut x, mut y] = self.belief_m.unwrap_or([place.x, place.y]);
         let own = [x, y];
-        let step = STEP.min(1.0 / (1 + input.neighbors.len()) as f32);
-        for [other_x, other_y] in input.neighbors.iter().filter_map(|other| other.payload) {
+        let step = STEP.min(1.0 / (1 + view.neighbors.len()) as f32);
+        for [other_x, other_y] in view.neighbors.iter().filter_map(|other| other.payload) {
             x += step * (other_x - own[0]);
             y += step * (other_y - own[1]);
         }
         self.belief_m = Some([x, y]);
         let way_m = Vec3::new(x, y, 0.0) - place;
-        let goes = input.now.since(Instant::from_micros(0)).as_micros() >= (TALK_S * 1e6) as i32;
+        let goes = view.now.since(Instant::from_micros(0)).as_micros() >= (TALK_S * 1e6) as i32;
         let wish_mps = if goes { way_m.clamp_norm(0.5) } else { Vec3::ZERO };
         Ok(Decision {
             action: Action::Velocity { wish_mps, way_m: goes.then_some(way_m) },
-            ..Decision::default()
+            status: Status::default(),
         })
     }
 
-    fn has_own_goal(&self) -> bool {
-        true
-    }
-
-    fn payload(&mut self, _: Instant) -> Option<[f32; 2]> {
+    fn payload(&mut self, _: &mut Radio<'_, Never>) -> Option<[f32; 2]> {
         self.belief_m
     }
 }

@@ -90,7 +90,7 @@ impl StayaAgent {
     /// # Safety
     /// As for [`StayaInputs::inputs`].
     unsafe fn step(&mut self, inputs: &StayaInputs) -> Checked<()> {
-        let law = self.agent.guidance().kind();
+        let law = self.agent.law().kind();
         // SAFETY: the caller's contract.
         let own = unsafe { inputs.inputs(law, &mut self.obstacles)? };
         let now = Instant::from_micros(inputs.now_us);

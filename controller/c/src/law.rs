@@ -5,8 +5,8 @@ use crate::Number;
 use crate::choices::StayaLaw;
 use serde::{Serialize, Serializer};
 use staya_controller::agent::{
-    AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Parameter, Surroundings as _, Teamwork, ToAny,
-    Waypoint, WaypointGuidance,
+    AnyOrder, AnyProtocol, AnySurroundings, BadInput, Decision, GridMessage, Law as AgentLaw, Parameter, Radio, Report,
+    Tools, View, WaypointGuidance, decide_as, order_as, receive_as,
 };
 #[cfg(feature = "flocks")]
 use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
@@ -14,10 +14,7 @@ use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance}
 use staya_controller::agent::{
     CELLS, CellFollower, FormationGuidance, FormationInPlane, GridWorkspace, RouteGuidance, TEMPLATE,
 };
-use staya_controller::grid::Cell;
-use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::TemplateAssignment;
 
 #[cfg(feature = "grid")]
 const VISITS: usize = if cfg!(feature = "small") { 32 } else { staya_controller::agent::VISITS };
@@ -105,82 +102,56 @@ impl Serialize for Law {
     }
 }
 
-impl Teamwork for Law {
-    fn redirect(&mut self) {
-        each!(self, law => law.redirect());
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
-        each!(self, law => law.assign_template(part, is_restarted))
-    }
-
-    fn goal_offset(&self) -> Cell {
-        each!(self, law => law.goal_offset())
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        each!(self, law => law.needs(id))
-    }
-}
-
-impl Guidance<Number> for Law {
-    type Input<'a> = AnySurroundings<'a, Number>;
-    type Destination = ToAny;
+impl AgentLaw<Number> for Law {
+    type Surroundings<'a> = AnySurroundings<'a, Number>;
+    type Protocol = AnyProtocol;
     type Workspace = Workspace;
-    type Payload = ();
 
-    #[cfg_attr(not(feature = "grid"), expect(unused_variables, reason = "only the laws of the grid have one"))]
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, Number>,
+        view: &View<'_, Number>,
         here: &AnySurroundings<'_, Number>,
-        rng: &mut Rng,
-        workspace: &mut Workspace,
+        tools: Tools<'_, Number, Self>,
     ) -> Result<Decision<Number>, BadInput> {
-        let plane = || here.in_plane().ok_or(BadInput);
-        #[cfg(feature = "grid")]
-        let cells = || match here {
-            AnySurroundings::InCells(cells) => Ok(cells),
-            AnySurroundings::OnGrid(_) | AnySurroundings::InPlane(_) => Err(BadInput),
-        };
-        #[cfg(feature = "grid")]
-        let grid = || match here {
-            AnySurroundings::OnGrid(grid) => Ok(grid),
-            AnySurroundings::InPlane(_) | AnySurroundings::InCells(_) => Err(BadInput),
-        };
+        let Tools { rng, mut radio, workspace } = tools;
+        let sends = (rng, &mut radio);
         match self {
-            Self::Waypoint(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::Waypoint(law) => decide_as(law, view, here, sends, &mut ()),
             #[cfg(feature = "flocks")]
-            Self::Lattice(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::Lattice(law) => decide_as(law, view, here, sends, &mut ()),
             #[cfg(feature = "flocks")]
-            Self::GoalFlock(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::GoalFlock(law) => decide_as(law, view, here, sends, &mut ()),
             #[cfg(feature = "flocks")]
-            Self::Boids(law) => law.decide(input, &plane()?, rng, &mut ()),
+            Self::Boids(law) => decide_as(law, view, here, sends, &mut ()),
             #[cfg(feature = "grid")]
-            Self::Route(law) => law.decide(input, cells()?, rng, workspace),
+            Self::Route(law) => decide_as(law, view, here, sends, workspace),
             #[cfg(feature = "grid")]
-            Self::Formation(law) => law.decide(input, cells()?, rng, workspace),
+            Self::Formation(law) => decide_as(law, view, here, sends, workspace),
             #[cfg(feature = "grid")]
-            Self::RouteOnGrid(law) => Guidance::<Number>::decide(law, input, grid()?, rng, workspace),
+            Self::RouteOnGrid(law) => decide_as(law, view, here, sends, workspace),
             #[cfg(feature = "grid")]
-            Self::FormationOnGrid(law) => Guidance::<Number>::decide(law, input, grid()?, rng, workspace),
+            Self::FormationOnGrid(law) => decide_as(law, view, here, sends, workspace),
         }
     }
 
-    fn goes_to_cells(&self) -> bool {
-        each!(self, law => Guidance::<Number>::goes_to_cells(law))
+    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+        each!(self, law => AgentLaw::<Number>::payload(law, &mut radio.of()));
     }
 
-    fn goes_by_velocity(&self) -> bool {
-        each!(self, law => Guidance::<Number>::goes_by_velocity(law))
+    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
+        each!(self, law => receive_as::<Number, _>(law, from, message))
     }
 
-    fn has_own_goal(&self) -> bool {
-        each!(self, law => Guidance::<Number>::has_own_goal(law))
+    fn order(&mut self, order: AnyOrder) -> bool {
+        each!(self, law => order_as::<Number, _>(law, order))
     }
 
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<Number>) -> bool {
-        each!(self, law => law.assign_waypoint(index, waypoint))
+    fn needs(&self, id: RobotId) -> bool {
+        each!(self, law => AgentLaw::<Number>::needs(law, id))
+    }
+
+    fn report(&self) -> Report {
+        each!(self, law => AgentLaw::<Number>::report(law))
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<Number> {

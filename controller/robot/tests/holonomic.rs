@@ -3,7 +3,9 @@
 use crate::common;
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType as PinError, OutputPin};
-use staya_controller::agent::{Agent, AgentConfig, InPlane, Inputs, OrcaSafety, Waypoint, WaypointGuidance};
+use staya_controller::agent::{
+    Agent, AgentConfig, InPlane, Inputs, OrcaSafety, Waypoint, WaypointGuidance, WaypointOrder,
+};
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
@@ -69,7 +71,7 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
     let mut agent = Agent::<Q16, _, 8, _>::new(&config, guidance, safety, Postcard);
     let goal = Vec2::new(-1.5, 2.0);
     let there = Position::from_metres([goal.x, goal.y, 0.0]).unwrap();
-    assert!(agent.assign_waypoint(0, &Waypoint::fixed(there)));
+    assert!(agent.order(WaypointOrder::first(Waypoint::fixed(there))));
 
     let mut turned = 0.0;
     let mut now = Instant::from_micros(0);

@@ -14,8 +14,9 @@ use crate::common;
 use core::convert::Infallible;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use staya_controller::agent::{
-    Agent, AgentConfig, CELLS, CellFollower, CellState, GridWorkspace, Guidance, HALF_PLANES, InCell, InCells, InPlane,
-    Inputs, NEIGHBORS, OnGrid, OrcaAgent, OrcaSafety, RouteGuidance, VISITS, Waypoint, WaypointGuidance,
+    Agent, AgentConfig, CELLS, CellFollower, CellState, GridOrder, GridWorkspace, HALF_PLANES, InCell, InCells,
+    InPlane, Inputs, Law, NEIGHBORS, OnGrid, OrcaAgent, OrcaSafety, RouteGuidance, VISITS, Waypoint, WaypointGuidance,
+    WaypointOrder,
 };
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::grid::{Cell, GridFrame};
@@ -181,7 +182,7 @@ fn crossing(from: Vec2<f64>, ahead: Vec2<f64>, [a, b]: [Vec2<f64>; 2]) -> Option
     (range >= 0.0 && (0.0..=1.0).contains(&part)).then_some(range)
 }
 
-struct Firmware<G: Guidance<f32>> {
+struct Firmware<G: Law<f32>> {
     agent: Agent<f32, G, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>>,
     workspace: G::Workspace,
     radio: PacketLink<Uart>,
@@ -200,7 +201,7 @@ const RADIUS_M: f32 = BODY_M as f32 + AHEAD_M + 0.02;
 
 impl<G> Firmware<G>
 where
-    G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>,
+    G: for<'a> Law<f32, Surroundings<'a>: From<InCells<'a, f32>>>,
 {
     fn new(id: u32, guidance: impl FnOnce(f32) -> G, workspace: G::Workspace, body: &Body) -> Self {
         let track = TRACK_M as f32;
@@ -259,7 +260,7 @@ where
         let cell = FRAME.cell(place).unwrap();
         let inputs = Inputs {
             state,
-            surroundings: G::Input::from(InCells {
+            surroundings: G::Surroundings::from(InCells {
                 grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window: self.map.window() },
                 plane: InPlane { max_speed_mps: self.max_speed_mps, obstacles: &obstacles },
                 in_cell: InCell { offset_m: place - FRAME.center(cell), cell_m: FRAME.cell_m },
@@ -294,7 +295,7 @@ fn carry(bodies: &[Body], rng: &mut Rng) {
 }
 
 /// Returns the time until all have arrived; calls `check` after each step of the world.
-fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
+fn run<G: for<'a> Law<f32, Surroundings<'a>: From<InCells<'a, f32>>>>(
     bodies: &mut [Body],
     robots: &mut [Firmware<G>],
     walls: &[[Vec2<f64>; 2]],
@@ -342,7 +343,7 @@ fn a_robot_gets_around_a_wall_known_only_from_ranges() {
     let guidance = |speed| CellFollower::new(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), speed);
     let mut robots = [Firmware::new(1, guidance, GridWorkspace::new(), &bodies[0])];
     let goal = Cell::new(7, 2);
-    robots[0].agent.assign_goal(goal);
+    robots[0].agent.order(GridOrder::Goal(goal));
     let mut least = f64::MAX;
     let time = run(&mut bodies, &mut robots, &walls, |bodies| {
         let gaps = walls.iter().map(|wall| bodies[0].gap_to(wall));
@@ -367,7 +368,7 @@ fn two_differential_robots_swap_places_over_a_bad_wire() {
     let goals = [v(3.5, 1.0), v(0.5, 1.0)];
     for (robot, goal) in robots.iter_mut().zip(goals) {
         let place = Position::from_metres([goal.x, goal.y, 0.0]).unwrap();
-        assert!(robot.agent.assign_waypoint(0, &Waypoint::fixed(place)));
+        assert!(robot.agent.order(WaypointOrder::first(Waypoint::fixed(place))));
     }
     let mut least = f64::MAX;
     let time = run(&mut bodies, &mut robots, &[], |bodies| {

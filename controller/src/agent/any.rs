@@ -1,27 +1,27 @@
-//! Guidance law and safety layer chosen at run time, for simulators and configurable firmware.
+//! Law and safety layer chosen at run time, for simulators and configurable firmware.
 
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::{FormationGuidance, FormationInPlane};
-use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, ToAny};
+use super::law::{BadInput, Decision, Law, MessageOf, OrderOf, Report, Tools, View};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
+use super::protocol::{AnyOrder, AnyProtocol, GridMessage, Radio};
 #[cfg(feature = "published")]
 use super::published_formation::PublishedFormation;
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{AnySurroundings, Parameter, Surroundings, Waypoint};
+use super::{AnySurroundings, FarMap, Parameter, Protocol};
 #[cfg(feature = "published")]
 use crate::formation::Course;
+use crate::formation::NextMove;
 use crate::geom::{Vec2, Vec3};
-use crate::grid::Cell;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{self, HalfPlane, HalfSpaces, MovingBall};
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
 /// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
@@ -39,135 +39,146 @@ pub(in crate::agent) fn large<G>(law: G) -> Large<G> {
     Large::new(law)
 }
 
-/// Any guidance law, on the grid, in the plane or in space.
+fn inside<G>(law: &Large<G>) -> &G {
+    law
+}
+
+fn inside_mut<G>(law: &mut Large<G>) -> &mut G {
+    law
+}
+
+/// Any law, on the grid with a map `H`, in the plane or in space.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
-pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
+pub enum AnyLaw<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, H = ()> {
     Waypoint(WaypointGuidance<S>),
     Lattice(LatticeGuidance<S>),
     GoalFlock(GoalFlockGuidance<S>),
     Boids(BoidsGuidance<S>),
-    Route(Large<CellFollower<S, RouteGuidance<CELLS, M, L>>>),
-    Formation(Large<FormationInPlane<S, CELLS, M, F, L>>),
-    RouteOnGrid(RouteGuidance<CELLS, M, L>),
-    FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L>>),
+    Route(Large<CellFollower<S, RouteGuidance<CELLS, M, L, H>>>),
+    Formation(Large<FormationInPlane<S, CELLS, M, F, L, H>>),
+    RouteOnGrid(RouteGuidance<CELLS, M, L, H>),
+    FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L, NextMove, H>>),
     #[cfg(feature = "published")]
     Published(Large<PublishedFormation<CELLS, M, F>>),
     #[cfg(feature = "published")]
-    LooksAhead(Large<FormationGuidance<CELLS, M, F, L, Course>>),
+    LooksAhead(Large<FormationGuidance<CELLS, M, F, L, Course, H>>),
 }
 
 macro_rules! each {
-    ($any:expr, $inside:ident => $action:expr) => {
+    ($any:expr, $inside:ident($large:ident) => $action:expr) => {
         match $any {
-            AnyGuidance::Waypoint($inside) => $action,
-            AnyGuidance::Lattice($inside) => $action,
-            AnyGuidance::GoalFlock($inside) => $action,
-            AnyGuidance::Boids($inside) => $action,
-            AnyGuidance::Route($inside) => $action,
-            AnyGuidance::Formation($inside) => $action,
-            AnyGuidance::RouteOnGrid($inside) => $action,
-            AnyGuidance::FormationOnGrid($inside) => $action,
+            AnyLaw::Waypoint($inside) => $action,
+            AnyLaw::Lattice($inside) => $action,
+            AnyLaw::GoalFlock($inside) => $action,
+            AnyLaw::Boids($inside) => $action,
+            AnyLaw::Route(law) => each!($large(law), $inside => $action),
+            AnyLaw::Formation(law) => each!($large(law), $inside => $action),
+            AnyLaw::RouteOnGrid($inside) => $action,
+            AnyLaw::FormationOnGrid(law) => each!($large(law), $inside => $action),
             #[cfg(feature = "published")]
-            AnyGuidance::Published($inside) => $action,
+            AnyLaw::Published(law) => each!($large(law), $inside => $action),
             #[cfg(feature = "published")]
-            AnyGuidance::LooksAhead($inside) => $action,
+            AnyLaw::LooksAhead(law) => each!($large(law), $inside => $action),
         }
     };
+    ($large:expr, $inside:ident => $action:expr) => {{
+        let $inside = $large;
+        $action
+    }};
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
-    for AnyGuidance<S, CELLS, M, F, L>
+/// Decides with one law of an enum of laws. The last argument is `()` or the scratch memory.
+///
+/// # Errors
+/// [`BadInput`] also for surroundings of another kind.
+pub fn decide_as<S: Scalar, L>(
+    law: &mut L,
+    view: &View<'_, S>,
+    here: &AnySurroundings<'_, S>,
+    (rng, radio): (&mut Rng, &mut Radio<'_, GridMessage>),
+    workspace: &mut L::Workspace,
+) -> Result<Decision<S>, BadInput>
+where
+    L: Law<S, Protocol: Protocol<Payload = ()>>,
 {
-    fn redirect(&mut self) {
-        each!(self, law => law.redirect());
-    }
-
-    fn note_stop(&mut self, is_asked: bool) {
-        each!(self, law => law.note_stop(is_asked));
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
-        each!(self, law => law.assign_template(part, is_restarted))
-    }
-
-    fn goal_offset(&self) -> Cell {
-        each!(self, law => law.goal_offset())
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        each!(self, law => law.needs(id))
-    }
+    let here = L::Surroundings::try_from(*here).map_err(|_| BadInput)?;
+    law.decide(view, &here, Tools { rng, radio: radio.of(), workspace })
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Guidance<S>
-    for AnyGuidance<S, CELLS, M, F, L>
+/// Gives a message to one law of an enum of laws.
+pub fn receive_as<S: Scalar, L: Law<S>>(law: &mut L, from: RobotId, message: GridMessage) -> bool
+where
+    MessageOf<L, S>: TryFrom<GridMessage>,
 {
-    type Input<'a> = AnySurroundings<'a, S>;
-    type Destination = ToAny;
+    message.try_into().is_ok_and(|message| law.receive(from, message))
+}
+
+/// Gives an order to one law of an enum of laws.
+pub fn order_as<S: Scalar, L: Law<S>>(law: &mut L, order: AnyOrder) -> bool
+where
+    OrderOf<L, S>: TryFrom<AnyOrder>,
+{
+    order.try_into().is_ok_and(|order| law.order(order))
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, H: FarMap> Law<S>
+    for AnyLaw<S, CELLS, M, F, L, H>
+{
+    type Surroundings<'a> = AnySurroundings<'a, S>;
+    type Protocol = AnyProtocol;
     type Workspace = GridWorkspace<CELLS>;
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        view: &View<'_, S>,
         here: &AnySurroundings<'_, S>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        let plane = || here.in_plane().ok_or(BadInput);
-        let grid = || match here {
-            AnySurroundings::OnGrid(grid) => Ok(grid),
-            AnySurroundings::InPlane(_) | AnySurroundings::InCells(_) => Err(BadInput),
-        };
-        let cells = || match here {
-            AnySurroundings::InCells(cells) => Ok(cells),
-            AnySurroundings::OnGrid(_) | AnySurroundings::InPlane(_) => Err(BadInput),
-        };
+        let Tools { rng, mut radio, workspace } = tools;
+        let sends = (rng, &mut radio);
         match self {
-            Self::Waypoint(law) => law.decide(input, &plane()?, rng, &mut ()),
-            Self::Lattice(law) => law.decide(input, &plane()?, rng, &mut ()),
-            Self::GoalFlock(law) => law.decide(input, &plane()?, rng, &mut ()),
-            Self::Boids(law) => law.decide(input, &plane()?, rng, &mut ()),
-            Self::Route(law) => law.decide(input, cells()?, rng, workspace),
-            Self::Formation(law) => law.decide(input, cells()?, rng, workspace),
-            Self::RouteOnGrid(law) => law.decide(input, grid()?, rng, workspace),
-            Self::FormationOnGrid(law) => law.decide(input, grid()?, rng, workspace),
+            Self::Waypoint(law) => decide_as(law, view, here, sends, &mut ()),
+            Self::Lattice(law) => decide_as(law, view, here, sends, &mut ()),
+            Self::GoalFlock(law) => decide_as(law, view, here, sends, &mut ()),
+            Self::Boids(law) => decide_as(law, view, here, sends, &mut ()),
+            Self::Route(law) => decide_as(inside_mut(law), view, here, sends, workspace),
+            Self::Formation(law) => decide_as(inside_mut(law), view, here, sends, workspace),
+            Self::RouteOnGrid(law) => decide_as(law, view, here, sends, workspace),
+            Self::FormationOnGrid(law) => decide_as(inside_mut(law), view, here, sends, workspace),
             #[cfg(feature = "published")]
-            Self::Published(law) => law.decide(input, grid()?, rng, workspace),
+            Self::Published(law) => decide_as(inside_mut(law), view, here, sends, workspace),
             #[cfg(feature = "published")]
-            Self::LooksAhead(law) => law.decide(input, grid()?, rng, workspace),
+            Self::LooksAhead(law) => decide_as(inside_mut(law), view, here, sends, workspace),
         }
     }
 
-    fn goes_to_cells(&self) -> bool {
-        !matches!(self, Self::Waypoint(_) | Self::Lattice(_) | Self::GoalFlock(_) | Self::Boids(_))
+    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+        each!(self, law(inside_mut) => Law::<S>::payload(law, &mut radio.of()));
     }
 
-    fn goes_by_velocity(&self) -> bool {
-        !self.goes_to_cells() || matches!(self, Self::Route(_) | Self::Formation(_))
+    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
+        each!(self, law(inside_mut) => receive_as::<S, _>(law, from, message))
     }
 
-    fn has_own_goal(&self) -> bool {
-        match self {
-            Self::Waypoint(law) => law.has_own_goal(),
-            Self::Lattice(law) => law.has_own_goal(),
-            Self::GoalFlock(law) => law.has_own_goal(),
-            Self::Boids(law) => law.has_own_goal(),
-            _ => false,
-        }
+    fn order(&mut self, order: AnyOrder) -> bool {
+        each!(self, law(inside_mut) => order_as::<S, _>(law, order))
     }
 
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
-        each!(self, law => law.assign_waypoint(index, waypoint))
+    fn needs(&self, id: RobotId) -> bool {
+        each!(self, law(inside) => Law::<S>::needs(law, id))
+    }
+
+    fn report(&self) -> Report {
+        each!(self, law(inside) => Law::<S>::report(law))
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
-        each!(self, law => law.parameter(parameter))
+        each!(self, law(inside) => law.parameter(parameter))
     }
 
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        each!(self, law => law.tune(parameter, value))
+        each!(self, law(inside_mut) => law.tune(parameter, value))
     }
 }
 

@@ -1,20 +1,19 @@
-//! Runs a guidance law of the grid on a body that moves in the plane.
+//! Runs a law of the grid on a body that moves in the plane.
 
-use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Teamwork};
+use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Tools, View};
+use super::protocol::{LawMessage as _, Radio};
 use super::{CellState, InCells, OnGrid, Parameter};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
-use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
 /// Distance from the centre, along an axis, that counts as the next cell; thousandths of a cell.
 const LEAVES_AT: i32 = 750;
 
-/// Moves towards the centre of the cell that a guidance law `G` of the grid would move to.
+/// Moves towards the centre of the cell that a law `G` of the grid would move to.
 ///
 /// The law decides again when the robot is well inside another cell (on the border it could
 /// alternate for ever), and at least once per time to cross a cell at cruising speed. It sees other
@@ -32,6 +31,7 @@ struct Last<S> {
     cell: Cell,
     at: Instant,
     decision: Decision<S>,
+    target: Option<Cell>,
 }
 
 impl<S: Scalar, G> CellFollower<S, G> {
@@ -56,47 +56,54 @@ impl<S: Scalar, G> CellFollower<S, G> {
     }
 }
 
-impl<S, G: Teamwork> Teamwork for CellFollower<S, G> {
-    fn redirect(&mut self) {
-        self.law.redirect();
-        self.last = None;
+impl<S: Scalar, G> Law<S> for CellFollower<S, G>
+where
+    G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>>,
+{
+    type Surroundings<'a> = InCells<'a, S>;
+    type Protocol = G::Protocol;
+    type Workspace = G::Workspace;
+
+    fn decide(
+        &mut self,
+        view: &View<'_, S, PayloadOf<Self, S>>,
+        here: &InCells<'_, S>,
+        tools: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput> {
+        let Self { law, speed_mps, last } = self;
+        let Tools { rng, mut radio, workspace } = tools;
+        let has_goal = law.report().goal.or(view.sent_to).is_some();
+        follow((*speed_mps, has_goal), last, view, here, &mut |grid| {
+            let tools = Tools { rng, radio: radio.of(), workspace };
+            let decision = law.decide(view, &grid, tools)?;
+            Ok((decision, law.report().target))
+        })
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
-        self.law.assign_template(part, is_restarted)
+    fn payload(&mut self, radio: &mut Radio<'_, MessageOf<Self, S>>) -> PayloadOf<Self, S> {
+        self.law.payload(radio)
     }
 
-    fn goal_offset(&self) -> Cell {
-        self.law.goal_offset()
+    fn receive(&mut self, from: RobotId, message: MessageOf<Self, S>) -> bool {
+        // A redirected robot decides at once.
+        if message.request().is_some() {
+            self.last = None;
+        }
+        self.law.receive(from, message)
+    }
+
+    fn order(&mut self, order: OrderOf<Self, S>) -> bool {
+        self.law.order(order)
     }
 
     fn needs(&self, id: RobotId) -> bool {
         self.law.needs(id)
     }
-}
 
-impl<S: Scalar, G> Guidance<S> for CellFollower<S, G>
-where
-    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>>,
-{
-    type Input<'a> = InCells<'a, S>;
-    type Destination = G::Destination;
-    type Workspace = G::Workspace;
-    type Payload = G::Payload;
-
-    fn decide(
-        &mut self,
-        input: &GuidanceInput<'_, S, Self::Payload>,
-        here: &InCells<'_, S>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
-    ) -> Result<Decision<S>, BadInput> {
-        let Self { law, speed_mps, last } = self;
-        follow(*speed_mps, last, input, here, &mut |grid| law.decide(input, &grid, rng, workspace))
-    }
-
-    fn payload(&mut self, now: Instant) -> Self::Payload {
-        self.law.payload(now)
+    /// The target is that of the last decision.
+    fn report(&self) -> Report {
+        let shown = self.law.report();
+        Report { target: self.last.as_ref().map_or(shown.target, |last| last.target), ..shown }
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
@@ -116,11 +123,11 @@ where
 /// One step of a law that decides by `decide`. Not generic over the law, so it is compiled once.
 #[inline(never)]
 fn follow<S: Scalar, P>(
-    speed_mps: S,
+    (speed_mps, has_goal): (S, bool),
     last: &mut Option<Last<S>>,
-    input: &GuidanceInput<'_, S, P>,
+    input: &View<'_, S, P>,
     here: &InCells<'_, S>,
-    decide: &mut dyn FnMut(OnGrid<'_>) -> Result<Decision<S>, BadInput>,
+    decide: &mut dyn FnMut(OnGrid<'_>) -> Result<(Decision<S>, Option<Cell>), BadInput>,
 ) -> Result<Decision<S>, BadInput> {
     let (under, place) = (here.grid.cell.cell, here.in_cell);
     let to_center = |cell: Cell| {
@@ -135,7 +142,9 @@ fn follow<S: Scalar, P>(
     let cell = last.as_ref().map(|last| last.cell).filter(|&cell| !is_left(cell)).unwrap_or(under);
     let speed = speed_mps.min(input.body.max_speed_mps);
     let crossing_s = place.cell_m.checked_div(speed);
-    let crossing_s = crossing_s.filter(|span| *span > S::ZERO).ok_or(BadInput)?;
+    let Some(crossing_s) = crossing_s.filter(|span| *span > S::ZERO) else {
+        return if has_goal { Err(BadInput) } else { Ok(Decision::idle()) };
+    };
     let way = |decision: &Decision<S>| {
         let dir = decision.action.moves().first().copied();
         to_center(cell + dir.unwrap_or(Dir::Stay).offset())
@@ -146,18 +155,21 @@ fn follow<S: Scalar, P>(
         let gets_on = input.body.velocity_mps.xy().dot(ahead) > speed * S::HALF;
         last.cell != cell || age_s < S::ZERO || age_s >= crossing_s && !gets_on
     };
-    let mut decision = match &*last {
-        Some(last) if !is_due(last) => Decision { asks: heapless::Vec::new(), ..last.decision.clone() },
+    let (mut decision, target) = match &*last {
+        Some(last) if !is_due(last) => (last.decision.clone(), last.target),
         _ => {
             *last = None;
             let grid = OnGrid { cell: CellState { cell, ..here.grid.cell }, ..here.grid };
-            let decision = decide(grid)?;
-            *last = Some(Last { cell, at: input.now, decision: decision.clone() });
-            decision
+            let (decision, target) = decide(grid)?;
+            if decision.action == Action::Idle {
+                return Ok(decision);
+            }
+            *last = Some(Last { cell, at: input.now, decision: decision.clone(), target });
+            (decision, target)
         }
     };
     let mut way = way(&decision);
-    let is_last = decision.action.moves().first().is_none_or(|dir| cell + dir.offset() == decision.target);
+    let is_last = decision.action.moves().first().is_none_or(|dir| Some(cell + dir.offset()) == target);
     let needed = match is_last {
         true => {
             way -= input.ahead_m.xy();

@@ -1,13 +1,13 @@
 //! The flocks as guidance laws.
 
-use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints};
+use super::law::{Action, BadInput, Decision, Law, Status, Tools, View};
+use super::protocol::{WaypointOrder, Waypoints};
 use super::tunable::Tunable as _;
 use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, ReferenceMotion, acceleration};
 use crate::geom::{Position, Vec2, Vec3};
-use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
@@ -38,49 +38,41 @@ impl<S: Scalar> LatticeGuidance<S> {
     }
 }
 
-impl<S> Teamwork for LatticeGuidance<S> {}
-
-impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
-    type Input<'a> = InPlane<'a, S>;
-    type Destination = ToWaypoints;
+impl<S: Scalar> Law<S> for LatticeGuidance<S> {
+    type Surroundings<'a> = InPlane<'a, S>;
+    type Protocol = Waypoints;
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        view: &View<'_, S>,
         here: &InPlane<'_, S>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        input.can_go()?;
+        view.can_move()?;
         let motion = self.motion;
         let reference = self.reference.as_mut().map(|waypoint| {
             let offset_m = if motion == ReferenceMotion::Dynamic {
-                waypoint.way(input.state.position, input.now)
+                waypoint.way(view.state.position, view.now)
             } else {
-                waypoint.position.since(input.state.position)
+                waypoint.position.since(view.state.position)
             };
             Reference { offset_m, velocity_mps: motion.wanted(offset_m, waypoint.velocity_mps) }
         });
-        let body = &input.body;
-        let change = acceleration(&self.params, body, input.nearby, here.obstacles, reference.as_ref());
+        let body = &view.body;
+        let change = acceleration(&self.params, body, view.nearby, here.obstacles, reference.as_ref());
         let wish_mps = body.velocity_mps + change * body.step_s;
         if !wish_mps.is_finite() {
             return Err(BadInput);
         }
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
+        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
     }
 
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+    fn order(&mut self, WaypointOrder { index, waypoint }: WaypointOrder) -> bool {
         if index == 0 {
-            self.reference = Some(*waypoint);
+            self.reference = Some(waypoint.cast());
         }
         index == 0
-    }
-
-    fn has_own_goal(&self) -> bool {
-        true
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
@@ -137,47 +129,39 @@ impl<S: Scalar> GoalFlockGuidance<S> {
     }
 }
 
-impl<S> Teamwork for GoalFlockGuidance<S> {}
-
-impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
-    type Input<'a> = InPlane<'a, S>;
-    type Destination = ToWaypoints;
+impl<S: Scalar> Law<S> for GoalFlockGuidance<S> {
+    type Surroundings<'a> = InPlane<'a, S>;
+    type Protocol = Waypoints;
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        view: &View<'_, S>,
         _: &InPlane<'_, S>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        input.can_go()?;
-        let own = input.state.position;
-        self.follow_goals(own, input.now);
-        let _ = self.goals.update(own, self.arrival_m, self.seed, input.id);
+        view.can_move()?;
+        let own = view.state.position;
+        self.follow_goals(own, view.now);
+        let _ = self.goals.update(own, self.arrival_m, self.seed, view.id);
         let goal = self.goals.current();
-        let wish_mps = wish(&self.params, &input.body, own, goal, input.nearby);
+        let wish_mps = wish(&self.params, &view.body, own, goal, view.nearby);
         let way_m = goal.map(|goal| goal.since(own));
         Ok(Decision {
             action: Action::Velocity { wish_mps, way_m: None },
             status: Status { is_at_goal: self.is_there(own, way_m, wish_mps), ..Status::default() },
-            ..Decision::default()
         })
     }
 
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+    fn order(&mut self, WaypointOrder { index, waypoint }: WaypointOrder) -> bool {
         let (index, position) = (usize::from(index), waypoint.position);
         let is_taken = self.goals.set_goal(index, position)
             || (index == self.goals.as_slice().len() && self.goals.push(position).is_ok());
         if let Some(moving) = self.moving.get_mut(index).filter(|_| is_taken) {
-            *moving = (waypoint.velocity_mps != Vec3::ZERO).then_some(*waypoint);
+            let waypoint = waypoint.cast::<S>();
+            *moving = (waypoint.velocity_mps != Vec3::ZERO).then_some(waypoint);
         }
         is_taken
-    }
-
-    fn has_own_goal(&self) -> bool {
-        true
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {
@@ -209,39 +193,31 @@ impl<S: Scalar> BoidsGuidance<S> {
     }
 }
 
-impl<S> Teamwork for BoidsGuidance<S> {}
-
-impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
-    type Input<'a> = InPlane<'a, S>;
-    type Destination = Roams;
+impl<S: Scalar> Law<S> for BoidsGuidance<S> {
+    type Surroundings<'a> = InPlane<'a, S>;
+    type Protocol = ();
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        view: &View<'_, S>,
         _: &InPlane<'_, S>,
-        rng: &mut Rng,
-        (): &mut (),
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        input.can_go()?;
+        view.can_move()?;
         let mut draw = || {
-            let turn = S::from_ratio(rng.below(20_000).cast_signed() - 10_000, 10_000);
+            let turn = S::from_ratio(tools.rng.below(20_000).cast_signed() - 10_000, 10_000);
             let (sin, cos) = (turn * S::PI).sin_cos();
             Vec2::new(cos, sin)
         };
-        let moving = input.body.velocity_mps.xy().normalized();
+        let moving = view.body.velocity_mps.xy().normalized();
         let heading = moving.or(self.heading).unwrap_or_else(&mut draw);
-        let heading = self.params.steer(input.id, heading, input.nearby);
+        let heading = self.params.steer(view.id, heading, view.nearby);
         self.heading = Some(heading);
         Ok(Decision {
             action: Action::Velocity { wish_mps: (heading * self.speed_mps).extend(S::ZERO), way_m: None },
-            ..Decision::default()
+            status: Status::default(),
         })
-    }
-
-    fn has_own_goal(&self) -> bool {
-        true
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -1,10 +1,12 @@
 //! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2); see [`crate::formation`].
 
-use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use super::grid_task::GridTask;
+use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{MoveHistory, PATIENCE, avoid_crossing, on_grid, reachable_goal};
+use super::protocol::{Grid, GridMessage, GridOrder, Radio};
 use super::route_guidance::GridWorkspace;
 use super::tunable::Tunable;
-use super::{OnGrid, Parameter, Wait};
+use super::{FarMap, OnGrid, Parameter, Wait};
 use crate::cost::Weights;
 use crate::formation::{
     Anchor, Footprint, FormationParams, Found, GapClosing, GraphDistance, Member, NextMove, PaceControl, Recovery,
@@ -13,13 +15,12 @@ use crate::formation::{
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::neighbor::Neighbor;
-use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::route::{RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use crate::template::Template;
-use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
+use crate::wire::{RequestKind, TemplateAssembler};
 use core::iter::successors;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -34,9 +35,16 @@ const ALTERNATIVES: usize = 2;
 
 /// Moving in formation, with the visits of `M` cells and a template of `F` neighbours; alone
 /// without a template. `K` predicts the leader by its next move or its
-/// [`Course`](crate::formation::Course).
+/// [`Course`](crate::formation::Course); `H` is a map of the terrain beyond the window.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, K = NextMove> {
+pub struct FormationGuidance<
+    const CELLS: usize,
+    const M: usize,
+    const F: usize,
+    const L: usize = 0,
+    K = NextMove,
+    H = (),
+> {
     route: RouteParams,
     formation: FormationParams,
     sharpness: Sharpness,
@@ -57,6 +65,8 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     #[serde(with = "crate::digest::uncounted")]
     is_rigid: bool,
     steering: K,
+    task: GridTask,
+    map: H,
 }
 
 struct Guide {
@@ -67,19 +77,25 @@ struct Guide {
 }
 
 impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationGuidance<CELLS, M, F, L> {
-    /// Creates the law for one place in the formation.
+    /// Creates the law for one place in the formation, without a map.
     #[must_use]
     pub const fn new(route: RouteParams, formation: FormationParams, template: Template<F>) -> Self {
-        Self::steered(route, formation, template, NextMove)
+        Self::steered(route, formation, template, NextMove, ())
     }
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
-    FormationGuidance<CELLS, M, F, L, K>
+impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering, H>
+    FormationGuidance<CELLS, M, F, L, K, H>
 {
-    /// Creates the law with followers that steer by `steering`.
+    /// Creates the law with followers that steer by `steering`, and with a map.
     #[must_use]
-    pub const fn steered(route: RouteParams, formation: FormationParams, template: Template<F>, steering: K) -> Self {
+    pub const fn steered(
+        route: RouteParams,
+        formation: FormationParams,
+        template: Template<F>,
+        steering: K,
+        map: H,
+    ) -> Self {
         Self {
             route,
             formation,
@@ -98,6 +114,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             behind: 0,
             is_rigid: false,
             steering,
+            task: GridTask::NEW,
+            map,
         }
     }
 
@@ -134,7 +152,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     // Functions with large stack frames are not inlined, so only one frame is live at a time.
 
     /// Returns the highest leader with a known place, and the own place relative to it.
-    fn top<S>(&self, input: &GuidanceInput<'_, S>, view: &Template<F>) -> Option<(RobotId, Cell)> {
+    fn top<S>(&self, input: &View<'_, S>, view: &Template<F>) -> Option<(RobotId, Cell)> {
         let heard = |id: RobotId| input.neighbor(id);
         let first = heard(self.leader)?;
         // Ids decrease along the chain, so it ends; a wrong beacon cannot make it a cycle.
@@ -153,7 +171,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 
     /// Keeps a leader while it is known, however far away (the paper chooses it only at t = 0).
-    fn choose_leader<S>(&mut self, input: &GuidanceInput<'_, S>, found: &Found<F>) {
+    fn choose_leader<S>(&mut self, input: &View<'_, S>, found: &Found<F>) {
         let leader = find_leader(input.id, &found.members);
         if leader.is_some() || input.neighbor(self.leader).is_none() {
             self.leader = leader;
@@ -167,12 +185,15 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     #[inline(never)]
     fn lead<S>(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         (found, view): (&Found<F>, &Template<F>),
         workspace: &mut GridWorkspace<CELLS>,
-    ) -> Option<Weights> {
+    ) -> Option<Weights>
+    where
+        H: FarMap,
+    {
         let GridWorkspace { field, land } = workspace;
         let shown = if self.formation.footprint == 0 || found.members.is_empty() {
             None
@@ -183,13 +204,13 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         };
         let shown = shown.as_ref().unwrap_or(window);
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
-        self.router.weights_over(&self.route, field, shown, (cell, target), others, input.land).ok()
+        self.router.weights_over(&self.route, field, shown, (cell, target), others, self.map.land()).ok()
     }
 
     #[inline(never)]
     fn follow<S>(
         &self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         guide: &Guide,
@@ -216,13 +237,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         Some(weights.plus(&price))
     }
 
-    fn guide<S>(
-        &mut self,
-        input: &GuidanceInput<'_, S>,
-        view: &Template<F>,
-        cell: Cell,
-        seen: &[Seen],
-    ) -> Option<Guide> {
+    fn guide<S>(&mut self, input: &View<'_, S>, view: &Template<F>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
         let top = self.top(input, view);
         let top = top.and_then(|(top, offset)| Some((seen.iter().find(|seen| seen.id == top)?, offset)));
         self.steering.note(top.map_or((input.id, cell), |(seen, _)| (seen.id, seen.cell)));
@@ -243,8 +258,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.behind > self.formation.patience
     }
 
-    /// Asks a foreign robot in a neighbour's place to choose another direction (KUZ section 7).
-    fn ask_surplus(&mut self, found: &Found<F>) -> Option<Ask> {
+    /// Returns a foreign robot in a neighbour's place, to be redirected (KUZ section 7).
+    fn ask_surplus(&mut self, found: &Found<F>) -> Option<RobotId> {
         if found.more == 0 {
             self.crowded = 0;
             return None;
@@ -254,10 +269,10 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             return None;
         }
         self.crowded = 0;
-        Some(Ask { to: found.surplus, kind: RequestKind::Redirect })
+        Some(found.surplus)
     }
 
-    fn ask_pace(&mut self, leader: RobotId, lag: u32) -> Option<Ask> {
+    fn ask_pace(&mut self, lag: u32) -> Option<RequestKind> {
         let has_fallen_behind = self.pace.update(&self.formation, lag);
         let kind = match (has_fallen_behind, self.has_asked) {
             (true, _) => RequestKind::Stop,
@@ -265,12 +280,12 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             (false, false) => return None,
         };
         self.has_asked = has_fallen_behind;
-        Some(Ask { to: leader, kind })
+        Some(kind)
     }
 }
 
 /// Whether robot `other` follows this one. Ids decrease along the chain, so it ends.
-fn comes_after<S>(input: &GuidanceInput<'_, S>, other: RobotId, leader: RobotId) -> bool {
+fn comes_after<S>(input: &View<'_, S>, other: RobotId, leader: RobotId) -> bool {
     let heard = |id: RobotId| input.neighbor(id);
     let chain = successors(Some((other, leader)), |&(id, leader)| {
         heard(leader).filter(|next| leader != input.id && next.id < id).map(|next| (next.id, next.leader))
@@ -286,61 +301,31 @@ fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K> Teamwork
-    for FormationGuidance<CELLS, M, F, L, K>
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering, H: FarMap> Law<S>
+    for FormationGuidance<CELLS, M, F, L, K, H>
 {
-    fn redirect(&mut self) {
-        self.travel.redirect();
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
-        if is_restarted {
-            self.assembler.forget();
-        }
-        match self.assembler.put(part) {
-            Ok(Some(template)) => {
-                self.template = template;
-                self.ranks = GapClosing::new();
-                self.pace = PaceControl::new();
-                self.leader = RobotId::NONE;
-                (self.waited, self.behind) = (0, 0);
-                true
-            }
-            Ok(None) => true,
-            Err(_) => false,
-        }
-    }
-
-    fn goal_offset(&self) -> Cell {
-        self.template.offset
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        self.template.entries.iter().any(|entry| entry.id == id)
-    }
-}
-
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering> Guidance<S>
-    for FormationGuidance<CELLS, M, F, L, K>
-{
-    type Input<'a> = OnGrid<'a>;
-    type Destination = ToCells;
+    type Surroundings<'a> = OnGrid<'a>;
+    type Protocol = Grid;
     type Workspace = GridWorkspace<CELLS>;
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         here: &OnGrid<'_>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
+        let Tools { rng, mut radio, workspace } = tools;
+        let mut ask = |to: RobotId, kind: RequestKind| {
+            radio.send(to, &GridMessage::Request(kind));
+        };
+        let Some(goal) = self.task.goal(input, self.template.offset) else { return Ok(Decision::idle()) };
         let (cell, window) = on_grid(here)?;
-        if self.formation.closes_ranks && cell != input.goal + self.ranks.shift() {
+        self.map.see(&window, cell, goal);
+        if self.formation.closes_ranks && cell != goal + self.ranks.shift() {
             self.ranks.close(input.id, &self.template, holders(input.neighbors));
         }
         let view = &self.view(input.id, input.neighbors);
-        let target = reachable_goal(&window, input.goal + self.ranks.shift());
+        let target = reachable_goal(&window, goal + self.ranks.shift());
         self.router.observe(&self.route, cell, target);
 
         let mut seen = Vec::new();
@@ -353,11 +338,12 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let guide = guide.filter(|_| !goes_alone);
         let mut status =
             Status { is_at_goal: cell == target, makes_way: self.travel.take_redirection(), ..Status::default() };
-        let mut asks = Vec::new();
         let mut stays = false;
         let weights = if let Some(guide) = &guide {
             self.router.forget_route();
-            list::extend(&mut asks, self.ask_pace(leader, guide.lag));
+            if let Some(kind) = self.ask_pace(guide.lag) {
+                ask(leader, kind);
+            }
             status.is_off_place = self.pace.waits();
             status.is_at_goal &= guide.has_arrived;
             let weights = self.follow(input, &window, (cell, target), guide, &found, workspace);
@@ -384,7 +370,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let is_bearable = self.waited <= self.formation.patience;
             status.waits_for = (waits && is_bearable).then_some(Wait::Team);
             if goes_alone && core::mem::take(&mut self.has_asked) {
-                list::extend(&mut asks, Some(Ask { to: leader, kind: RequestKind::Resume }));
+                ask(leader, RequestKind::Resume);
             }
             self.lead(input, &window, (cell, target), (&found, view), workspace)
         };
@@ -409,14 +395,50 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice, 0);
         if status.waits_for.is_none() && !status.is_at_goal {
-            list::extend(&mut asks, blocked);
-            list::extend(&mut asks, self.ask_surplus(&found));
+            blocked.into_iter().for_each(|to| ask(to, RequestKind::Redirect));
+            self.ask_surplus(&found).into_iter().for_each(|to| ask(to, RequestKind::Redirect));
         }
-        Ok(Decision { action: Action::Moves(moves), status, target, leader, slot: view.slot, asks })
+        self.task.shown = Report { goal: Some(goal), target: Some(target), leader, slot: view.slot };
+        Ok(Decision { action: Action::Moves(moves), status })
     }
 
-    fn goes_by_velocity(&self) -> bool {
-        false
+    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+        if let Some(patch) = self.map.say(radio.now()) {
+            radio.broadcast(&GridMessage::Land(patch));
+        }
+    }
+
+    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
+        match message {
+            GridMessage::Request(kind) => self.travel.redirect_if(kind),
+            GridMessage::Land(patch) => self.map.hear(&patch),
+        }
+    }
+
+    fn order(&mut self, order: GridOrder) -> bool {
+        let GridOrder::Template { part, is_restarted } = &order else {
+            return self.task.order(&order, self.template.offset);
+        };
+        if *is_restarted {
+            self.assembler.forget();
+        }
+        let Ok(whole) = self.assembler.put(part) else { return false };
+        if let Some(template) = whole {
+            self.template = template;
+            self.ranks = GapClosing::new();
+            self.pace = PaceControl::new();
+            self.leader = RobotId::NONE;
+            (self.waited, self.behind) = (0, 0);
+        }
+        true
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.template.entries.iter().any(|entry| entry.id == id)
+    }
+
+    fn report(&self) -> Report {
+        self.task.shown
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -3,10 +3,10 @@
 use super::contact_loss::{ContactState, Listening};
 use super::duplicate_id::EchoFilter;
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
-use super::{AgentConfig, CellState, Last, Waypoint};
+use super::{AgentConfig, CellState, Outgoing, Report, Waypoint};
 use crate::body::Body;
 use crate::geom::{Position, Torus, Vec3};
-use crate::grid::Cell;
+use crate::grid::{Cell, Dir};
 use crate::land::LandPatch;
 use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put};
 use crate::robot::{Mode, RobotId};
@@ -28,19 +28,19 @@ const PENDING: usize = 4;
 const WAYPOINTS: usize = 4;
 const ORDERS: usize = 8;
 
-pub(super) enum Received<S> {
-    /// Choose another direction.
-    Redirect,
+pub(super) enum Received {
+    /// The sender asks to choose another direction.
+    Redirect(RobotId),
     /// A stop or resume request for the own leader.
     PassOn(Request),
     /// `is_restarted`: the sender changed or restarted, so its version numbers start anywhere.
     Template { part: TemplateAssignment, is_restarted: bool },
     /// A goal for the top leader of the formation.
     Goal(Cell),
-    /// Of another robot's map.
-    Land(LandPatch),
+    /// Of the sender's map.
+    Land(RobotId, LandPatch),
     /// Call [`Link::placed`] if it was accepted.
-    Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },
+    Waypoint { index: u8, version: u8, waypoint: Waypoint<f32> },
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -173,7 +173,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
-    ) -> Option<Received<S>> {
+    ) -> Option<Received> {
         let frame = match self.wire.decode(bytes) {
             // Frames of other systems on the same band count as neither received nor rejected.
             Err(DecodeError::Foreign) => return None,
@@ -217,7 +217,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
-    ) -> Option<Received<S>> {
+    ) -> Option<Received> {
         let Header { sender, .. } = frame.header;
         let is_mine = |to: RobotId| to == self.header.sender;
         match frame.message {
@@ -233,7 +233,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 self.say_early(&Message::Ack(answer.ack), out);
                 match request.kind {
                     _ if !answer.is_new => {}
-                    RequestKind::Redirect => return Some(Received::Redirect),
+                    RequestKind::Redirect => return Some(Received::Redirect(id)),
                     RequestKind::Stop | RequestKind::Resume => return Some(Received::PassOn(request)),
                 }
             }
@@ -272,7 +272,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                     });
                 }
             }
-            Message::Land(patch) => return Some(Received::Land(patch)),
+            Message::Land(patch) => return Some(Received::Land(id, patch)),
             Message::Payload(bytes) if size_of::<P>() > 0 && arrival.is_latest() => self.table.tell(id, bytes.get()),
             Message::Lost(lost) if listener.fastest_mps.is_some() => self.hear_lost(&lost, now, listener, out),
             Message::Key(key) if is_mine(key.to) => {
@@ -330,6 +330,16 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         let _ = self.requests.ask(to, origin, kind, millis, now);
     }
 
+    /// Queues the requests of a law and broadcasts its patch, after a decision.
+    pub(super) fn send(&mut self, outgoing: &Outgoing, valid: Duration, now: Instant, out: &mut Outputs<S>) {
+        for &(to, kind) in &outgoing.requests {
+            self.ask(to, self.header.sender, kind, valid, now);
+        }
+        if let Some(patch) = outgoing.patch {
+            self.say_early(&Message::Land(patch), out);
+        }
+    }
+
     #[cfg(test)]
     pub(super) fn is_quiet(&self) -> bool {
         self.requests.is_empty()
@@ -346,7 +356,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         now: Instant,
         period: Duration,
         beacon: impl FnOnce() -> Beacon,
-        told: impl FnOnce() -> (P, Option<LandPatch>),
+        told: impl FnOnce(&mut Outgoing) -> P,
         out: &mut Outputs<S>,
     ) {
         // Polling twice per request always empties the list.
@@ -366,13 +376,14 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 report(out, Event::Muted);
             }
             // Data that does not fit is sent again at its next turn.
-            let (payload, land) = told();
+            let mut outgoing = Outgoing::default();
+            let payload = told(&mut outgoing);
             if size_of::<P>() > 0
                 && let Some(bytes) = PayloadBytes::of(&payload)
             {
                 let _ = self.say(&Message::Payload(bytes), 0, out);
             }
-            if let Some(patch) = land {
+            if let Some(patch) = outgoing.patch {
                 let _ = self.say(&Message::Land(patch), 0, out);
             }
             if let Some(lost) = self.lost_to_tell(now) {
@@ -418,7 +429,7 @@ pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
 /// Lengths saturate, and NaN counts as 0.
 pub(super) fn beacon<S: Scalar>(
     config: &AgentConfig<S>,
-    last: &Last,
+    (shown, heading): (Report, Dir),
     mode: Mode,
     state: &KinematicState<S>,
     on_grid: CellState,
@@ -434,11 +445,11 @@ pub(super) fn beacon<S: Scalar>(
         velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
         radius_mm: u16::try_from(milli(config.radius_m).max(0)).unwrap_or(u16::MAX),
         cell: on_grid.cell,
-        heading: last.heading,
+        heading,
         busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
-        leader: last.leader,
-        slot: if config.flock == 0 { last.slot } else { config.flock },
+        leader: shown.leader,
+        slot: if config.flock == 0 { shown.slot } else { config.flock },
         mode,
-        target: last.target,
+        target: shown.target.unwrap_or_default(),
     }
 }

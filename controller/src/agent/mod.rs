@@ -1,10 +1,10 @@
 //! The controller of one robot, which composes the behaviours. Start with [`Agent::step`].
 //!
-//! A step receives frames (`link`), decides (a [`Guidance`] law, then the [`crate::supervisor`]),
-//! avoids collisions (a [`Safety`] layer) and sends frames. The type of a law determines the inputs
-//! of a step ([`Guidance::Input`]) and the kinds of goal ([`Guidance::Destination`]):
+//! A step receives frames (`link`), decides (a [`Law`], then the [`crate::supervisor`]),
+//! avoids collisions (a [`Safety`] layer) and sends frames. The type of a law determines its
+//! surroundings ([`Law::Surroundings`]) and the orders that it takes ([`Protocol::Order`]):
 //!
-//! | guidance law | surroundings | goal | command |
+//! | law | surroundings | order | command |
 //! | --- | --- | --- | --- |
 //! | [`RouteGuidance`] | [`OnGrid`] | [cell] | [move] |
 //! | [`FormationGuidance`], `PublishedFormation` | [`OnGrid`] | [cell] | [move] |
@@ -14,8 +14,8 @@
 //! | [`LatticeGuidance`] | [`InPlane`] | [waypoint] or none: it flocks | [velocity] |
 //! | [`BoidsGuidance`] | [`InPlane`] | none: it roams | [velocity] |
 //!
-//! [cell]: Agent::assign_goal
-//! [waypoint]: Agent::assign_waypoint
+//! [cell]: GridOrder
+//! [waypoint]: WaypointOrder
 //! [move]: Command::Move
 //! [velocity]: Command::Velocity
 //!
@@ -38,7 +38,7 @@
 //! let law = RouteGuidance::new(RouteParams::default());
 //! let mut agent = RouteAgent::new(&config, law, Unguarded, Postcard);
 //! let mut workspace = GridWorkspace::new();
-//! agent.assign_goal(Cell::new(9, 5));
+//! agent.order(GridOrder::Goal(Cell::new(9, 5)));
 //!
 //! // Sensors and radio report flat terrain and no other robot.
 //! let (land, mut cell, mut now) = ([1; 121], Cell::new(5, 5), Instant::from_micros(0));
@@ -77,7 +77,7 @@
 //! let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
 //! let safety = OrcaSafety::new(AvoidParams::default(), inflation);
 //! let mut agent = OrcaAgent::new(&config, WaypointGuidance::new(0.5, 0.02), safety, Postcard);
-//! agent.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([2000, 0, 0])));
+//! agent.order(WaypointOrder::first(Waypoint::fixed(Position::from_mm([2000, 0, 0]))));
 //!
 //! let (mut state, mut now) = (KinematicState::default(), Instant::from_micros(0));
 //! while agent.mode() != Mode::Arrived {
@@ -98,30 +98,31 @@
 //! ```
 
 mod any;
-mod any_world;
 mod cell_follower;
-mod commanded;
 mod config;
 mod contact_loss;
 mod duplicate_id;
 mod flock_guidance;
 mod formation_guidance;
 mod goal_occupancy;
-mod guidance;
+mod grid_task;
+mod guided;
 mod io;
+mod law;
 mod link;
 mod make_way;
-mod map_sharing;
 mod move_history;
-mod neighbor_tracking;
 mod orca_safety;
 mod other_safety;
 mod parameter;
+mod perception;
+mod protocol;
 #[cfg(feature = "published")]
 mod published_formation;
 mod route_guidance;
 mod safety;
 mod setup;
+mod shared_map;
 mod state;
 mod step;
 mod surroundings;
@@ -134,29 +135,29 @@ mod waypoint_guidance;
 #[cfg(all(test, feature = "auth"))]
 mod tests;
 
-pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};
-pub use any_world::AnyWorld;
+pub use any::{AnyHalfPlanes, AnyLaw, AnySafety, decide_as, order_as, receive_as};
 pub use cell_follower::CellFollower;
-pub use commanded::{Commanded, Wish};
 pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::{FormationGuidance, FormationInPlane};
-pub use guidance::{
-    Action, Ask, BadInput, Decision, Destination, Guidance, GuidanceInput, Roams, Status, Teamwork, ToAny, ToCells,
-    ToWaypoints,
-};
+pub use guided::{Guided, Wish};
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, KinematicState, OUTBOX, Outputs, Refused};
-pub use map_sharing::MapSharing;
-pub use neighbor_tracking::NeighborTracking;
+pub use law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
 pub use parameter::Parameter;
+pub use perception::{Perception, RadioOnly};
+pub use protocol::{
+    AnyOrder, AnyProtocol, Grid, GridMessage, GridOrder, LawMessage, LawOrder, Never, OfAnotherLaw, Outgoing, Protocol,
+    Radio, WaypointOrder, Waypoints,
+};
 #[cfg(feature = "published")]
 pub use published_formation::PublishedFormation;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, SafetyInput, Unguarded};
 pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task};
+pub use shared_map::{FarMap, SharedMap};
 pub use surroundings::{AnySurroundings, CellState, InCell, InCells, InPlane, OnGrid, Surroundings};
 pub use task::WrongTask;
 pub use wait::Wait;
@@ -165,7 +166,7 @@ pub use waypoint_guidance::WaypointGuidance;
 
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
-use crate::robot::{Mode, RobotId};
+use crate::robot::Mode;
 use crate::scalar::Scalar;
 use crate::supervisor::Situation;
 use crate::wire::{MAX_PAYLOAD, Postcard, Wire};
@@ -200,32 +201,32 @@ pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
-const _: () = assert!(BYTES[0] <= 4448 && BYTES[1] <= 4720 && BYTES[2] <= 2072 && BYTES[3] <= 2720);
+const _: () = assert!(BYTES[0] <= 4456 && BYTES[1] <= 4728 && BYTES[2] <= 2056 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4456, 4728, 2080, 2720]));
+const _: () = assert!(matches!(BYTES, [4464, 4736, 2064, 2720]));
 
-/// The controller of one robot: guidance law `G`, at most `N` known neighbours, safety layer `A`,
-/// wire format `W`.
+/// The controller of one robot: law `L`, at most `N` known neighbours, safety layer `A`, wire
+/// format `W`, perception `P`.
 ///
 /// Bytes with default capacities; the build fails if one of them changes:
 ///
 /// | type | 32-bit part | 64-bit host |
 /// | --- | --- | --- |
-/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4448 | 4456 |
-/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4720 | 4728 |
-/// | [`OrcaAgent`] | at most 2072 | 2080 |
+/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4456 | 4464 |
+/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4728 | 4736 |
+/// | [`OrcaAgent`] | at most 2056 | 2064 |
 /// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
 ///
 /// With the feature `host`, lists take only the memory of their entries.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound(deserialize = "G: Deserialize<'de>, A: Deserialize<'de>, W: Deserialize<'de>"))]
-pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = Postcard> {
+#[serde(bound(deserialize = "L: Deserialize<'de>, A: Deserialize<'de>, W: Deserialize<'de>, P: Deserialize<'de>"))]
+pub struct Agent<S: Scalar, L: Law<S>, const N: usize, A = Unguarded, W = Postcard, P = RadioOnly> {
     config: AgentConfig<S>,
-    guidance: G,
+    law: L,
     safety: A,
-    link: Link<S, N, W, G::Payload>,
+    perception: P,
+    link: Link<S, N, W, PayloadOf<L, S>>,
     mode: Mode,
-    goal: Option<Goal>,
     /// Keys the random numbers of each decision.
     decisions: u32,
     last: Last,
@@ -233,38 +234,37 @@ pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = P
     commanded_mps: Vec3<S>,
 }
 
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-enum Goal {
-    Own(Cell),
-    /// For the top leader; this robot heads for its own place beside it.
-    Formation(Cell),
-}
-
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Last {
     situation: Situation,
-    target: Cell,
     cell: Cell,
-    leader: RobotId,
     heading: Dir,
-    slot: u8,
 }
 
-impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
+impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, L, N, A, W> {
     /// Creates a robot that has just started: idle, without a goal and without known neighbours.
     ///
     /// Use [`Unguarded`] where bodies cannot collide or may touch. All robots of a swarm must use
     /// the same `wire` format, for example [`Postcard`].
     #[must_use]
-    pub const fn new(config: &AgentConfig<S>, guidance: G, safety: A, wire: W) -> Self {
-        const { assert!(size_of::<G::Payload>() <= MAX_PAYLOAD, "what a law tells does not fit a frame") };
+    pub const fn new(config: &AgentConfig<S>, law: L, safety: A, wire: W) -> Self {
+        Self::with_perception(config, law, safety, wire, RadioOnly)
+    }
+}
+
+impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<S>> Agent<S, L, N, A, W, P> {
+    /// Creates a robot as [`Agent::new`] does, with a [`Tracker`](crate::neighbor::Tracker) of the
+    /// robots that its sensors detect.
+    #[must_use]
+    pub const fn with_perception(config: &AgentConfig<S>, law: L, safety: A, wire: W, perception: P) -> Self {
+        const { assert!(size_of::<PayloadOf<L, S>>() <= MAX_PAYLOAD, "the payload of a law does not fit a frame") };
         Self {
             config: *config,
-            guidance,
+            law,
             safety,
+            perception,
             link: Link::new(config, wire),
             mode: Mode::Idle,
-            goal: None,
             decisions: 0,
             last: Last {
                 situation: Situation {
@@ -276,11 +276,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                     is_stuck: false,
                     is_off_place: false,
                 },
-                target: Cell::new(0, 0),
                 cell: Cell::new(0, 0),
-                leader: RobotId::NONE,
                 heading: Dir::Stay,
-                slot: 0,
             },
             commanded_mps: Vec3::ZERO,
         }

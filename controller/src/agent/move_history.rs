@@ -1,12 +1,12 @@
 //! Shared by the laws on the grid: the last choice, requests to robots in the way, reachable goals.
 
 use super::OnGrid;
-use super::guidance::{Ask, BadInput, GuidanceInput};
+use super::law::{BadInput, View};
 use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::neighbor::Neighbor;
 use crate::rand::Rng;
-use crate::robot::Mode;
+use crate::robot::{Mode, RobotId};
 use crate::shuffle::{Sharpness, weighted_shuffle};
 use crate::wire::RequestKind;
 use heapless::Vec;
@@ -32,8 +32,10 @@ impl MoveHistory {
         self.choice
     }
 
-    pub(super) fn redirect(&mut self) {
-        self.redirected = true;
+    /// Takes in a request; of use is only one to choose another direction.
+    pub(super) fn redirect_if(&mut self, kind: RequestKind) -> bool {
+        self.redirected |= kind == RequestKind::Redirect;
+        kind == RequestKind::Redirect
     }
 
     pub(super) fn take_redirection(&mut self) -> bool {
@@ -55,9 +57,9 @@ impl MoveHistory {
         moves
     }
 
-    /// Stores the choice. Returns a request to a robot that has been in the way for too long.
+    /// Stores the choice. Returns the robot that has been in the way for too long, to be redirected.
     /// `idle`: moves since the robot was nearest to its target.
-    pub(super) fn note<S>(&mut self, input: &GuidanceInput<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<Ask> {
+    pub(super) fn note<S>(&mut self, input: &View<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<RobotId> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
         self.cell = Some(cell);
@@ -76,7 +78,7 @@ impl MoveHistory {
             return None;
         }
         self.attempts = 0;
-        Some(Ask { to: to.id, kind: RequestKind::Redirect })
+        Some(to.id)
     }
 }
 
@@ -84,7 +86,7 @@ impl MoveHistory {
 /// recently that it may be under way. An announced move into an occupied cell has not begun.
 pub(super) fn avoid_crossing<S>(
     moves: &mut Vec<Dir, 8>,
-    input: &GuidanceInput<'_, S>,
+    input: &View<'_, S>,
     (window, norm): (&Window<'_>, Norm),
     cell: Cell,
 ) {
@@ -103,7 +105,7 @@ pub(super) fn avoid_crossing<S>(
     }
 }
 
-fn occupant<'a, S>(input: &GuidanceInput<'a, S>, cell: Cell) -> Option<&'a Neighbor<S>> {
+fn occupant<'a, S>(input: &View<'a, S>, cell: Cell) -> Option<&'a Neighbor<S>> {
     input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
 }
 

@@ -1,9 +1,8 @@
 //! Parameters of a running robot that an operator or its firmware can tune: names, units, limits
 //! and descriptions. [`tunable`](super::tunable) maps each one to a field.
 
-use super::Agent;
-use super::guidance::Guidance;
 use super::safety::Safety;
+use super::{Agent, Law, Perception};
 use crate::names::named;
 use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
@@ -173,15 +172,15 @@ impl Parameter {
     }
 }
 
-impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
+impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<S>> Agent<S, L, N, A, W, P> {
     /// Returns the current value, or `None` if this robot does not have the parameter.
     #[must_use]
     pub fn parameter(&self, parameter: Parameter) -> Option<f32> {
-        let guidance = || self.guidance.parameter(parameter);
+        let law = || self.law.parameter(parameter);
         let value = match parameter {
             Parameter::Radius => Some(self.config.radius_m),
             Parameter::BeaconPeriod => Some(S::from_micro(self.config.beacon_period.as_micros())),
-            _ => guidance().or_else(|| self.safety.parameter(parameter)),
+            _ => law().or_else(|| self.safety.parameter(parameter)),
         };
         value.map(cast)
     }
@@ -201,14 +200,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             }
             _ => {
                 let value = cast(value);
-                return self.guidance.tune(parameter, value) | self.safety.tune(parameter, value);
+                return self.law.tune(parameter, value) | self.safety.tune(parameter, value);
             }
         }
         true
-    }
-
-    /// Returns the guidance law, to change it between two steps.
-    pub const fn guidance_mut(&mut self) -> &mut G {
-        &mut self.guidance
     }
 }

@@ -14,8 +14,10 @@
 //! - Line 24 shuffles again, which is another draw. Missing and surplus robots are redirected (item
 //!   6).
 
-use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use super::grid_task::GridTask;
+use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{on_grid, reachable_goal};
+use super::protocol::{Grid, GridMessage, GridOrder};
 use super::route_guidance::GridWorkspace;
 use super::tunable::Tunable as _;
 use super::{OnGrid, Parameter, Wait};
@@ -23,16 +25,14 @@ use crate::cost::{Gain, Weights};
 use crate::formation::published::{Kept, PublishedParams, smallest_below, sum_of_deviations, sums, sums_of_other};
 use crate::formation::{Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance};
 use crate::grid::{BLOCKED, Cell, Dir, Window};
-use crate::list;
 use crate::neighbor::Neighbor;
-use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::route::{CostField, RouteParams, VisitMemory};
 use crate::scalar::Scalar;
 use crate::shuffle::{Sharpness, weighted_shuffle};
 use crate::template::Template;
 use crate::time::Duration;
-use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
+use crate::wire::{RequestKind, TemplateAssembler};
 use serde::{Deserialize, Serialize};
 
 /// Moving in formation as published, with the visits of `M` cells and a template of `F` neighbours.
@@ -52,9 +52,9 @@ pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize
     /// The temporary target (lines 11 and 19).
     detour: Option<Cell>,
     has_asked: bool,
-    is_stopped: bool,
     choice: Dir,
     is_redirected: bool,
+    task: GridTask,
 }
 
 impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELLS, M, F> {
@@ -73,9 +73,9 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
             has_chosen: false,
             detour: None,
             has_asked: false,
-            is_stopped: false,
             choice: Dir::Stay,
             is_redirected: false,
+            task: GridTask::NEW,
         }
     }
 
@@ -95,13 +95,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
 
     /// Algorithm 5 with `predict`.
     #[inline(never)]
-    fn found<S>(
-        &self,
-        input: &GuidanceInput<'_, S>,
-        window: &Window<'_>,
-        cell: Cell,
-        field: &mut CostField<CELLS>,
-    ) -> Found<F> {
+    fn found<S>(&self, input: &View<'_, S>, window: &Window<'_>, cell: Cell, field: &mut CostField<CELLS>) -> Found<F> {
         let robots = input.neighbors.iter().map(|other| seen_at(other, other.cell));
         let mut found = find_neighbors(&self.template, cell, self.formation.eps, robots);
         for member in &mut found.members {
@@ -115,7 +109,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
     /// Position of another robot at the next tick (section 7, item 1); `None` if it does not move.
     fn predict<S>(
         &self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         window: &Window<'_>,
         own: Cell,
         member: &Member,
@@ -168,8 +162,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         (ask, kept == Kept::Well || (is_leader && self.detour.is_some()))
     }
 
-    /// Line 24 and item 6.
-    fn ask_others<S>(&self, input: &GuidanceInput<'_, S>, found: &Found<F>) -> [Option<Ask>; 2] {
+    /// Line 24 and item 6: the robots to redirect.
+    fn ask_others<S>(&self, input: &View<'_, S>, found: &Found<F>) -> [Option<RobotId>; 2] {
         if !self.formation.is_crowded(found) {
             return [None; 2];
         }
@@ -177,7 +171,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         let mut missing = self.template.entries.iter().map(|entry| entry.id);
         let missing = missing.find(|&id| input.neighbor(id).is_some() && !is_found(id));
         let surplus = Some(found.surplus).filter(|id| id.is_some());
-        [surplus, missing].map(|to| to.map(|to| Ask { to, kind: RequestKind::Redirect }))
+        [surplus, missing]
     }
 }
 
@@ -185,62 +179,32 @@ const fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
 
-impl<const CELLS: usize, const M: usize, const F: usize> Teamwork for PublishedFormation<CELLS, M, F> {
-    fn redirect(&mut self) {
-        self.is_redirected = true;
-    }
-
-    fn note_stop(&mut self, is_asked: bool) {
-        self.is_stopped = is_asked;
-    }
-
-    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
-        if is_restarted {
-            self.assembler.forget();
-        }
-        let Ok(whole) = self.assembler.put(part) else { return false };
-        if let Some(template) = whole {
-            self.template = template;
-            (self.leader, self.has_chosen) = (RobotId::NONE, false);
-            self.detour = None;
-        }
-        true
-    }
-
-    fn goal_offset(&self) -> Cell {
-        self.template.offset
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        self.template.entries.iter().any(|entry| entry.id == id)
-    }
-}
-
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> for PublishedFormation<CELLS, M, F> {
-    type Input<'a> = OnGrid<'a>;
-    type Destination = ToCells;
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for PublishedFormation<CELLS, M, F> {
+    type Surroundings<'a> = OnGrid<'a>;
+    type Protocol = Grid;
     type Workspace = GridWorkspace<CELLS>;
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         here: &OnGrid<'_>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
+        let Tools { rng, mut radio, workspace } = tools;
+        let Some(goal) = self.task.goal(input, self.template.offset) else { return Ok(Decision::idle()) };
         let (cell, window) = on_grid(here)?;
         if self.here != Some(cell) {
             self.here = Some(cell);
             self.visits.enter(cell);
         }
         let field = &mut workspace.field;
-        let target = reachable_goal(&window, input.goal);
+        let target = reachable_goal(&window, goal);
         let is_redirected = core::mem::take(&mut self.is_redirected);
-        let mut decision = Decision { target, slot: self.template.slot, ..Decision::default() };
+        let mut decision = Decision::default();
+        self.task.shown =
+            Report { goal: Some(goal), target: Some(target), leader: self.leader, slot: self.template.slot };
         if cell == target {
             decision.status.is_at_goal = true;
-            decision.leader = self.leader;
             return Ok(decision);
         }
         // Lines 3 to 6.
@@ -249,7 +213,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
             self.leader = smallest_below(input.id, &found.members);
             self.has_chosen = found.less == 0;
         }
-        decision.leader = self.leader;
+        self.task.shown.leader = self.leader;
         // Lines 2, 7 and 8.
         let heads_for = reachable_goal(&window, self.detour.unwrap_or(target));
         let price = sums(self.formation.gain, cell, &found.members);
@@ -275,10 +239,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         let sum = sum_of_deviations(cell + self.choice.offset(), &found.members);
         let is_leader = input.neighbors.iter().any(|other| other.leader == input.id);
         let (ask, continues) = self.keep((cell, target), (is_leader, sum), &found);
-        let ask = ask.filter(|_| self.leader.is_some()).map(|kind| Ask { to: self.leader, kind });
-        list::extend(&mut decision.asks, ask);
-        list::extend(&mut decision.asks, self.ask_others(input, &found).into_iter().flatten());
-        let stands = self.is_stopped && !continues;
+        if let Some(kind) = ask.filter(|_| self.leader.is_some()) {
+            radio.send(self.leader, &GridMessage::Request(kind));
+        }
+        for to in self.ask_others(input, &found).into_iter().flatten() {
+            radio.send(to, &GridMessage::Request(RequestKind::Redirect));
+        }
+        let stands = input.is_stopped && !continues;
         decision.status = Status {
             waits_for: stands.then_some(Wait::Stopped),
             recovers: !stands,
@@ -289,8 +256,34 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         Ok(decision)
     }
 
-    fn goes_by_velocity(&self) -> bool {
-        false
+    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
+        let redirects = message == GridMessage::Request(RequestKind::Redirect);
+        self.is_redirected |= redirects;
+        redirects
+    }
+
+    fn order(&mut self, order: GridOrder) -> bool {
+        let GridOrder::Template { part, is_restarted } = &order else {
+            return self.task.order(&order, self.template.offset);
+        };
+        if *is_restarted {
+            self.assembler.forget();
+        }
+        let Ok(whole) = self.assembler.put(part) else { return false };
+        if let Some(template) = whole {
+            self.template = template;
+            (self.leader, self.has_chosen) = (RobotId::NONE, false);
+            self.detour = None;
+        }
+        true
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.template.entries.iter().any(|entry| entry.id == id)
+    }
+
+    fn report(&self) -> Report {
+        self.task.shown
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

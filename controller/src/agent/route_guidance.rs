@@ -1,16 +1,20 @@
 //! Routing of a single robot to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
-use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use super::grid_task::GridTask;
+use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{MoveHistory, avoid_crossing, on_grid, reachable_goal};
+use super::protocol::{Grid, GridMessage, GridOrder, Radio};
 use super::tunable::Tunable as _;
-use super::{OnGrid, Parameter};
+use super::{FarMap, OnGrid, Parameter};
 use crate::cost::{Gain, Weights};
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::route::{CostField, Replan, RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
+use crate::wire::RequestKind;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -41,27 +45,46 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
     }
 }
 
-/// Windowed routing to the own goal. Remembers the visits of `M` cells.
+/// Windowed routing to the own goal, with a map `H` of the terrain beyond the window. Remembers the
+/// visits of `M` cells.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0> {
+pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0, H = ()> {
     params: RouteParams,
     replan: Replan,
     sharpness: Sharpness,
     router: Router<M, L>,
     travel: MoveHistory,
+    task: GridTask,
+    map: H,
 }
 
 impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M, L> {
-    /// Creates the law. By default it searches in each cell and tries cheap moves first.
+    /// Creates the law without a map. By default it searches in each cell and tries cheap moves first.
     #[must_use]
     pub const fn new(params: RouteParams) -> Self {
+        Self::with_map(params, ())
+    }
+}
+
+impl<const CELLS: usize, const M: usize, const L: usize, H> RouteGuidance<CELLS, M, L, H> {
+    /// Creates the law with a map.
+    #[must_use]
+    pub const fn with_map(params: RouteParams, map: H) -> Self {
         Self {
             params,
             replan: Replan::EachCell,
             sharpness: Sharpness::Greedy,
             router: Router::new(),
             travel: MoveHistory::new(),
+            task: GridTask::NEW,
+            map,
         }
+    }
+
+    /// The map.
+    #[must_use]
+    pub const fn map(&self) -> &H {
+        &self.map
     }
 
     /// Sets when to repeat the search; [`Replan::UntilChanged`] offers one move, unshuffled.
@@ -80,13 +103,16 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
 
     fn moves<S>(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         is_redirected: bool,
         rng: &mut Rng,
         workspace: &mut GridWorkspace<CELLS>,
-    ) -> Option<Vec<Dir, 8>> {
+    ) -> Option<Vec<Dir, 8>>
+    where
+        H: FarMap,
+    {
         let params = &self.params;
         let field = &mut workspace.field;
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
@@ -98,7 +124,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         let mut weights = if is_redirected && cell == target {
             Weights::CLOSED
         } else {
-            self.router.weights_over(params, field, window, (cell, target), others, input.land).ok()?
+            self.router.weights_over(params, field, window, (cell, target), others, self.map.land()).ok()?
         };
         if is_redirected {
             weights = aside(weights);
@@ -112,27 +138,25 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
     }
 }
 
-impl<const CELLS: usize, const M: usize, const L: usize> Teamwork for RouteGuidance<CELLS, M, L> {
-    fn redirect(&mut self) {
-        self.travel.redirect();
-    }
-}
-
-impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> for RouteGuidance<CELLS, M, L> {
-    type Input<'a> = OnGrid<'a>;
-    type Destination = ToCells;
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> Law<S>
+    for RouteGuidance<CELLS, M, L, H>
+{
+    type Surroundings<'a> = OnGrid<'a>;
+    type Protocol = Grid;
     type Workspace = GridWorkspace<CELLS>;
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         here: &OnGrid<'_>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
+        let Tools { rng, mut radio, workspace } = tools;
+        let Some(goal) = self.task.goal(input, Cell::default()) else { return Ok(Decision::idle()) };
         let (cell, window) = on_grid(here)?;
-        let target = reachable_goal(&window, input.goal);
+        self.map.see(&window, cell, goal);
+        let target = reachable_goal(&window, goal);
+        self.task.show(goal, target);
         self.router.observe(&self.params, cell, target);
         let makes_way = self.travel.take_redirection();
         let mut status = Status { is_at_goal: cell == target, makes_way, ..Status::default() };
@@ -145,17 +169,31 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
         }
         let choice = moves.first().copied().unwrap_or_default();
         let idle = if makes_way { u8::MAX } else { self.router.idle() };
-        Ok(Decision {
-            action: Action::Moves(moves),
-            status,
-            target,
-            asks: list::collect(self.travel.note(input, cell, choice, idle)),
-            ..Decision::default()
-        })
+        if let Some(blocker) = self.travel.note(input, cell, choice, idle) {
+            radio.send(blocker, &GridMessage::Request(RequestKind::Redirect));
+        }
+        Ok(Decision { action: Action::Moves(moves), status })
     }
 
-    fn goes_by_velocity(&self) -> bool {
-        false
+    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+        if let Some(patch) = self.map.say(radio.now()) {
+            radio.broadcast(&GridMessage::Land(patch));
+        }
+    }
+
+    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
+        match message {
+            GridMessage::Request(kind) => self.travel.redirect_if(kind),
+            GridMessage::Land(patch) => self.map.hear(&patch),
+        }
+    }
+
+    fn order(&mut self, order: GridOrder) -> bool {
+        self.task.order(&order, Cell::default())
+    }
+
+    fn report(&self) -> Report {
+        self.task.shown
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

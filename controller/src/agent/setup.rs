@@ -1,6 +1,6 @@
 //! The configuration of a robot as data, for scenarios and host links; `f32` for any scalar type.
 
-use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety, large};
+use super::any::{AnyHalfPlanes, AnyLaw, AnySafety, large};
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::{FormationGuidance, FormationInPlane};
@@ -17,9 +17,9 @@ use crate::flock::goal::GoalParams;
 use crate::flock::lattice::{LatticeParams, ReferenceMotion};
 #[cfg(feature = "published")]
 use crate::formation::Course;
-use crate::formation::FormationParams;
 #[cfg(feature = "published")]
 use crate::formation::published::PublishedParams;
+use crate::formation::{FormationParams, NextMove};
 use crate::grid::Cell;
 use crate::names::named;
 use crate::neighbor::StalenessInflation;
@@ -43,7 +43,7 @@ pub type AnyAgent<
     const K: usize,
     W = Postcard,
     const L: usize = 0,
-> = Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE, L>, N, AnySafety<S, K>, W>;
+> = Agent<S, AnyLaw<S, CELLS, M, TEMPLATE, L>, N, AnySafety<S, K>, W>;
 
 /// The complete configuration of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -263,7 +263,7 @@ impl Setup {
         &self,
         wire: W,
     ) -> AnyAgent<S, CELLS, M, N, K, W, L> {
-        Agent::new(&self.agent.cast(), self.guidance.guidance(), self.safety.safety(), wire)
+        Agent::new(&self.agent.cast(), self.guidance.law(()), self.safety.safety(), wire)
     }
 
     /// Returns the `CELLS` of a [`CostField`](crate::route::CostField) that it needs; 0 for none.
@@ -294,46 +294,45 @@ impl GuidanceSetup {
         }
     }
 
-    /// Creates the guidance law.
+    /// Creates the law; laws on the grid take the `map`.
     #[must_use]
-    pub fn guidance<S: Scalar, const CELLS: usize, const M: usize, const L: usize>(
+    pub fn law<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H>(
         &self,
-    ) -> AnyGuidance<S, CELLS, M, TEMPLATE, L> {
+        map: H,
+    ) -> AnyLaw<S, CELLS, M, TEMPLATE, L, H> {
         match self {
             Self::Waypoint { speed_mps, tolerance_m } => {
-                AnyGuidance::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m)))
+                AnyLaw::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m)))
             }
             Self::Lattice { params, motion } => {
-                AnyGuidance::Lattice(LatticeGuidance::following(params.cast(), motion.cast()))
+                AnyLaw::Lattice(LatticeGuidance::following(params.cast(), motion.cast()))
             }
             Self::GoalFlock { params, arrival_m, seed } => {
-                AnyGuidance::GoalFlock(GoalFlockGuidance::new(params.cast(), cast(*arrival_m), *seed))
+                AnyLaw::GoalFlock(GoalFlockGuidance::new(params.cast(), cast(*arrival_m), *seed))
             }
-            Self::Boids { params, speed_mps } => {
-                AnyGuidance::Boids(BoidsGuidance::new(params.params(), cast(*speed_mps)))
-            }
+            Self::Boids { params, speed_mps } => AnyLaw::Boids(BoidsGuidance::new(params.params(), cast(*speed_mps))),
             Self::Route { route, speed_mps } => {
-                let guidance = route.guidance();
+                let guidance = route.law(map);
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Route(large(CellFollower::new(guidance, cast(*speed)))),
-                    None => AnyGuidance::RouteOnGrid(guidance),
+                    Some(speed) => AnyLaw::Route(large(CellFollower::new(guidance, cast(*speed)))),
+                    None => AnyLaw::RouteOnGrid(guidance),
                 }
             }
             Self::Formation { route, formation, template, speed_mps } => {
-                let guidance =
-                    FormationGuidance::new(route.params, *formation, template.clone()).sharpness(route.sharpness);
+                let guidance = FormationGuidance::steered(route.params, *formation, template.clone(), NextMove, map);
+                let guidance = guidance.sharpness(route.sharpness);
                 match speed_mps {
-                    Some(speed) => AnyGuidance::Formation(large(FormationInPlane::new(guidance, cast(*speed)))),
-                    None => AnyGuidance::FormationOnGrid(large(guidance)),
+                    Some(speed) => AnyLaw::Formation(large(FormationInPlane::new(guidance, cast(*speed)))),
+                    None => AnyLaw::FormationOnGrid(large(guidance)),
                 }
             }
             #[cfg(feature = "published")]
-            Self::Published { route, formation, template } => AnyGuidance::Published(large(
+            Self::Published { route, formation, template } => AnyLaw::Published(large(
                 PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness),
             )),
             #[cfg(feature = "published")]
-            Self::LooksAhead { route, formation, template } => AnyGuidance::LooksAhead(large(
-                FormationGuidance::steered(route.params, *formation, template.clone(), Course::new())
+            Self::LooksAhead { route, formation, template } => AnyLaw::LooksAhead(large(
+                FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map)
                     .sharpness(route.sharpness),
             )),
         }
@@ -346,10 +345,13 @@ impl RouteSetup {
         side * side
     }
 
-    /// Creates the guidance law on the grid.
+    /// Creates the law on the grid, with a map.
     #[must_use]
-    pub const fn guidance<const CELLS: usize, const M: usize, const L: usize>(&self) -> RouteGuidance<CELLS, M, L> {
-        RouteGuidance::new(self.params).replan(self.replan).sharpness(self.sharpness)
+    pub const fn law<const CELLS: usize, const M: usize, const L: usize, H>(
+        &self,
+        map: H,
+    ) -> RouteGuidance<CELLS, M, L, H> {
+        RouteGuidance::with_map(self.params, map).replan(self.replan).sharpness(self.sharpness)
     }
 }
 

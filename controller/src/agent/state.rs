@@ -1,6 +1,6 @@
 //! Queries of the state of an agent.
 
-use super::{Agent, Guidance, Safety};
+use super::{Agent, Law, PayloadOf, Perception, Safety};
 use crate::digest::digest;
 use crate::grid::Cell;
 use crate::neighbor::{Knowledge, Neighbor};
@@ -10,7 +10,7 @@ use crate::time::Instant;
 use crate::wire::Wire;
 use serde::Serialize;
 
-impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
+impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<S>> Agent<S, L, N, A, W, P> {
     /// Returns a hash of the whole state, identical on all targets and in all builds for identical
     /// inputs. Agents with equal hashes behave identically from then on. O(bytes of the state).
     #[must_use]
@@ -29,32 +29,37 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
 
     /// The leader of this robot.
     #[must_use]
-    pub const fn leader(&self) -> RobotId {
-        self.last.leader
+    pub fn leader(&self) -> RobotId {
+        self.law.report().leader
     }
 
     /// The cell that it heads for; `None` without a goal.
     #[must_use]
     pub fn target(&self) -> Option<Cell> {
-        self.goal.map(|_| self.last.target)
+        self.law.report().target
     }
 
     /// The known robots in ascending order of ids.
     #[must_use]
-    pub fn neighbors(&self) -> &[Neighbor<S, G::Payload>] {
+    pub fn neighbors(&self) -> &[Neighbor<S, PayloadOf<L, S>>] {
         self.link.table.as_slice()
     }
 
     /// Returns the knowledge about robot `id`: fresh, stale or unknown. O(log N).
     #[must_use]
-    pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, G::Payload> {
+    pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, PayloadOf<L, S>> {
         self.link.table.get(id, now)
     }
 
-    /// The guidance law, for inspection.
+    /// The law, for inspection.
     #[must_use]
-    pub const fn guidance(&self) -> &G {
-        &self.guidance
+    pub const fn law(&self) -> &L {
+        &self.law
+    }
+
+    /// The law, to change it between two steps.
+    pub const fn law_mut(&mut self) -> &mut L {
+        &mut self.law
     }
 
     /// The safety layer, for inspection.

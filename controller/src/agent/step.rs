@@ -4,15 +4,16 @@ use super::contact_loss::ContactState;
 use super::link::{ReceiveContext, Received, beacon, report};
 use super::wait::is_hindered;
 use super::{
-    Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs, KinematicState, Outputs,
-    Safety, SafetyInput, Surroundings, Wait,
+    Action, Agent, CellState, Command, Decision, Event, Inputs, KinematicState, Last, Law, LawMessage, LawOrder,
+    MessageOf, OrderOf, Outgoing, Outputs, Perception, Radio, Report, Safety, SafetyInput, Surroundings, Tools, View,
+    Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::neighbor::{GapLimit, Nearby, add_lost, nearest};
 use crate::rand::Rng;
-use crate::robot::Mode;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::supervisor::{moves, next_mode};
 use crate::time::{Duration, Instant};
@@ -21,7 +22,7 @@ use heapless::Vec;
 
 const PURPOSE: u32 = u32::from_be_bytes(*b"step");
 
-impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
+impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<S>> Agent<S, L, N, A, W, P> {
     /// Runs one step: receive, decide, avoid collisions, send. A pure function of the agent,
     /// `inputs` and `now`.
     ///
@@ -34,9 +35,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// - Sending: at most [`OUTBOX`](super::OUTBOX) bytes.
     pub fn step(
         &mut self,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
         now: Instant,
-        workspace: &mut G::Workspace,
+        workspace: &mut L::Workspace,
     ) -> Outputs<S> {
         let mut out = Outputs::default();
         self.step_into(inputs, now, workspace, &mut out);
@@ -46,9 +47,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// Runs [`Agent::step`] into `out`, discarding its contents; saves about 500 bytes of stack.
     pub fn step_into(
         &mut self,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
         now: Instant,
-        workspace: &mut G::Workspace,
+        workspace: &mut L::Workspace,
         out: &mut Outputs<S>,
     ) {
         out.clear();
@@ -63,7 +64,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     }
 
     #[inline(never)]
-    fn look(&self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant) -> Vec<Nearby<S>, N> {
+    fn look(&self, inputs: &Inputs<'_, S, L::Surroundings<'_>>, now: Instant) -> Vec<Nearby<S>, N> {
         if inputs.surroundings.in_plane().is_none() {
             return Vec::new();
         }
@@ -81,7 +82,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// The state that laws and the safety layer control. The point ahead of a body with a lag, at
     /// its velocity times the lag, moves exactly as commanded, as a body without a lag does; the
     /// body itself follows it on the straight line. [`GapLimit`] keeps that line free.
-    fn steered(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> KinematicState<S> {
+    fn steered(&self, inputs: &Inputs<'_, S, L::Surroundings<'_>>) -> KinematicState<S> {
         let state = inputs.state;
         if self.config.lag_s <= S::ZERO {
             return state;
@@ -90,11 +91,11 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         KinematicState { position, velocity_mps: self.commanded_mps }
     }
 
-    fn ahead_m(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Vec3<S> {
+    fn ahead_m(&self, inputs: &Inputs<'_, S, L::Surroundings<'_>>) -> Vec3<S> {
         inputs.state.velocity_mps * self.config.lag_s.max(S::ZERO)
     }
 
-    fn body(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Body<S> {
+    fn body(&self, inputs: &Inputs<'_, S, L::Surroundings<'_>>) -> Body<S> {
         let plane = inputs.surroundings.in_plane();
         Body {
             id: self.config.id,
@@ -107,10 +108,10 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     }
 
     #[inline(never)]
-    fn hear(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
+    fn hear(&mut self, inputs: &Inputs<'_, S, L::Surroundings<'_>>, now: Instant, out: &mut Outputs<S>) {
         let body = self.body(inputs);
-        let Self { config, guidance, safety, link, goal, last, .. } = self;
-        let leader = last.leader;
+        let Self { config, law, safety, link, last, .. } = self;
+        let leader = law.report().leader;
         let mut pass_on = Vec::<_, 4>::new();
         let heard_at = now - config.latency;
         // Only a safety layer that tracks silent neighbours needs their last positions.
@@ -135,24 +136,20 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 fastest_mps,
                 period: config.beacon_period,
                 plausibility: &config.plausibility,
-                needs: &|id| id == leader || id == config.id.duplicate() || guidance.needs(id),
+                needs: &|id| id == leader || id == config.id.duplicate() || law.needs(id),
             };
             match link.hear(bytes, now, &listener, out) {
                 None => {}
-                Some(Received::Redirect) => guidance.redirect(),
-                Some(Received::Land(patch)) => guidance.hear_land(&patch),
-                // A goal on the grid does not apply to a robot with another kind of goal.
-                Some(Received::Goal(_)) if !guidance.goes_to_cells() => {}
-                Some(Received::Goal(top)) => {
-                    *goal = Some(Goal::Formation(top));
-                    last.target = top + guidance.goal_offset();
+                Some(Received::Redirect(from)) => receive(law, from, MessageOf::<L, S>::redirect()),
+                Some(Received::Land(from, patch)) => receive(law, from, MessageOf::<L, S>::land(patch)),
+                Some(Received::Goal(goal)) => {
+                    let _ = order(law, last, OrderOf::<L, S>::formation_goal(goal));
                 }
                 Some(Received::Template { part, is_restarted }) => {
-                    let _ = guidance.assign_template(&part, is_restarted);
+                    let _ = order(law, last, OrderOf::<L, S>::template(&part, is_restarted));
                 }
                 Some(Received::Waypoint { index, version, waypoint }) => {
-                    let is_of_use = guidance.assign_waypoint(index, &waypoint);
-                    if is_of_use {
+                    if order(law, last, OrderOf::<L, S>::waypoint(index, waypoint)) {
                         link.placed(index, version);
                     }
                 }
@@ -169,71 +166,67 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    fn goal_cell(&self) -> Option<Cell> {
-        Some(match self.goal? {
-            Goal::Own(cell) => cell,
-            Goal::Formation(top) => top + self.guidance.goal_offset(),
-        })
+    /// Gives the law an order. Returns whether it was of use.
+    pub fn order(&mut self, given: OrderOf<L, S>) -> bool {
+        order(&mut self.law, &mut self.last, Some(given))
     }
 
     #[inline(never)]
     fn decide(
         &mut self,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
         nearby: &[Nearby<S>],
         now: Instant,
         rng: &mut Rng,
-        workspace: &mut G::Workspace,
+        workspace: &mut L::Workspace,
         out: &mut Outputs<S>,
     ) -> Option<Decision<S>> {
         // Queried in each step, so that its 32-bit clock cannot wrap unnoticed.
         let is_stopped = self.link.is_stopped(now);
-        let own_goal = self.guidance.has_own_goal();
-        let goal = self.goal_cell().or(own_goal.then_some(Cell::default()));
-        let situation = &mut self.last.situation;
-        situation.has_goal = goal.is_some();
-        let Some(goal) = goal else {
-            (situation.is_passive, situation.has_fault) = (false, false);
-            return None;
-        };
         let on_grid = inputs.surroundings.on_grid();
         if on_grid.is_some_and(|grid| grid.cell.busy > Duration::ZERO) {
             return None;
         }
-        let input = GuidanceInput {
+        let view = View {
             id: self.config.id,
             now,
             tick: self.config.tick,
             state: self.steered(inputs),
             ahead_m: self.ahead_m(inputs),
             lag_s: self.config.lag_s,
-            goal,
             body: self.body(inputs),
             nearby,
             neighbors: self.link.table.as_slice(),
             ages: self.config.ages,
-            land: None,
+            is_stopped,
+            sent_to: None,
         };
-        self.decisions = self.decisions.wrapping_add(1);
-        self.guidance.note_stop(is_stopped);
-        let here = &inputs.surroundings;
-        let decision = self.guidance.decide(&input, here, rng, workspace);
+        let mut outgoing = Outgoing::default();
+        let tools = Tools { rng, radio: Radio::new(now, &mut outgoing), workspace };
+        let target = self.law.report().target;
+        let decision = self.law.decide(&view, &inputs.surroundings, tools);
         let situation = &mut self.last.situation;
+        situation.has_goal = !matches!(decision, Ok(Decision { action: Action::Idle, .. }));
+        if !situation.has_goal {
+            (situation.is_passive, situation.has_fault) = (false, false);
+            return None;
+        }
+        self.decisions = self.decisions.wrapping_add(1);
         situation.has_fault = decision.is_err();
         let decision = decision.ok()?;
-        for ask in &decision.asks {
-            let (valid, own) = (self.config.stop_valid, self.config.id);
-            self.link.ask(ask.to, own, ask.kind, valid, now);
-        }
-        if !own_goal && decision.target != goal && decision.target != self.last.target {
-            let (from, to) = (goal, decision.target);
+        self.link.send(&outgoing, self.config.stop_valid, now, out);
+        let shown = self.law.report();
+        if let Report { goal: Some(from), target: Some(to), .. } = shown
+            && from != to
+            && Some(to) != target
+        {
             report(out, Event::TargetMoved { from, to });
         }
         let status = decision.status;
         if status.is_stuck && !situation.is_stuck {
             report(out, Event::NoRoute);
         }
-        let leads = !decision.leader.is_some();
+        let leads = !shown.leader.is_some();
         situation.is_passive = matches!(decision.action, Action::Release);
         situation.is_at_goal = status.is_at_goal;
         situation.is_stuck = status.is_stuck;
@@ -241,9 +234,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let (is_left, stays) = (self.is_left(), matches!(status.waits_for, Some(wait) if wait != Wait::GoalTaken));
         let situation = &mut self.last.situation;
         situation.is_stopped = stays || is_left || (leads && is_stopped && !status.recovers);
-        self.last.target = decision.target;
-        self.last.leader = decision.leader;
-        self.last.slot = decision.slot;
         Some(decision)
     }
 
@@ -254,7 +244,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     #[inline(never)]
     fn supervise(
         &mut self,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
         decision: Option<&Decision<S>>,
         out: &mut Outputs<S>,
     ) {
@@ -293,7 +283,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     #[inline(never)]
     fn keep_clear(
         &mut self,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
         decision: Option<&Decision<S>>,
         nearby: &mut Vec<Nearby<S>, N>,
         now: Instant,
@@ -353,8 +343,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     }
 
     #[inline(never)]
-    fn speak(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
-        let Self { config, last, guidance, .. } = self;
+    fn speak(&mut self, inputs: &Inputs<'_, S, L::Surroundings<'_>>, now: Instant, out: &mut Outputs<S>) {
+        let Self { config, last, law, .. } = self;
         let mode = self.mode;
         // The velocity of the next step is more useful to other robots than the previous one.
         let (own_mps, step_s) = (inputs.state.velocity_mps, S::from_micro(config.tick.as_micros()));
@@ -369,8 +359,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         };
         let on_grid = inputs.surroundings.on_grid();
         let on_grid = on_grid.map_or_else(CellState::default, |grid| grid.cell);
-        let beacon = || beacon(config, last, mode, &inputs.state, on_grid, velocity_mps, now);
-        let told = || (guidance.payload(now), guidance.say_land(now));
+        let shown = (law.report(), last.heading);
+        let beacon = || beacon(config, shown, mode, &inputs.state, on_grid, velocity_mps, now);
+        let told = |outgoing: &mut Outgoing| law.payload(&mut Radio::new(now, outgoing));
         self.link.speak(now, config.beacon_period, beacon, told, out);
         let busy = on_grid.busy;
         let decision = now + if busy > Duration::ZERO { busy } else { config.tick };
@@ -378,4 +369,19 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             out.call_again = decision;
         }
     }
+}
+
+fn receive<S: Scalar, L: Law<S>>(law: &mut L, from: RobotId, message: Option<MessageOf<L, S>>) {
+    if let Some(message) = message {
+        let _ = law.receive(from, message);
+    }
+}
+
+fn order<S: Scalar, L: Law<S>>(law: &mut L, last: &mut Last, order: Option<OrderOf<L, S>>) -> bool {
+    let is_of_use = order.is_some_and(|order| law.order(order));
+    if is_of_use {
+        // At once, even if it decides only after it has crossed its cell.
+        last.situation.has_goal |= law.report().goal.is_some();
+    }
+    is_of_use
 }

@@ -1,5 +1,6 @@
 //! The surroundings of a robot in a step, as each guidance law needs them.
 
+use super::BadInput;
 use crate::geom::Vec2;
 use crate::grid::{Cell, Window};
 use crate::obstacle::Obstacle;
@@ -59,7 +60,7 @@ pub struct InCell<S> {
     pub cell_m: S,
 }
 
-/// Input of [`AnyGuidance`](super::AnyGuidance). A kind that the law cannot use puts the robot into
+/// Surroundings of [`AnyLaw`](super::AnyLaw). A kind that the law cannot use puts the robot into
 /// [`Mode::Fault`](crate::robot::Mode::Fault).
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "each variant's type says it")]
@@ -71,6 +72,9 @@ pub enum AnySurroundings<'a, S> {
 
 /// The parts of the surroundings that the agent itself needs, for beacons and the safety layer.
 pub trait Surroundings<S>: Copy + Debug {
+    /// Whether there may be a part in the plane or in space.
+    const HAS_PLANE: bool;
+
     /// Returns the part on the grid, if any.
     fn on_grid(&self) -> Option<OnGrid<'_>>;
 
@@ -79,6 +83,8 @@ pub trait Surroundings<S>: Copy + Debug {
 }
 
 impl<S: Scalar> Surroundings<S> for OnGrid<'_> {
+    const HAS_PLANE: bool = false;
+
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         Some(*self)
     }
@@ -89,6 +95,8 @@ impl<S: Scalar> Surroundings<S> for OnGrid<'_> {
 }
 
 impl<S: Scalar> Surroundings<S> for InPlane<'_, S> {
+    const HAS_PLANE: bool = true;
+
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         None
     }
@@ -99,6 +107,8 @@ impl<S: Scalar> Surroundings<S> for InPlane<'_, S> {
 }
 
 impl<S: Scalar> Surroundings<S> for InCells<'_, S> {
+    const HAS_PLANE: bool = true;
+
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         Some(self.grid)
     }
@@ -109,6 +119,8 @@ impl<S: Scalar> Surroundings<S> for InCells<'_, S> {
 }
 
 impl<S: Scalar> Surroundings<S> for AnySurroundings<'_, S> {
+    const HAS_PLANE: bool = true;
+
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         match self {
             Self::OnGrid(grid) | Self::InCells(InCells { grid, .. }) => Some(*grid),
@@ -145,5 +157,30 @@ impl<'a, S> From<InPlane<'a, S>> for AnySurroundings<'a, S> {
 impl<'a, S> From<InCells<'a, S>> for AnySurroundings<'a, S> {
     fn from(cells: InCells<'a, S>) -> Self {
         Self::InCells(cells)
+    }
+}
+
+impl<'a, S> TryFrom<AnySurroundings<'a, S>> for OnGrid<'a> {
+    type Error = BadInput;
+    fn try_from(any: AnySurroundings<'a, S>) -> Result<Self, BadInput> {
+        if let AnySurroundings::OnGrid(grid) = any { Ok(grid) } else { Err(BadInput) }
+    }
+}
+
+impl<'a, S> TryFrom<AnySurroundings<'a, S>> for InCells<'a, S> {
+    type Error = BadInput;
+    fn try_from(any: AnySurroundings<'a, S>) -> Result<Self, BadInput> {
+        if let AnySurroundings::InCells(cells) = any { Ok(cells) } else { Err(BadInput) }
+    }
+}
+
+/// Also from the part in the plane of [`InCells`].
+impl<'a, S> TryFrom<AnySurroundings<'a, S>> for InPlane<'a, S> {
+    type Error = BadInput;
+    fn try_from(any: AnySurroundings<'a, S>) -> Result<Self, BadInput> {
+        match any {
+            AnySurroundings::InPlane(plane) | AnySurroundings::InCells(InCells { plane, .. }) => Ok(plane),
+            AnySurroundings::OnGrid(_) => Err(BadInput),
+        }
     }
 }

@@ -5,6 +5,7 @@ use crate::geom::Vec3;
 use crate::grid::{BLOCKED, Window};
 use crate::neighbor::Nearby;
 use crate::rand::Rng;
+use crate::robot::RobotId;
 use crate::route::RouteParams;
 use crate::template::Template;
 use crate::time::{Duration, Instant};
@@ -83,7 +84,7 @@ fn a_robot_without_a_goal_is_idle_and_sends_beacons() {
 fn a_robot_moves_to_its_goal_and_arrives() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let (mut at, goal) = (Cell::new(5, 5), Cell::new(12, 7));
-    agent.assign_goal(goal);
+    agent.order(GridOrder::Goal(goal));
     let mut walked = 0;
     for n in 0..20 {
         let out = agent.step(&inputs(&FLAT, at, &[]), tick(n), &mut ws);
@@ -98,7 +99,7 @@ fn a_robot_moves_to_its_goal_and_arrives() {
 #[test]
 fn a_robot_that_crosses_a_cell_keeps_its_mode_and_does_not_decide() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(9, 5));
+    agent.order(GridOrder::Goal(Cell::new(9, 5)));
     let mut busy = inputs(&FLAT, Cell::new(9, 5), &[]);
     busy.surroundings.cell = CellState { cell: Cell::new(9, 5), busy: Duration::from_micros(1) };
     let out = agent.step(&busy, tick(0), &mut ws);
@@ -111,7 +112,7 @@ fn a_robot_that_crosses_a_cell_keeps_its_mode_and_does_not_decide() {
 #[test]
 fn a_robot_recovers_from_the_fault_of_missing_terrain() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(9, 5));
+    agent.order(GridOrder::Goal(Cell::new(9, 5)));
     let mut modes = Vec::new();
     for (n, has_window) in [true, false, false, true, true].into_iter().enumerate() {
         let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
@@ -128,7 +129,7 @@ fn a_robot_recovers_from_the_fault_of_missing_terrain() {
 #[test]
 fn an_enclosed_robot_holds_and_reports_once() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(50, 5));
+    agent.order(GridOrder::Goal(Cell::new(50, 5)));
     let mut cells = [BLOCKED; 121];
     cells[60] = 1;
     let events: Vec<Event> =
@@ -141,7 +142,7 @@ fn an_enclosed_robot_holds_and_reports_once() {
 fn a_goal_in_a_wall_moves_to_the_nearest_free_cell() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let goal = Cell::new(8, 5);
-    agent.assign_goal(goal);
+    agent.order(GridOrder::Goal(goal));
     let mut cells = FLAT;
     cells[5 * 11 + 8] = BLOCKED;
     let out = agent.step(&inputs(&cells, Cell::new(5, 5), &[]), tick(0), &mut ws);
@@ -230,14 +231,14 @@ fn a_restarted_commander_is_obeyed_at_any_version() {
 #[test]
 fn templates_are_assigned_by_packet() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    let entries = formation_agent(3).guidance.template().entries.clone();
+    let entries = formation_agent(3).law.template().entries.clone();
     let parts: Vec<Message> = TemplateAssignment::split(RobotId(1), 1, 2, Cell::new(-6, 0), &entries)
         .unwrap()
         .map(Message::Template)
         .collect();
     let inbox = bytes(99, 0, 0, &parts);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
-    assert_eq!(agent.guidance.template(), formation_agent(3).guidance.template());
+    assert_eq!(agent.law.template(), formation_agent(3).law.template());
 }
 
 fn stop(from: u32, to: u32, number: u8, kind: RequestKind) -> Message {
@@ -247,7 +248,7 @@ fn stop(from: u32, to: u32, number: u8, kind: RequestKind) -> Message {
 #[test]
 fn a_stop_holds_until_it_is_resumed_or_expires() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let mut mode_after = |inbox: &[u8], n| {
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), inbox), tick(n), &mut ws);
         let acks = sent(&out).iter().filter(|f| matches!(f.message, Message::Ack(_))).count();
@@ -266,7 +267,7 @@ fn a_stop_holds_until_it_is_resumed_or_expires() {
 #[test]
 fn stops_are_passed_up_the_leader_chain_hop_by_hop() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let leader = bytes(1, 0, 0, &[Message::Beacon(beacon_at(8, 5))]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &leader), tick(0), &mut ws);
     assert_eq!(agent.leader(), RobotId(1));
@@ -284,7 +285,7 @@ fn stops_are_passed_up_the_leader_chain_hop_by_hop() {
 #[test]
 fn a_robot_that_falls_behind_requests_a_stop_and_later_a_resume() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let mut asked = Vec::new();
     for (n, (leader_x, own_x)) in [(8, 5), (20, 5), (20, 16)].into_iter().enumerate() {
         let mut beacon = beacon_at(leader_x, 5);
@@ -303,7 +304,7 @@ fn a_robot_that_falls_behind_requests_a_stop_and_later_a_resume() {
 #[test]
 fn a_redirected_robot_chooses_another_direction_even_when_arrived() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(9, 5));
+    agent.order(GridOrder::Goal(Cell::new(9, 5)));
     let first = |out: &Outputs<f32>| match &out.command {
         Command::Move(moves) => Some(moves[0]),
         Command::Hold | Command::Velocity(_) => None,
@@ -324,7 +325,7 @@ fn a_redirected_robot_chooses_another_direction_even_when_arrived() {
 #[test]
 fn a_blocked_robot_sends_a_request_to_the_robot_in_its_way() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let mut cells = [BLOCKED; 121];
     cells[55..66].fill(1);
     let mut asked = None;
@@ -342,7 +343,7 @@ fn a_blocked_robot_sends_a_request_to_the_robot_in_its_way() {
 #[test]
 fn outboxes_hold_whole_frames_and_the_beacon_at_any_load() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     for n in 0..40_u16 {
         let crowd: Vec<u8> =
             (2..60).flat_map(|id| bytes(id, 0, n, &[stop(id, 1, n as u8, RequestKind::Stop)])).collect();
@@ -357,7 +358,7 @@ fn outboxes_hold_whole_frames_and_the_beacon_at_any_load() {
 fn equal_agents_give_equal_bytes() {
     let run = || {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
-        agent.assign_goal(Cell::new(40, 9));
+        agent.order(GridOrder::Goal(Cell::new(40, 9)));
         let mut at = Cell::new(5, 5);
         let mut said = vec![];
         for n in 0..30 {
@@ -376,7 +377,7 @@ fn equal_agents_give_equal_bytes() {
 #[test]
 fn the_clock_may_wrap() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let start = Instant::from_micros(u32::MAX - 2_500_000);
     let mut beacons = 0;
     for n in 0..6 {
@@ -411,4 +412,3 @@ mod setup;
 mod sighted;
 mod silence;
 mod waits;
-mod wrapped;

@@ -1,11 +1,11 @@
 //! Straight lines through waypoints to a goal.
 
 use super::goal_occupancy::{Claim, GoalOccupancy};
-use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
+use super::law::{Action, BadInput, Decision, Law, Status, Tools, View};
 use super::make_way::MakeWay;
+use super::protocol::{WaypointOrder, Waypoints};
 use super::{InPlane, Parameter, WAYPOINTS, Wait, Waypoint};
 use crate::geom::{Vec2, Vec3};
-use crate::rand::Rng;
 use crate::scalar::Scalar;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -37,26 +37,33 @@ impl<S: Scalar> WaypointGuidance<S> {
         Self { course: Vec::new(), leg: 0, beside: GoalOccupancy::NEW, make_way: MakeWay::NEW, tolerance_m, speed_mps }
     }
 
+    /// Starts a new course.
+    pub(super) fn begin(&mut self, waypoint: &Waypoint<S>) {
+        self.course.clear();
+        self.leg = 0;
+        let _ = self.course.push(*waypoint);
+    }
+
     /// Offset, metres, and velocity of the current waypoint. Advances when one is passed.
-    fn next<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
-        let passed_m = self.tolerance_m.max(input.body.radius_m * S::from_i32(PASSED_RADII));
+    fn next<P>(&mut self, view: &View<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
+        let passed_m = self.tolerance_m.max(view.body.radius_m * S::from_i32(PASSED_RADII));
         let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));
         let mut waypoint = ahead.next()?;
-        let mut way = waypoint.way(input.state.position, input.now);
+        let mut way = waypoint.way(view.state.position, view.now);
         for next in ahead {
             if way.norm() > passed_m {
                 break;
             }
             self.leg = self.leg.saturating_add(1);
             waypoint = next;
-            way = waypoint.way(input.state.position, input.now);
+            way = waypoint.way(view.state.position, view.now);
         }
         Some((way, waypoint.velocity_mps))
     }
 
     /// Heads for the waypoint before again, if other robots pushed this one far away from it.
-    fn goes_back<P>(&mut self, input: &GuidanceInput<'_, S, P>, makes_way: bool) {
-        let GuidanceInput { state, now, body, .. } = input;
+    fn goes_back<P>(&mut self, view: &View<'_, S, P>, makes_way: bool) {
+        let View { state, now, body, .. } = view;
         let mut way = |leg: u8| Some(self.course.get_mut(usize::from(leg))?.way(state.position, *now));
         let before = self.leg.saturating_sub(1);
         let (Some(next), Some(last)) = (way(self.leg), way(before)) else {
@@ -79,31 +86,31 @@ impl<S: Scalar> WaypointGuidance<S> {
         legs.fold(distance, |sum, leg| sum + leg)
     }
 
-    pub(super) fn head<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Result<Decision<S>, BadInput> {
-        input.can_go()?;
-        let (way, velocity_mps) = self.next(input).ok_or(BadInput)?;
-        let from_body = way + input.ahead_m;
+    pub(super) fn head<P>(&mut self, view: &View<'_, S, P>) -> Result<Decision<S>, BadInput> {
+        view.can_move()?;
+        let (way, velocity_mps) = self.next(view).ok_or(BadInput)?;
+        let from_body = way + view.ahead_m;
         // The body itself, behind the point ahead, keeps up with a moving waypoint.
-        let way = way + velocity_mps * input.lag_s;
+        let way = way + velocity_mps * view.lag_s;
         let is_last = usize::from(self.leg) + 1 >= self.course.len();
         let distance = way.norm();
-        let speed = self.speed_mps.min(input.body.max_speed_mps);
+        let speed = self.speed_mps.min(view.body.max_speed_mps);
         let ahead = way.normalized().unwrap_or_default();
         let claim = match is_last && velocity_mps == Vec3::ZERO {
-            true => self.beside.claim(input, way, self.tolerance_m),
+            true => self.beside.claim(view, way, self.tolerance_m),
             false => Claim::Goes,
         };
         let pace = match claim {
             Claim::Yields(room_m) if distance < room_m => -speed,
             Claim::Yields(_) => S::ZERO,
             Claim::Goes | Claim::IsBeside => {
-                let left_m = if input.body.has_inertia() { self.left_m(distance) } else { distance };
-                input.body.stopping_speed(left_m).min(speed)
+                let left_m = if view.body.has_inertia() { self.left_m(distance) } else { distance };
+                view.body.stopping_speed(left_m).min(speed)
             }
         };
         let is_beside = claim == Claim::IsBeside;
         // A body that is too fast to stop there passes the goal.
-        let slides_m = if velocity_mps == Vec3::ZERO { input.body.stopping_way() } else { Vec3::ZERO };
+        let slides_m = if velocity_mps == Vec3::ZERO { view.body.stopping_way() } else { Vec3::ZERO };
         let is_near = is_last && distance.max((way - slides_m).norm()) <= self.tolerance_m;
         let is_at_goal = is_near && from_body.norm() <= self.tolerance_m || is_beside;
         // A point ahead that is a little past the goal does not turn the body back.
@@ -121,60 +128,55 @@ impl<S: Scalar> WaypointGuidance<S> {
                 makes_way: is_at_goal && velocity_mps != Vec3::ZERO,
                 ..Status::default()
             },
-            ..Decision::default()
         })
     }
 }
 
-impl<S> Teamwork for WaypointGuidance<S> {}
-
-impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
-    type Input<'a> = InPlane<'a, S>;
-    type Destination = ToWaypoints;
+impl<S: Scalar> Law<S> for WaypointGuidance<S> {
+    type Surroundings<'a> = InPlane<'a, S>;
+    type Protocol = Waypoints;
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        view: &View<'_, S>,
         here: &InPlane<'_, S>,
-        rng: &mut Rng,
-        (): &mut (),
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        let mut decision = self.head(input)?;
+        if self.course.is_empty() {
+            return Ok(Decision::idle());
+        }
+        let mut decision = self.head(view)?;
         let to_goal = match decision.action {
             Action::Velocity { way_m: Some(way), .. } => way.xy(),
             _ => Vec2::ZERO,
         };
         let stays = decision.status.is_at_goal && !decision.status.makes_way;
-        let away = self.make_way.way(input, here.obstacles, stays, to_goal, rng);
-        if self.leg > 0 && MakeWay::is_blocked(input, here.obstacles) {
-            self.goes_back(input, away.is_some());
+        let away = self.make_way.way(view, here.obstacles, stays, to_goal, tools.rng);
+        if self.leg > 0 && MakeWay::is_blocked(view, here.obstacles) {
+            self.goes_back(view, away.is_some());
         }
         if let Some(way) = away {
             decision.status = Status { makes_way: true, ..Status::default() };
-            let wish_mps = way * self.speed_mps.min(input.body.max_speed_mps);
+            let wish_mps = way * self.speed_mps.min(view.body.max_speed_mps);
             decision.action = Action::Velocity { wish_mps, way_m: None };
         }
         Ok(decision)
     }
 
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
+    fn order(&mut self, WaypointOrder { index, waypoint }: WaypointOrder) -> bool {
+        let waypoint = waypoint.cast();
         if index == 0 {
-            self.course.clear();
-            self.leg = 0;
+            self.begin(&waypoint);
+            return true;
         }
         match self.course.get_mut(usize::from(index)) {
             Some(known) => {
-                *known = *waypoint;
+                *known = waypoint;
                 true
             }
-            None => usize::from(index) == self.course.len() && self.course.push(*waypoint).is_ok(),
+            None => usize::from(index) == self.course.len() && self.course.push(waypoint).is_ok(),
         }
-    }
-
-    fn has_own_goal(&self) -> bool {
-        !self.course.is_empty()
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -6,7 +6,7 @@ use core::f32::consts::TAU;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec3};
-use staya_controller::{rand::Rng, scalar::Scalar};
+use staya_controller::scalar::Scalar;
 
 /// State and parameters of the law, which serde carries to devices, checkpoints and the trace hash.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -22,28 +22,24 @@ impl Patrol {
     pub const RING: Self = Self { ring_m: 8.0, cruise_mps: 0.5 };
 }
 
-impl Teamwork for Patrol {}
-
-impl<S: Scalar> Guidance<S> for Patrol {
-    type Input<'a> = InPlane<'a, S>;
-    type Destination = Roams;
+impl<S: Scalar> Law<S> for Patrol {
+    type Surroundings<'a> = InPlane<'a, S>;
+    type Protocol = ();
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        view: &View<'_, S>,
         _: &InPlane<'_, S>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        input.can_go()?;
+        view.can_move()?;
         let number = |x: f32| S::from_f32(x).unwrap_or(S::ZERO);
-        let (turn, place) = (number(TAU), input.state.position.since::<S>(Position::default()));
+        let (turn, place) = (number(TAU), view.state.position.since::<S>(Position::default()));
         let bearing = |place: Vec3<S>| place.y.atan2(place.x);
         // Smallest arcs to another robot, ahead and behind.
         let (mut ahead, mut behind) = (turn, turn);
-        for other in input.nearby {
+        for other in view.nearby {
             let angle = bearing(place + other.offset_m) - bearing(place);
             let angle = if angle < S::ZERO { angle + turn } else { angle };
             (ahead, behind) = (ahead.min(angle), behind.min(turn - angle));
@@ -53,11 +49,7 @@ impl<S: Scalar> Guidance<S> for Patrol {
         let pace =
             number(self.cruise_mps) + ((ahead - behind) * number(4.0)).clamp(-number(0.4), number(0.4));
         let wish_mps = along * pace + out * (number(self.ring_m) - place.norm());
-        let wish_mps = wish_mps.clamp_norm(input.body.max_speed_mps);
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
-    }
-
-    fn has_own_goal(&self) -> bool {
-        true
+        let wish_mps = wish_mps.clamp_norm(view.body.max_speed_mps);
+        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
     }
 }

@@ -54,20 +54,16 @@ fn four_of_twenty_robots_on_parts_decide_like_their_shadows() {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Changed(Patrol);
 
-impl Teamwork for Changed {}
-
-impl Guidance<f32> for Changed {
-    type Input<'a> = InPlane<'a, f32>;
-    type Destination = Roams;
+impl Law<f32> for Changed {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = ();
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32>,
+        view: &View<'_, f32>,
         here: &InPlane<'_, f32>,
-        rng: &mut Rng,
-        (): &mut (),
+        tools: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
         let mut decision = self.0.decide(input, here, rng, &mut ())?;
         if let Action::Velocity { wish_mps, .. } = &mut decision.action {

@@ -5,7 +5,7 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Guidance, Inputs, KinematicState, OnGrid,
+    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Inputs, KinematicState, Law, OnGrid,
     RouteGuidance, Unguarded,
 };
 use staya_controller::geom::{Position, Vec3};
@@ -28,7 +28,7 @@ pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, ROBOTS, Unguarded, W
 /// With [`UNIT`] milliseconds, crossing times need no division.
 pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
 
-pub(crate) struct Walker<S: Scalar, G: Guidance<S>, W = Postcard> {
+pub(crate) struct Walker<S: Scalar, G: Law<S>, W = Postcard> {
     pub(crate) agent: GridAgent<S, G, W>,
     pub(crate) cell: Cell,
     pub(crate) free_at_ms: u32,
@@ -61,7 +61,7 @@ pub(crate) fn run<S, G, W, P>(
 ) -> Summary
 where
     S: Scalar,
-    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
+    G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
     GridAgent<S, G, W>: Serialize,
     W: Wire,
     P: Probe<S>,
@@ -116,7 +116,7 @@ fn step<S, G, W, P>(
 ) -> staya_controller::agent::Outputs<S>
 where
     S: Scalar,
-    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>>,
+    G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>>,
     W: Wire,
     P: Probe<S>,
 {
@@ -138,7 +138,7 @@ where
     probe.step(&mut walker.agent, &inputs, instant(tick), workspace)
 }
 
-fn advance<S: Scalar, G: Guidance<S>, W>(
+fn advance<S: Scalar, G: Law<S>, W>(
     scene: &Scene,
     walkers: &mut [Walker<S, G, W>],
     index: usize,
@@ -174,7 +174,7 @@ fn advance<S: Scalar, G: Guidance<S>, W>(
     }
 }
 
-fn overlaps<S: Scalar, G: Guidance<S>, W>(walkers: &[Walker<S, G, W>]) -> u32 {
+fn overlaps<S: Scalar, G: Law<S>, W>(walkers: &[Walker<S, G, W>]) -> u32 {
     let mut count = 0;
     for (index, one) in walkers.iter().enumerate() {
         let others = walkers.iter().skip(index.saturating_add(1));

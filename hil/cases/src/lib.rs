@@ -25,7 +25,7 @@ pub use worst::{WorstCase, worst_orca};
 
 use core::fmt::{Display, Formatter};
 use core::hint::black_box;
-use staya_controller::agent::{Agent, Guidance, HALF_PLANES, Inputs, NEIGHBORS, Outputs, Safety};
+use staya_controller::agent::{Agent, HALF_PLANES, Inputs, Law, NEIGHBORS, Outputs, Safety};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::time::Instant;
 use staya_controller::wire::Wire;
@@ -34,10 +34,10 @@ use staya_mavlink::wire::Mavlink;
 /// Wrapper around each [`Agent::step`] of a case, in which firmware measures it.
 pub trait Probe<S: Scalar> {
     /// Calls `agent.step(inputs, now, workspace)`.
-    fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+    fn step<G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
         agent: &mut Agent<S, G, N, A, W>,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, G::Surroundings<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
     ) -> Outputs<S>;
@@ -48,10 +48,10 @@ pub trait Probe<S: Scalar> {
 pub struct Unmeasured;
 
 impl<S: Scalar> Probe<S> for Unmeasured {
-    fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+    fn step<G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
         agent: &mut Agent<S, G, N, A, W>,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, G::Surroundings<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
     ) -> Outputs<S> {
@@ -64,10 +64,10 @@ impl<S: Scalar> Probe<S> for Unmeasured {
 pub struct Opaque;
 
 impl<S: Scalar> Probe<S> for Opaque {
-    fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+    fn step<G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
         agent: &mut Agent<S, G, N, A, W>,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, G::Surroundings<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
     ) -> Outputs<S> {

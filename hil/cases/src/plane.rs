@@ -8,7 +8,7 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, CellState, Command, Guidance, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid, Outputs, Safety,
+    Agent, CellState, Command, InCell, InCells, InPlane, Inputs, KinematicState, Law, OnGrid, Outputs, Safety,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::GridFrame;
@@ -24,7 +24,7 @@ const CELL_MM: i32 = 1000;
 
 pub(crate) type PlaneAgent<S, G, A> = Agent<S, G, KNOWN, A>;
 
-pub(crate) struct Mover<S: Scalar, G: Guidance<S>, A> {
+pub(crate) struct Mover<S: Scalar, G: Law<S>, A> {
     pub(crate) agent: PlaneAgent<S, G, A>,
     pub(crate) position: Position,
     pub(crate) velocity_mps: Vec3<S>,
@@ -63,7 +63,7 @@ pub(crate) fn run<S, G, A, P, const R: usize>(
 ) -> Summary
 where
     S: Scalar,
-    G: for<'a> Guidance<S, Input<'a>: From<InCells<'a, S>>>,
+    G: for<'a> Law<S, Surroundings<'a>: From<InCells<'a, S>>>,
     A: Safety<S>,
     PlaneAgent<S, G, A>: Serialize,
     P: Probe<S>,
@@ -116,7 +116,7 @@ fn step<S, G, A, P>(
 ) -> Outputs<S>
 where
     S: Scalar,
-    G: for<'a> Guidance<S, Input<'a>: From<InCells<'a, S>>>,
+    G: for<'a> Law<S, Surroundings<'a>: From<InCells<'a, S>>>,
     A: Safety<S>,
     P: Probe<S>,
 {
@@ -135,7 +135,7 @@ where
     }
     let inputs = Inputs {
         state: KinematicState { position: mover.position, velocity_mps: mover.velocity_mps },
-        surroundings: G::Input::from(InCells {
+        surroundings: G::Surroundings::from(InCells {
             grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window },
             plane: InPlane { max_speed_mps: scene.max_speed_mps, obstacles: &obstacles },
             in_cell: InCell { offset_m: place_m - frame.center(cell), cell_m: frame.cell_m },
@@ -160,17 +160,17 @@ fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
     }
 }
 
-fn overlaps<S: Scalar, G: Guidance<S>, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
+fn overlaps<S: Scalar, G: Law<S>, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
     let least = u64::from(scene.apart_mm.unsigned_abs());
     pairs(movers).filter(|squared| *squared < least * least).count() as u32
 }
 
-fn apart<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
+fn apart<S: Scalar, G: Law<S>, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
     let millimetres = |squared: Option<u64>| squared.unwrap_or(0).isqrt() as u32;
     [pairs(movers).min(), pairs(movers).max()].map(millimetres)
 }
 
-fn pairs<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> impl Iterator<Item = u64> {
+fn pairs<S: Scalar, G: Law<S>, A>(movers: &[Mover<S, G, A>]) -> impl Iterator<Item = u64> {
     movers.iter().enumerate().flat_map(move |(index, one)| {
         let others = movers.iter().skip(index.saturating_add(1));
         others.map(|other| {

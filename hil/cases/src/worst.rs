@@ -8,9 +8,9 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FormationGuidance, GoalFlockGuidance, GridWorkspace, Guidance,
-    InPlane, Inputs, KinematicState, LatticeGuidance, OnGrid, OrcaSafety, RouteGuidance, Safety, TEMPLATE, ToCells,
-    Unguarded, VISITS, Waypoint, WaypointGuidance,
+    Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FormationGuidance, GoalFlockGuidance, Grid, GridOrder,
+    GridWorkspace, InPlane, Inputs, KinematicState, LatticeGuidance, Law, LawOrder as _, OnGrid, OrcaSafety, OrderOf,
+    RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, Waypoint, WaypointGuidance,
 };
 #[cfg(feature = "all-cases")]
 use staya_controller::agent::{FlySafety, PushOutSafety};
@@ -178,14 +178,15 @@ fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32,
 fn in_crowd<S, G, A, P, const N: usize>(mut law: G, safety: A, probe: &mut P) -> Summary
 where
     S: Scalar,
-    G: for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()>,
+    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()>,
     A: Safety<S>,
     Agent<S, G, N, A>: Serialize,
     P: Probe<S>,
 {
     let config = AgentConfig { seed: 1, latency: STEP, ..AgentConfig::new(OWN, S::from_milli(RADIUS_MM), STEP) };
     // Boids accept no waypoint.
-    let _ = law.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([9000, 500, 0])));
+    let goal = Waypoint::fixed(Position::from_mm([9000, 500, 0]));
+    let _ = OrderOf::<G, S>::waypoint(0, goal).map(|order| law.order(order));
     let mut agent = Agent::<S, G, N, A>::new(&config, law, safety, Postcard);
     let mut summary = Summary::of::<Agent<S, G, N, A>, ()>();
     let (mut hashes, mut inbox) = (Hashes::new(), Inbox::new());
@@ -250,14 +251,14 @@ fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLAT
 fn on_grid<S, G, P, const N: usize>(guidance: G, probe: &mut P) -> Summary
 where
     S: Scalar,
-    G: for<'a> Guidance<S, Input<'a> = OnGrid<'a>, Destination = ToCells, Workspace = GridWorkspace<CELLS>>,
+    G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>, Protocol = Grid, Workspace = GridWorkspace<CELLS>>,
     Agent<S, G, N>: Serialize,
     P: Probe<S>,
 {
     let config = AgentConfig { seed: 1, ..AgentConfig::new(OWN, S::ZERO, STEP) };
     let mut agent = Agent::<S, G, N>::new(&config, guidance, Unguarded, Postcard);
     let cell = TOP + PLACES.get(MIDDLE).copied().unwrap_or_default();
-    agent.assign_goal(GOAL + (cell - TOP));
+    agent.order(GridOrder::Goal(GOAL + (cell - TOP)));
     let mut workspace = GridWorkspace::new();
     let mut summary = Summary::of::<Agent<S, G, N>, GridWorkspace<CELLS>>();
     let (mut hashes, mut inbox) = (Hashes::new(), Inbox::new());

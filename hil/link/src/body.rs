@@ -6,8 +6,8 @@ use crate::refusal::Refusal;
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, AnySurroundings, Command, Guidance, ImplausibleCounts, InCell, InCells, InPlane, Inputs, KinematicState,
-    OnGrid, Outputs, Refused, Safety, Setup, Task, Wait,
+    Agent, AnySurroundings, Command, ImplausibleCounts, InCell, InCells, InPlane, Inputs, KinematicState, Law, OnGrid,
+    Outputs, Refused, Safety, Setup, Task, Wait,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -67,14 +67,14 @@ impl<A> Slot<A> {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Body<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> {
+pub(crate) struct Body<S: Scalar, G: Law<S>, A, W, const N: usize, const O: usize> {
     agent: Slot<Agent<S, G, N, A, W>>,
     workspace: G::Workspace,
     obstacles: Vec<Obstacle<S>, O>,
     outputs: Outputs<S>,
 }
 
-impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G, A, W, N, O> {
+impl<S: Scalar, G: Law<S>, A, W, const N: usize, const O: usize> Body<S, G, A, W, N, O> {
     pub(crate) const fn new(workspace: G::Workspace) -> Self {
         Self {
             agent: Slot::Empty,
@@ -107,7 +107,7 @@ impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G,
 impl<S, G, A, W, const N: usize, const O: usize> Body<S, G, A, W, N, O>
 where
     S: Scalar,
-    G: for<'a> Guidance<S, Input<'a> = AnySurroundings<'a, S>> + Serialize,
+    G: Law<S> + Serialize,
     A: Safety<S> + Serialize,
     W: Wire + Serialize,
 {
@@ -163,7 +163,7 @@ where
         };
         let own = Inputs {
             state: KinematicState { position: inputs.state.position, velocity_mps: inputs.state.velocity_mps.cast() },
-            surroundings,
+            surroundings: surroundings.try_into().map_err(|_| Refusal::Nonsense)?,
             inbox: inputs.inbox,
         };
         agent.step_into(&own, inputs.now, &mut self.workspace, &mut self.outputs);

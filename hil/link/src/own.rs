@@ -7,7 +7,7 @@ use crate::refusal::Refusal;
 use crate::robot::Controller;
 use postcard::take_from_bytes;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Agent, AnySafety, AnyWorld, Guidance, HALF_PLANES, InPlane, NEIGHBORS, Setup, Task};
+use staya_controller::agent::{Agent, AnySafety, HALF_PLANES, InPlane, Law, NEIGHBORS, Setup, Task};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::wire::FromFormat;
 use staya_mavlink::any::AnyWire;
@@ -19,19 +19,19 @@ pub type OwnSmall<G> = Own<Q16, G, 8, 16, 16, AnyWire>;
 
 /// A user-defined guidance law, in the plane or in space, whose state a host can send to a device.
 pub trait LinkedLaw<S: Scalar>:
-    for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
+    for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
 {
 }
 
 impl<S: Scalar, G> LinkedLaw<S> for G where
-    G: for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
+    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
 {
 }
 
 /// A robot with law `G`: `N` neighbours, `K` half-planes, `O` obstacles, wire format `W`.
 #[derive(Clone, Debug)]
 pub struct Own<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> {
-    body: Body<S, AnyWorld<G>, AnySafety<S, K>, W, N, O>,
+    body: Body<S, G, AnySafety<S, K>, W, N, O>,
 }
 
 impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> Own<S, G, N, K, O, W> {
@@ -66,7 +66,7 @@ impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize,
             return Err(Refusal::Law);
         };
         let wire = W::from_format(setup.format).ok_or(Refusal::Format(setup.format))?;
-        self.body.start(task, || Agent::new(&setup.agent.cast(), AnyWorld(law), setup.safety.safety(), wire))
+        self.body.start(task, || Agent::new(&setup.agent.cast(), law, setup.safety.safety(), wire))
     }
 
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {

@@ -12,13 +12,11 @@
 //! struct East {
 //!     speed_mps: f32,
 //! }
-//! # impl Teamwork for East {}
-//! # impl<S: Scalar> Guidance<S> for East {
-//! #     type Input<'a> = InPlane<'a, S>;
-//! #     type Destination = Roams;
+//! #//! # impl<S: Scalar> Law<S> for East {
+//! #     type Surroundings<'a> = InPlane<'a, S>;
+//! #     type Protocol = ();
 //! #     type Workspace = ();
-//! #     type Payload = ();
-//! #     fn decide(
+//! #//! #     fn decide(
 //! #         &mut self,
 //! #         _: &GuidanceInput<'_, S>,
 //! #         _: &InPlane<'_, S>,

@@ -125,7 +125,7 @@ fn a_formation_on_the_grid_equals_that_of_rust() {
         let goal = Cell::new(30 + place.0, 28 + place.1);
         // SAFETY: there is an agent.
         assert_eq!(unsafe { staya_assign_cell((&raw mut **memory).cast(), goal.x, goal.y) }, StayaStatus::Ok);
-        twin.assign_goal(goal);
+        twin.order(GridOrder::Goal(goal));
     }
     for step in 0..40u32 {
         let heard: Vec<u8> = said.concat();

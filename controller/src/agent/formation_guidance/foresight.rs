@@ -1,7 +1,7 @@
 //! Predicts the cells of other robots at the end of the own next move.
 
 use super::{FormationGuidance, seen_at};
-use crate::agent::guidance::GuidanceInput;
+use crate::agent::law::View;
 use crate::cost::Gain;
 use crate::formation::{Prediction, Seen, Steering, distances};
 use crate::grid::{BLOCKED, Cell, Dir, Window};
@@ -15,14 +15,14 @@ use heapless::Vec;
 /// Cells by which an outdated state may be extrapolated.
 const MAX_FORESIGHT: i16 = 3;
 
-impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
-    FormationGuidance<CELLS, M, F, L, K>
+impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering, H>
+    FormationGuidance<CELLS, M, F, L, K, H>
 {
     /// At most 32 robots: those of the template and the leader first, then the smallest ids.
     #[inline(never)]
     pub(super) fn seen<S>(
         &self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         (window, view): (&Window<'_>, &Template<F>),
         field: &mut CostField<CELLS>,
         all: &mut Vec<Seen, 32>,
@@ -57,7 +57,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 
     /// At constant velocity on the visible terrain, at most [`MAX_FORESIGHT`] cells away.
-    fn foresee<S>(&self, input: &GuidanceInput<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
+    fn foresee<S>(&self, input: &View<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
         let mut cell = other.cell;
         if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
             return cell;
@@ -89,7 +89,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     /// The choice of this law in another robot's place (KUZ section 7, item 1).
     fn choice_of<S>(
         &self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         window: &Window<'_>,
         field: &mut CostField<CELLS>,
         other: &Seen,

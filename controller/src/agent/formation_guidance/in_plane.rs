@@ -3,19 +3,19 @@
 use super::{FormationGuidance, comes_after};
 use crate::agent::cell_follower::CellFollower;
 use crate::agent::goal_occupancy::{Claim, GoalOccupancy};
-use crate::agent::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use crate::agent::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
+use crate::agent::protocol::{Grid, GridMessage, GridOrder, Radio};
 use crate::agent::route_guidance::GridWorkspace;
-use crate::agent::{InCells, Parameter, Wait};
-use crate::formation::{Drive, behind, is_straight, scaled};
+use crate::agent::{FarMap, InCells, Parameter, Wait};
+use crate::formation::{Drive, NextMove, behind, is_straight, scaled};
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, Window};
 use crate::neighbor::Neighbor;
-use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::template::{Template, TemplateEntry};
 use crate::time::Duration;
-use crate::wire::{RequestKind, TemplateAssignment};
+use crate::wire::RequestKind;
 use serde::{Deserialize, Serialize};
 
 /// [`FormationGuidance`] on a body that moves in the plane; [`crate::formation::Drive`] is the
@@ -26,8 +26,8 @@ use serde::{Deserialize, Serialize};
 /// straight for its goal on even terrain, at the pace of the slowest robot in contact. Where the
 /// straight line is blocked or costly, both follow the cells.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
-    cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
+pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, H = ()> {
+    cells: CellFollower<S, FormationGuidance<CELLS, M, F, L, NextMove, H>>,
     beside: GoalOccupancy<S>,
     wish_mps: Vec2<S>,
     waited: Duration,
@@ -54,7 +54,7 @@ impl<S: Scalar> Step<'_, S> {
     /// Offset of a place `offset` cells from another robot, extrapolated by its velocity, from the
     /// own body, metres.
     #[inline(never)]
-    fn beside(&self, input: &GuidanceInput<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
+    fn beside(&self, input: &View<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
         let offset_m = other.offset_at(input.state.position, input.now, input.ages.expire_after);
         (offset_m + input.ahead_m).xy() + self.metres(offset)
     }
@@ -89,12 +89,12 @@ impl<S: Scalar> Step<'_, S> {
     }
 }
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize>
-    FormationInPlane<S, CELLS, M, F, L>
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, H>
+    FormationInPlane<S, CELLS, M, F, L, H>
 {
     /// Runs `law` at a cruising speed of `speed_mps`, minus a tenth for the top leader.
     #[must_use]
-    pub fn new(mut law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
+    pub fn new(mut law: FormationGuidance<CELLS, M, F, L, NextMove, H>, speed_mps: S) -> Self {
         law.is_rigid = true;
         Self {
             cells: CellFollower::new(law, speed_mps),
@@ -107,12 +107,12 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
 
     /// The wrapped law of the grid.
     #[must_use]
-    pub const fn inside(&self) -> &FormationGuidance<CELLS, M, F, L> {
+    pub const fn inside(&self) -> &FormationGuidance<CELLS, M, F, L, NextMove, H> {
         self.cells.inside()
     }
 
     /// Returns the leader and the own place relative to it, unless this robot leads or is alone.
-    fn leader<'a>(&self, input: &GuidanceInput<'a, S>, view: &Template<F>) -> Option<(&'a Neighbor<S>, Cell)> {
+    fn leader<'a>(&self, input: &View<'a, S>, view: &Template<F>) -> Option<(&'a Neighbor<S>, Cell)> {
         let law = self.inside();
         let (id, offset) = law.top(input, view)?;
         let keeps_touch = law.behind <= law.formation.patience;
@@ -122,10 +122,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     #[inline(never)]
     fn refine(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         here: &InCells<'_, S>,
+        radio: &mut Radio<'_, GridMessage>,
         decision: &mut Decision<S>,
-    ) -> Result<(), BadInput> {
+    ) -> Result<(), BadInput>
+    where
+        H: FarMap,
+    {
         let Action::Velocity { wish_mps: by_cells_mps, .. } = decision.action else { return Ok(()) };
         let step = Step {
             window: here.grid.window.ok_or(BadInput)?,
@@ -135,7 +139,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             drive: Drive::new(&input.body),
         };
         let view = self.inside().view(input.id, input.neighbors);
-        let to_goal_m = step.to_middle(decision.target);
+        let target = Law::<S>::report(&self.cells).target;
+        let to_goal_m = step.to_middle(target.ok_or(BadInput)?);
         let status = &mut decision.status;
         let is_straight;
         let mut wish_mps;
@@ -151,7 +156,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             status.is_off_place = way_m.norm() > step.drive.halt_m();
             // A robot that is ahead or aside does not hold up the others.
             if !step.drive.is_far_behind(way_m, place_mps) {
-                decision.asks.retain(|ask| ask.kind != RequestKind::Stop);
+                radio.retract(RequestKind::Stop);
             }
             status.is_at_goal = has_arrived && self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
             self.wish_mps = input.body.velocity_mps.xy();
@@ -175,7 +180,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
         if is_straight {
             status.is_stuck = false;
-            decision.asks.retain(|ask| ask.kind != RequestKind::Redirect);
+            radio.retract(RequestKind::Redirect);
         }
         decision.action = Action::Velocity { wish_mps: wish_mps.extend(S::ZERO), way_m: None };
         Ok(())
@@ -185,7 +190,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     /// must let another one pass first.
     fn comes_to_rest(
         &mut self,
-        input: &GuidanceInput<'_, S>,
+        input: &View<'_, S>,
         way_m: Vec2<S>,
         drive: &Drive<S>,
         status: &mut Status,
@@ -206,13 +211,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 
     /// Metres; 0 if patience is exhausted or the robot travels alone.
-    fn lag_to_wait_for(
-        &mut self,
-        input: &GuidanceInput<'_, S>,
-        view: &Template<F>,
-        step: &Step<'_, S>,
-        ahead: Vec2<S>,
-    ) -> S {
+    fn lag_to_wait_for(&mut self, input: &View<'_, S>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
         if self.inside().leader.is_some() {
             return S::ZERO;
         }
@@ -229,12 +228,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 }
 
-fn lag_m<S: Scalar, const F: usize>(
-    input: &GuidanceInput<'_, S>,
-    view: &Template<F>,
-    step: &Step<'_, S>,
-    ahead: Vec2<S>,
-) -> S {
+fn lag_m<S: Scalar, const F: usize>(input: &View<'_, S>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
     let lag = |entry: &TemplateEntry| {
         let other = input.neighbor(entry.id)?;
         let is_under_way = other.mode.gives_way() && other.mode != Mode::Arrived;
@@ -244,49 +238,48 @@ fn lag_m<S: Scalar, const F: usize>(
     view.entries.iter().filter_map(lag).fold(S::ZERO, S::max)
 }
 
-impl<S, const CELLS: usize, const M: usize, const F: usize, const L: usize> Teamwork
-    for FormationInPlane<S, CELLS, M, F, L>
-where
-    S: Scalar,
+impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, H: FarMap> Law<S>
+    for FormationInPlane<S, CELLS, M, F, L, H>
 {
-    fn redirect(&mut self) {
-        self.cells.redirect();
+    type Surroundings<'a> = InCells<'a, S>;
+    type Protocol = Grid;
+    type Workspace = GridWorkspace<CELLS>;
+
+    fn decide(
+        &mut self,
+        input: &View<'_, S>,
+        here: &InCells<'_, S>,
+        tools: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput> {
+        let Tools { rng, mut radio, workspace } = tools;
+        if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_some() {
+            self.cells.discard_decision();
+        }
+        let mut decision = self.cells.decide(input, here, Tools { rng, radio: radio.of(), workspace })?;
+        if decision.action != Action::Idle {
+            self.refine(input, here, &mut radio, &mut decision)?;
+        }
+        Ok(decision)
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
-        self.cells.assign_template(part, is_restarted)
+    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+        Law::<S>::payload(&mut self.cells, radio);
     }
 
-    fn goal_offset(&self) -> Cell {
-        self.cells.goal_offset()
+    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
+        self.cells.receive(from, message)
+    }
+
+    fn order(&mut self, order: GridOrder) -> bool {
+        self.cells.order(order)
     }
 
     fn needs(&self, id: RobotId) -> bool {
         self.cells.needs(id)
     }
-}
 
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize> Guidance<S>
-    for FormationInPlane<S, CELLS, M, F, L>
-{
-    type Input<'a> = InCells<'a, S>;
-    type Destination = ToCells;
-    type Workspace = GridWorkspace<CELLS>;
-    type Payload = ();
-
-    fn decide(
-        &mut self,
-        input: &GuidanceInput<'_, S>,
-        here: &InCells<'_, S>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
-    ) -> Result<Decision<S>, BadInput> {
-        if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_some() {
-            self.cells.discard_decision();
-        }
-        let mut decision = self.cells.decide(input, here, rng, workspace)?;
-        self.refine(input, here, &mut decision)?;
-        Ok(decision)
+    fn report(&self) -> Report {
+        self.cells.report()
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geom::Vec2;
+use crate::land::{LandPatch, PATCH_TILES};
 use crate::wire::RequestKind::Redirect;
 
 const STEP: Duration = Duration::from_millis(100);
@@ -11,66 +12,55 @@ const STEP: Duration = Duration::from_millis(100);
 struct Counting {
     decisions: u32,
     redirections: u32,
-    parts: u32,
+    orders: u32,
 }
 
-impl Teamwork for Counting {
-    fn redirect(&mut self) {
-        self.redirections += 1;
+impl Law<f32> for Counting {
+    type Surroundings<'a> = OnGrid<'a>;
+    type Protocol = Grid;
+    type Workspace = ();
+
+    fn decide(
+        &mut self,
+        _: &View<'_, f32>,
+        _: &OnGrid<'_>,
+        mut tools: Tools<'_, f32, Self>,
+    ) -> Result<Decision<f32>, BadInput> {
+        self.decisions += 1;
+        tools.radio.send(RobotId(9), &GridMessage::Request(Redirect));
+        let action = Action::Moves([Dir::NorthEast, Dir::South].into_iter().collect());
+        Ok(Decision { action, status: Status::default() })
     }
 
-    fn assign_template(&mut self, _: &TemplateAssignment, is_restarted: bool) -> bool {
-        self.parts += 1;
-        is_restarted
+    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
+        self.redirections += u32::from(message == GridMessage::Request(Redirect));
+        true
     }
 
-    fn goal_offset(&self) -> Cell {
-        Cell::new(-3, 2)
+    fn order(&mut self, order: GridOrder) -> bool {
+        self.orders += 1;
+        matches!(order, GridOrder::Goal(_))
     }
 
     fn needs(&self, id: RobotId) -> bool {
         id == RobotId(77)
     }
-}
 
-impl Guidance<f32> for Counting {
-    type Input<'a> = OnGrid<'a>;
-    type Destination = ToCells;
-    type Workspace = ();
-    type Payload = ();
-
-    fn decide(
-        &mut self,
-        input: &GuidanceInput<'_, f32>,
-        _: &OnGrid<'_>,
-        _: &mut Rng,
-        (): &mut (),
-    ) -> Result<Decision<f32>, BadInput> {
-        self.decisions += 1;
-        let ask = Ask { to: RobotId(9), kind: Redirect };
-        Ok(Decision {
-            action: Action::Moves([Dir::NorthEast, Dir::South].into_iter().collect()),
-            target: input.goal,
-            leader: RobotId(4),
-            slot: 3,
-            asks: [ask].into_iter().collect(),
-            ..Decision::default()
-        })
+    fn report(&self) -> Report {
+        Report { goal: Some(Cell::new(9, 5)), target: Some(Cell::new(9, 5)), leader: RobotId(4), slot: 3 }
     }
 }
 
-type Told = (GuidanceInput<'static, f32>, InCells<'static, f32>);
+type Told = (View<'static, f32>, InCells<'static, f32>);
 
 fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
-    let input = GuidanceInput {
-        land: None,
+    let input = View {
         id: RobotId(1),
         now: Instant::from_micros(0) + STEP.saturating_mul(n),
         tick: STEP,
         state: KinematicState::default(),
         ahead_m: Vec3::ZERO,
         lag_s: 0.0,
-        goal: Cell::new(9, 5),
         body: Body {
             id: RobotId(1),
             velocity_mps: Vec3::ZERO,
@@ -82,6 +72,8 @@ fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
         nearby: &[],
         neighbors: &[],
         ages: config(1).ages,
+        is_stopped: false,
+        sent_to: None,
     };
     let here = InCells {
         grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window: None },
@@ -97,9 +89,22 @@ fn counting() -> CellFollower<f32, Counting> {
 
 fn decide<G>(law: &mut G, (input, here): &Told) -> Result<Decision<f32>, BadInput>
 where
-    G: for<'a> Guidance<f32, Input<'a> = InCells<'a, f32>, Workspace = (), Payload = ()>,
+    G: for<'a> Law<f32, Surroundings<'a> = InCells<'a, f32>, Workspace = (), Protocol: Protocol<Payload = ()>>,
 {
-    law.decide(input, here, &mut Rng::new(1), &mut ())
+    with_requests(law, (input, here)).0
+}
+
+fn with_requests<G>(
+    law: &mut G,
+    (input, here): (&View<'_, f32>, &InCells<'_, f32>),
+) -> (Result<Decision<f32>, BadInput>, usize)
+where
+    G: for<'a> Law<f32, Surroundings<'a> = InCells<'a, f32>, Workspace = (), Protocol: Protocol<Payload = ()>>,
+{
+    let mut outgoing = Outgoing::default();
+    let radio = Radio::new(input.now, &mut outgoing);
+    let decision = law.decide(input, here, Tools { rng: &mut Rng::new(1), radio, workspace: &mut () });
+    (decision, outgoing.requests.len())
 }
 
 /// Also returns the number of decisions of the law inside.
@@ -139,9 +144,8 @@ fn on_rough_terrain_the_law_decides_less_often() {
 fn requests_are_sent_once_per_decision() {
     let mut guidance = counting();
     let mut asks = |n| {
-        let (decision, _) = ask(&mut guidance, &told(Cell::new(5, 5), [0.0; 2], 1.0, n));
-        assert_eq!((decision.leader, decision.slot), (RobotId(4), 3));
-        decision.asks.len()
+        let (view, here) = told(Cell::new(5, 5), [0.0; 2], 1.0, n);
+        with_requests(&mut guidance, (&view, &here)).1
     };
     assert_eq!([0, 1, 19, 20].map(&mut asks), [1, 0, 0, 1]);
 }
@@ -191,43 +195,38 @@ fn the_robot_heads_for_the_centre_of_the_next_cell() {
 
 struct Stays;
 
-impl Teamwork for Stays {}
-
-impl Guidance<f32> for Stays {
-    type Input<'a> = OnGrid<'a>;
-    type Destination = ToCells;
+impl Law<f32> for Stays {
+    type Surroundings<'a> = OnGrid<'a>;
+    type Protocol = Grid;
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        _: &GuidanceInput<'_, f32>,
+        _: &View<'_, f32>,
         _: &OnGrid<'_>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
         Ok(Decision::default())
     }
 }
 
 #[test]
-fn teamwork_is_forwarded_to_the_law_inside() {
-    let mut guidance = counting();
+fn messages_orders_and_reports_are_forwarded() {
+    let mut law = counting();
     let there = told(Cell::new(5, 5), [0.0; 2], 1.0, 0);
-    assert_eq!(ask(&mut guidance, &there).1, 1);
-    guidance.redirect();
-    assert_eq!(ask(&mut guidance, &there).1, 2, "at once");
-    let part = TemplateAssignment::split(RobotId(1), 1, 0, Cell::new(0, 0), &[]);
-    let part = part.unwrap().next().unwrap();
-    assert!(guidance.assign_template(&part, true));
-    assert!(!guidance.assign_template(&part, false));
-    let inside = guidance.inside();
-    assert_eq!((inside.redirections, inside.parts), (1, 2));
-    assert_eq!(guidance.goal_offset(), Cell::new(-3, 2));
-    assert_eq!([76, 77].map(|id| guidance.needs(RobotId(id))), [false, true]);
-    assert!(!guidance.has_own_goal());
-    let waypoint = Waypoint::fixed(crate::geom::Position::ORIGIN);
-    assert!(!guidance.assign_waypoint(0, &waypoint));
+    assert_eq!(ask(&mut law, &there).1, 1);
+    let patch = LandPatch::from_bytes(Cell::new(0, 0), [0; PATCH_TILES]);
+    assert!(law.receive(RobotId(2), GridMessage::Land(patch)));
+    assert_eq!(ask(&mut law, &there).1, 1, "a patch changes no decision");
+    assert!(law.receive(RobotId(2), GridMessage::Request(Redirect)));
+    assert_eq!(ask(&mut law, &there).1, 2, "at once");
+    assert!(law.order(GridOrder::Goal(Cell::new(1, 1))));
+    assert!(!law.order(GridOrder::FormationGoal(Cell::new(1, 1))));
+    assert_eq!((law.inside().redirections, law.inside().orders), (1, 2));
+    assert_eq!([76, 77].map(|id| law.needs(RobotId(id))), [false, true]);
+    let shown = law.report();
+    // The target is that of the last decision.
+    assert_eq!((shown.leader, shown.slot, shown.target), (RobotId(4), 3, Some(Cell::new(9, 5))));
 }
 
 #[test]
@@ -247,7 +246,7 @@ fn a_robot_in_the_plane_moves_to_its_goal_cell() {
     let law = CellFollower::new(law, 1.0);
     let mut agent = Agent::<f32, _, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
     let (mut ws, mut at_m) = (workspace(), [11.0_f32, 11.0]);
-    agent.assign_goal(Cell::new(12, 8));
+    agent.order(GridOrder::Goal(Cell::new(12, 8)));
     let mut cells = Vec::new();
     for n in 0..200 {
         let [x, y] = at_m.map(|x| (x / 2.0).floor());

@@ -6,10 +6,10 @@ use crate::geom::Position;
 use crate::names::Named as _;
 use crate::scalar::Q16;
 
-type Operated<S> = Robot<S, Commanded<S, WaypointGuidance<S>>, OrcaSafety<S, 16>>;
+type Operated<S> = Robot<S, Guided<S, WaypointGuidance<S>>, OrcaSafety<S, 16>>;
 
 fn robot<S: Scalar>(at_m: [f64; 2]) -> Operated<S> {
-    let guidance = Commanded::new(waypoint(), S::ONE, S::from_milli(10));
+    let guidance = Guided::new(waypoint(), S::ONE, S::from_milli(10));
     Robot::new(&in_plane(1), guidance, orca(), at_m)
 }
 
@@ -21,8 +21,8 @@ fn east(millis: i32) -> Wish<f32> {
 fn without_a_command_behaviour_is_unchanged() {
     let mut plain = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
     let mut wrapped = robot([0.0; 2]);
-    plain.agent.assign_waypoint(0, &place(2000, 500));
-    wrapped.agent.assign_waypoint(0, &place(2000, 500));
+    plain.agent.order(WaypointOrder::first(place(2000, 500)));
+    wrapped.agent.order(WaypointOrder::first(place(2000, 500)));
     for n in 0..40 {
         let now = step_number(n);
         let other = bytes(2, 0, n as u16, &[body_at([1000, 250], [0, 0], Mode::Cruise)]);
@@ -34,7 +34,7 @@ fn without_a_command_behaviour_is_unchanged() {
 #[test]
 fn a_velocity_command_expires() {
     let mut robot = robot([0.0; 2]);
-    robot.agent.guidance_mut().command(east(500)).unwrap();
+    robot.agent.law_mut().command(east(500)).unwrap();
     // Two steps at one time do not age the command.
     let _ = robot.step(step_number(0), &[]);
     for n in 0..5 {
@@ -44,8 +44,8 @@ fn a_velocity_command_expires() {
     }
     let _ = robot.step(step_number(5), &[]);
     assert_eq!((robot.velocity_mps, robot.agent.mode()), ([0.0; 2], Mode::Hold));
-    assert_eq!(robot.agent.guidance().wish(), &Wish::Hold);
-    robot.agent.guidance_mut().command(east(500)).unwrap();
+    assert_eq!(robot.agent.law().wish(), &Wish::Hold);
+    robot.agent.law_mut().command(east(500)).unwrap();
     let _ = robot.step(step_number(60), &[]);
     assert_eq!(robot.velocity_mps, [0.5, 0.0]);
 }
@@ -54,9 +54,9 @@ fn a_velocity_command_expires() {
 fn an_excessive_velocity_is_limited_and_a_non_finite_one_refused() {
     let mut robot = robot([0.0; 2]);
     let wish = |x: f32| Wish::Velocity { velocity_mps: Vec3::new(x, 0.0, 0.0), valid: Duration::MAX };
-    robot.agent.guidance_mut().command(wish(7.0)).unwrap();
+    robot.agent.law_mut().command(wish(7.0)).unwrap();
     for (n, bad) in [f32::NAN, f32::INFINITY, 7.0].into_iter().enumerate() {
-        let taken = robot.agent.guidance_mut().command(wish(bad));
+        let taken = robot.agent.law_mut().command(wish(bad));
         assert_eq!(taken, bad.is_finite().then_some(()).ok_or(WrongTask));
         let _ = robot.step(step_number(n as i32), &[]);
         assert_eq!((robot.velocity_mps, robot.agent.mode()), ([1.0, 0.0], Mode::Cruise));
@@ -67,10 +67,10 @@ fn an_excessive_velocity_is_limited_and_a_non_finite_one_refused() {
 fn a_robot_follows_the_operator_and_then_its_own_law() {
     fn check<S: Scalar>() {
         let mut robot = robot::<S>([0.0; 2]);
-        robot.agent.assign_waypoint(0, &place(-1000, 0));
+        robot.agent.order(WaypointOrder::first(place(-1000, 0)));
         robot
             .agent
-            .guidance_mut()
+            .law_mut()
             .command(Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_mm([1000, 0, 0])), valid: None })
             .unwrap();
         for n in 0..20 {
@@ -78,7 +78,7 @@ fn a_robot_follows_the_operator_and_then_its_own_law() {
         }
         assert_eq!(robot.agent.mode(), Mode::Arrived);
         assert!((robot.at_m[0] - 1.0).abs() < 0.02, "{:?}", robot.at_m);
-        robot.agent.guidance_mut().command(Wish::Own).unwrap();
+        robot.agent.law_mut().command(Wish::Own).unwrap();
         for n in 20..60 {
             let _ = robot.step(step_number(n), &[]);
         }
@@ -96,7 +96,7 @@ fn a_moving_waypoint_is_followed_until_the_command_expires() {
     moving.velocity_mps = Vec3::new(0.0, 0.5, 0.0);
     robot
         .agent
-        .guidance_mut()
+        .law_mut()
         .command(Wish::Waypoint { waypoint: moving, valid: Some(Duration::from_millis(1000)) })
         .unwrap();
     for n in 100..130 {
@@ -112,7 +112,7 @@ fn a_released_robot_is_passive_and_a_holding_robot_gives_way() {
     let mut moved = [0.0; 2];
     for (moved, wish) in moved.iter_mut().zip([Wish::Off, Wish::Hold]) {
         let mut robot = robot::<f32>([0.0; 2]);
-        robot.agent.guidance_mut().command(wish).unwrap();
+        robot.agent.law_mut().command(wish).unwrap();
         for n in 0..3 {
             let out = robot.step(step_number(n), &bytes(2, 0, n as u16, std::slice::from_ref(&crowding)));
             let mode = match &sent(&out)[..] {
@@ -134,7 +134,7 @@ fn a_released_robot_is_passive_and_a_holding_robot_gives_way() {
 #[test]
 fn a_stop_request_does_not_override_the_operator() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.guidance_mut().command(east(5000)).unwrap();
+    robot.agent.law_mut().command(east(5000)).unwrap();
     let stop = Message::Request(Request {
         to: RobotId(1),
         origin: RobotId(2),
@@ -149,10 +149,10 @@ fn a_stop_request_does_not_override_the_operator() {
 
 #[test]
 fn on_the_grid_a_cell_replaces_the_own_goal_and_velocities_are_refused() {
-    type GridAgent = Agent<f32, Commanded<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
-    let guidance = Commanded::new(RouteGuidance::new(RouteParams::default()), 0.0, 0.0);
+    type GridAgent = Agent<f32, Guided<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
+    let guidance = Guided::new(RouteGuidance::new(RouteParams::default()), 0.0, 0.0);
     let mut agent = GridAgent::new(&config(1), guidance, Unguarded, Postcard);
-    agent.assign_goal(Cell::new(9, 5));
+    agent.order(GridOrder::Goal(Cell::new(9, 5)));
     let mut workspace = workspace();
     let mut heading = |agent: &mut GridAgent, n: u32| {
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(n), &mut workspace);
@@ -163,24 +163,24 @@ fn on_the_grid_a_cell_replaces_the_own_goal_and_velocities_are_refused() {
         }
     };
     assert_eq!(heading(&mut agent, 0), Some(Dir::East));
-    agent.guidance_mut().command(Wish::Cell(Cell::new(5, 9))).unwrap();
+    agent.law_mut().command(Wish::Cell(Cell::new(5, 9))).unwrap();
     assert_eq!(heading(&mut agent, 1), Some(Dir::North));
     assert_eq!(agent.target(), Some(Cell::new(5, 9)));
     let there = Wish::Waypoint { waypoint: place(1000, 0), valid: None };
     for wrong in [east(1000), there] {
-        assert_eq!(agent.guidance_mut().command(wrong), Err(WrongTask));
+        assert_eq!(agent.law_mut().command(wrong), Err(WrongTask));
     }
     assert_eq!(heading(&mut agent, 2), Some(Dir::North));
-    agent.guidance_mut().command(Wish::Own).unwrap();
+    agent.law_mut().command(Wish::Own).unwrap();
     assert_eq!(heading(&mut agent, 3), Some(Dir::East));
 }
 
 #[test]
 fn a_cell_is_refused_by_a_law_with_waypoints() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.assign_waypoint(0, &place(1000, 0));
+    robot.agent.order(WaypointOrder::first(place(1000, 0)));
     let cell = Wish::Cell(Cell::new(3, 4));
-    assert_eq!(robot.agent.guidance_mut().command(cell), Err(WrongTask));
+    assert_eq!(robot.agent.law_mut().command(cell), Err(WrongTask));
     let _ = robot.step(step_number(0), &[]);
     assert_eq!(robot.agent.mode(), Mode::Cruise);
 }
@@ -190,11 +190,11 @@ fn the_passive_mode_is_left_through_idle() {
     for has_place in [false, true] {
         let mut robot = robot::<f32>([0.0; 2]);
         if has_place {
-            robot.agent.assign_waypoint(0, &place(1000, 0));
+            robot.agent.order(WaypointOrder::first(place(1000, 0)));
         }
         let mut modes = Vec::new();
         for (n, wish) in [Wish::Off, Wish::Own, Wish::Own].into_iter().enumerate() {
-            robot.agent.guidance_mut().command(wish).unwrap();
+            robot.agent.law_mut().command(wish).unwrap();
             let _ = robot.step(step_number(n as i32), &[]);
             modes.push(robot.agent.mode());
         }
@@ -235,7 +235,7 @@ fn parameters_keep_their_values_and_reject_values_out_of_range() {
 #[test]
 fn a_new_speed_and_beacon_period_apply_from_the_next_step() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.assign_waypoint(0, &place(9000, 0));
+    robot.agent.order(WaypointOrder::first(place(9000, 0)));
     let _ = robot.step(step_number(0), &[]);
     assert_eq!(robot.velocity_mps, [1.0, 0.0]);
     assert!(robot.agent.set_parameter(Parameter::Speed, 0.25));

@@ -5,8 +5,8 @@ use super::*;
 /// The first move of robot 2 in (5, 5), which heads north-east, `ticks` after it heard `others`.
 fn first_move(others: &[(u32, Beacon)], cells: &[u8], ticks: u16) -> Dir {
     let (mut route, mut formation) = (route_agent(2), formation_agent(2));
-    route.assign_goal(Cell::new(60, 60));
-    formation.assign_goal(Cell::new(60, 60));
+    route.order(GridOrder::Goal(Cell::new(60, 60)));
+    formation.order(GridOrder::Goal(Cell::new(60, 60)));
     let mut first = [Dir::Stay; 2];
     for n in 0..=ticks {
         // The formation of robots 1 to 3 takes the others for strangers.

@@ -8,7 +8,7 @@ type Walker = Robot<f32, WaypointGuidance<f32>, OrcaSafety<f32, 16>>;
 
 fn walker(boot: u8, at_m: [f64; 2], goal_mm: [i32; 2]) -> Walker {
     let mut robot = Robot::new(&AgentConfig { boot, ..one_step_late(7) }, waypoint(), orca(), at_m);
-    let _ = robot.agent.assign_waypoint(0, &place(goal_mm[0], goal_mm[1]));
+    let _ = robot.agent.order(WaypointOrder::first(place(goal_mm[0], goal_mm[1])));
     robot
 }
 

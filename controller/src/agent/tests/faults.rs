@@ -30,7 +30,7 @@ fn requests(out: &Outputs<f32>) -> Vec<Request> {
 fn a_leader_does_not_wait_for_a_failed_or_arrived_robot() {
     for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise), (Mode::Arrived, Mode::Cruise)] {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
-        agent.assign_goal(Cell::new(60, 5));
+        agent.order(GridOrder::Goal(Cell::new(60, 5)));
         let behind = Beacon { mode, leader: RobotId(1), ..beacon_at(-5, 5) };
         for n in 0..2 {
             let inbox = bytes(2, 0, n, &[Message::Beacon(behind)]);
@@ -44,7 +44,7 @@ fn a_leader_does_not_wait_for_a_failed_or_arrived_robot() {
 #[test]
 fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let behind = Beacon { leader: RobotId(1), ..beacon_at(-5, 5) };
     let patience = u32::from(FormationParams::default().patience);
     let mut held = vec![];
@@ -61,7 +61,7 @@ fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
 #[test]
 fn a_leader_does_not_wait_for_a_robot_that_does_not_follow_it() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let alone = Beacon { leader: RobotId::NONE, ..beacon_at(-5, 5) };
     for n in 0..5 {
         let inbox = bytes(2, 0, n, &[Message::Beacon(alone)]);
@@ -77,7 +77,7 @@ fn a_template_is_assembled_from_repeated_parts() {
     assert_eq!(repeated.len(), 8);
     let inbox = bytes(99, 0, 0, &repeated);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
-    assert_eq!(agent.guidance.template().entries.len(), 8);
+    assert_eq!(agent.law.template().entries.len(), 8);
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
     assert_eq!(target_after(&[&goal, &parts]), Some(Cell::new(54, 5)));
     assert_eq!(target_after(&[&parts, &goal]), Some(Cell::new(54, 5)));
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    agent.assign_goal(Cell::new(40, 5));
+    agent.order(GridOrder::Goal(Cell::new(40, 5)));
     let inbox = bytes(99, 0, 0, &parts);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
     assert_eq!(agent.target(), Some(Cell::new(40, 5)));
@@ -132,7 +132,7 @@ fn one_goal_for_all_robots_turns_the_whole_formation() {
 #[test]
 fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let mut leaders = vec![];
     for n in 0..100_u32 {
         let silent = (20..60).contains(&n);
@@ -152,7 +152,7 @@ fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
 fn cyclic_leader_chains_end() {
     for [second, first] in [[1, 2], [2, 1], [3, 3], [7, 7], [0, 0]] {
         let (mut agent, mut ws) = (formation_agent(3), workspace());
-        agent.assign_goal(Cell::new(60, 5));
+        agent.order(GridOrder::Goal(Cell::new(60, 5)));
         for n in 0..3 {
             let beacon = |x, leader| {
                 let leader = RobotId(leader);
@@ -179,7 +179,7 @@ fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin(
         let ahead = if n < 6 { 0 } else { 6 };
         let cells = [16 + ahead, 13 + ahead, 10].map(|x| Cell::new(x, 5));
         for (i, agent) in agents.iter_mut().enumerate() {
-            agent.assign_goal(Cell::new(100, 5));
+            agent.order(GridOrder::Goal(Cell::new(100, 5)));
             let inbox: Vec<u8> = (0..3_usize)
                 .filter(|&from| Rng::keyed(5, from as u32, i as u32, n).below(2) == 0)
                 .filter(|&from| from != 2 || n < 60)
@@ -203,7 +203,7 @@ fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin(
 #[test]
 fn a_stop_of_a_restarted_robot_is_cancelled() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let beacon = || Message::Beacon(beacon_at(2, 5));
     let inbox = bytes(2, 0, 0, &[beacon(), stop(2, 1, 7, RequestKind::Stop)]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
@@ -219,7 +219,7 @@ fn a_stop_of_a_restarted_robot_is_cancelled() {
 #[test]
 fn a_repeated_redirection_is_followed_once() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(5, 5));
+    agent.order(GridOrder::Goal(Cell::new(5, 5)));
     let mut moved = vec![];
     for n in 0..4 {
         let inbox = bytes(2, 0, n, &[stop(2, 1, 0, RequestKind::Redirect)]);
@@ -235,7 +235,7 @@ fn a_repeated_redirection_is_followed_once() {
 fn after_a_long_sleep_a_robot_sends_and_no_stop_is_active() {
     for sleep in [60_u32, 36 * 60, 50 * 60, 70 * 60] {
         let (mut agent, mut ws) = (formation_agent(2), workspace());
-        agent.assign_goal(Cell::new(60, 5));
+        agent.order(GridOrder::Goal(Cell::new(60, 5)));
         let leader = Message::Beacon(beacon_at(13, 5));
         let inbox = [bytes(1, 0, 0, &[leader]), bytes(3, 0, 0, &[stop(3, 2, 0, RequestKind::Stop)])];
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox.concat()), tick(0), &mut ws);
@@ -262,7 +262,7 @@ fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
         let cells = [1_u8; 1];
         let count = usize::from(width * height);
         let (mut agent, mut ws) = (formation_agent(1), workspace());
-        agent.assign_goal(Cell::new(60, 5));
+        agent.order(GridOrder::Goal(Cell::new(60, 5)));
         let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
         inputs.surroundings.window = Window::new(&cells[..count], origin, width, height);
         let out = agent.step(&inputs, tick(0), &mut ws);
@@ -280,11 +280,11 @@ fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
 fn a_recovering_leader_heads_for_its_scattered_followers() {
     let go = |recovery| {
         let mut agent = formation_agent(1);
-        let template = agent.guidance.template().clone();
+        let template = agent.law.template().clone();
         let formation = FormationParams { recovery, ..FormationParams::default() };
-        agent.guidance = FormationGuidance::new(RouteParams::default(), formation, template);
+        agent.law = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut ws = workspace();
-        agent.assign_goal(Cell::new(60, 5));
+        agent.order(GridOrder::Goal(Cell::new(60, 5)));
         let behind = Beacon { leader: RobotId(1), ..beacon_at(-5, 5) };
         let inbox = bytes(2, 0, 0, &[Message::Beacon(behind), stop(2, 1, 0, RequestKind::Stop)]);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
@@ -299,14 +299,14 @@ fn a_recovering_leader_heads_for_its_scattered_followers() {
 #[test]
 fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let mut asked = vec![];
     for n in 0..5 {
         let inbox = bytes(9, 0, n, &[Message::Beacon(beacon_at(2, 5))]);
         let at = Cell::new(5, 5);
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
         asked.extend(requests(&out).iter().map(|ask| (n, ask.to, ask.kind)));
-        let distance = agent.guidance().graph_distance(RobotId(1), at, agent.neighbors());
+        let distance = agent.law().graph_distance(RobotId(1), at, agent.neighbors());
         assert_eq!((distance.less, distance.more), (2, 1));
     }
     assert_eq!(asked, [(3, RobotId(9), RequestKind::Redirect)]);
@@ -318,7 +318,7 @@ fn a_robot_leads_although_its_own_leader_is_out_of_range() {
     let anyone = [TemplateEntry { offset: Cell::new(3, 0), id: RobotId::NONE, hops: 1 }];
     let order = TemplateAssignment::split(RobotId(3), 1, 2, Cell::new(-6, 0), &anyone);
     let order: Vec<Message> = order.unwrap().map(Message::Template).collect();
-    agent.assign_goal(Cell::new(5, 60));
+    agent.order(GridOrder::Goal(Cell::new(5, 60)));
     let mut at = Cell::new(5, 5);
     for n in 0..6_i16 {
         let mut inbox = if n == 0 { bytes(99, 0, 0, &order) } else { vec![] };
@@ -346,7 +346,7 @@ fn terrain_costs_of_the_whole_formation_count_in_any_window() {
         let formation = FormationParams { footprint: 16, ..FormationParams::default() };
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut agent = FormationAgent::new(&config(1), guidance, Unguarded, Postcard);
-        agent.assign_goal(Cell::new(40, 0));
+        agent.order(GridOrder::Goal(Cell::new(40, 0)));
         let mut inputs = inputs(&FLAT, at, &[]);
         let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(0, -3))]);
         inputs.inbox = &inbox;

@@ -9,7 +9,7 @@ use core::ops::Range;
 
 fn run<G>(robots: &mut [Robot<f32, G, Unguarded>], steps: Range<i32>)
 where
-    G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
+    G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()>,
 {
     let mut said: Vec<Vec<u8>> = vec![Vec::new(); robots.len()];
     for n in steps {
@@ -36,8 +36,8 @@ fn an_alpha_flock_keeps_its_distances_and_follows_its_reference() {
         let guidance = LatticeGuidance::new(params, true);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
         let reference = Waypoint { velocity_mps: crate::geom::Vec3::new(0.25, 0.0, 0.0), ..place(1000, 0) };
-        assert!(robot.agent.assign_waypoint(0, &reference));
-        assert!(!robot.agent.assign_waypoint(1, &reference), "there is one");
+        assert!(robot.agent.order(WaypointOrder::first(reference)));
+        assert!(!robot.agent.order(WaypointOrder { index: 1, waypoint: reference }), "there is one");
         robot
     };
     let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 0.6]), new(3, [0.5, 0.3])];
@@ -60,7 +60,7 @@ fn an_alpha_flock_limits_an_absurd_speed() {
     let guidance = LatticeGuidance::new(LatticeParams::<f32>::new(1.0), true);
     let mut robot = Robot::new(&one_step_late(1), guidance, Unguarded, [0.0; 2]);
     robot.velocity_mps = [f64::MAX, 0.0];
-    let _ = robot.agent.assign_waypoint(0, &place(1000, 0));
+    let _ = robot.agent.order(WaypointOrder::first(place(1000, 0)));
     let out = robot.step(step_number(0), &[]);
     assert!(matches!(out.command, Command::Velocity(v) if v.norm() <= 1.001), "{:?}", out.command);
 }
@@ -71,21 +71,21 @@ fn a_goal_flock_moves_to_the_centre_and_then_to_single_goals() {
         let params = GoalParams::new(0.5, 1.0);
         let guidance = GoalFlockGuidance::new(params, 1.0, 7);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
-        assert!(!robot.agent.assign_waypoint(1, &place(0, 0)), "not before number 0");
-        assert!(robot.agent.assign_waypoint(0, &place(20_000, 8_000)));
-        assert!(robot.agent.assign_waypoint(1, &place(20_000, -8_000)));
+        assert!(!robot.agent.order(WaypointOrder { index: 1, waypoint: place(0, 0) }), "not before number 0");
+        assert!(robot.agent.order(WaypointOrder::first(place(20_000, 8_000))));
+        assert!(robot.agent.order(WaypointOrder { index: 1, waypoint: place(20_000, -8_000) }));
         robot
     };
     let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 1.0]), new(3, [1.0, 0.5])];
     run(&mut robots, 0..50);
     for robot in &robots {
-        assert_eq!(robot.agent.guidance().stage(), Stage::Gather);
+        assert_eq!(robot.agent.law().stage(), Stage::Gather);
         assert_eq!(robot.agent.mode(), Mode::Cruise);
     }
     run(&mut robots, 50..650);
     for robot in &robots {
-        let Stage::Goal(goal) = robot.agent.guidance().stage() else {
-            panic!("{:?} at {:?}", robot.agent.guidance().stage(), robot.at_m)
+        let Stage::Goal(goal) = robot.agent.law().stage() else {
+            panic!("{:?} at {:?}", robot.agent.law().stage(), robot.at_m)
         };
         let goal = [[20.0, 8.0], [20.0, -8.0]][goal];
         assert!(distance(robot.at_m, goal) <= 1.0);
@@ -99,16 +99,16 @@ fn a_goal_flock_follows_goals_that_move() {
         Robot::new(&one_step_late(1), GoalFlockGuidance::new(GoalParams::new(0.5, 1.0), 1.0, 7), Unguarded, [0.0; 2]);
     let goal = |at, velocity_mps| Waypoint { velocity_mps, ..place(10_000, at) };
     let north = crate::geom::Vec3::new(0.0, 0.4, 0.0);
-    assert!(robot.agent.assign_waypoint(0, &goal(2_000, north)));
-    assert!(robot.agent.assign_waypoint(1, &goal(-2_000, north)));
+    assert!(robot.agent.order(WaypointOrder::first(goal(2_000, north))));
+    assert!(robot.agent.order(WaypointOrder { index: 1, waypoint: goal(-2_000, north) }));
     let mut robots = [robot];
     run(&mut robots, 0..600);
     let [robot] = &mut robots;
-    let Stage::Goal(drawn) = robot.agent.guidance().stage() else { panic!("still at {:?}", robot.at_m) };
+    let Stage::Goal(drawn) = robot.agent.law().stage() else { panic!("still at {:?}", robot.at_m) };
     let was_m = [2.0, -2.0][drawn];
     assert!(distance(robot.at_m, [10.0, was_m + 0.4 * 60.0]) <= 0.6, "{:?}", robot.at_m);
     let index = u8::try_from(drawn).unwrap();
-    assert!(robot.agent.assign_waypoint(index, &place(10_000, 0)));
+    assert!(robot.agent.order(WaypointOrder { index, waypoint: place(10_000, 0) }));
     run(&mut robots, 600..1600);
     assert!(distance(robots[0].at_m, [10.0, 0.0]) <= 0.6, "{:?}", robots[0].at_m);
 }
@@ -168,7 +168,7 @@ fn goal_flocks_of_different_numbers_do_not_gather() {
 #[test]
 fn each_flock_reports_the_parameters_that_it_was_given() {
     /// Numbers of known and of accepted parameters.
-    fn keeps(mut law: impl Guidance<f32>) -> [usize; 2] {
+    fn keeps(mut law: impl Law<f32>) -> [usize; 2] {
         let mut counts = [0; 2];
         for &(name, parameter) in <Parameter as crate::names::Named>::NAMES {
             let before = law.parameter(parameter);

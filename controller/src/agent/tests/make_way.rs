@@ -18,7 +18,7 @@ fn request_of(out: &Outputs<f32>) -> Option<(RobotId, RequestKind)> {
 /// Returns the step in which robot 2, moving along `way`, asks robot `other` to redirect.
 fn asks(other: u32, place: Cell, mode: Mode, way: &[Cell]) -> Option<u16> {
     let (mut agent, mut ws) = (route_agent(2), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     (0..20).find(|&n| {
         let beacon = Beacon { cell: place, mode, ..Beacon::default() };
         let inbox = bytes(other, 0, n, &[Message::Beacon(beacon)]);
@@ -45,7 +45,7 @@ fn an_arrived_robot_is_asked_by_a_robot_that_returns_repeatedly() {
 #[test]
 fn a_robot_without_another_route_moves_back() {
     let (mut agent, mut ws) = (route_agent(2), workspace());
-    agent.assign_goal(Cell::new(60, 5));
+    agent.order(GridOrder::Goal(Cell::new(60, 5)));
     let step = |agent: &mut RouteAgent, ws: &mut _, inbox: &[u8], n| match agent
         .step(&inputs(&corridor(), Cell::new(5, 5), inbox), tick(n), ws)
         .command
@@ -72,7 +72,7 @@ fn an_arrived_robot_makes_way_to_varying_cells() {
                 Unguarded,
                 Postcard,
             );
-            agent.assign_goal(Cell::new(5, 5));
+            agent.order(GridOrder::Goal(Cell::new(5, 5)));
             let inbox = bytes(1, 0, 0, &[stop(1, 2, 0, RequestKind::Redirect)]);
             let out = agent.step(&inputs(&cells, Cell::new(5, 5), &inbox), tick(0), &mut workspace());
             let Command::Move(moves) = out.command else { panic!("{seed}: {:?}", out.command) };

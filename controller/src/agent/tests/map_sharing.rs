@@ -1,22 +1,20 @@
 //! Tests of robots on the grid that share maps.
 
 use super::*;
-use crate::agent::{CELLS, GridWorkspace, MAP_TILES, MapSharing, OnGrid, RouteGuidance, VISITS};
-use crate::digest::digest;
+use crate::agent::{CELLS, GridWorkspace, MAP_TILES, OnGrid, RouteGuidance, SharedMap, VISITS};
 use crate::grid::{BLOCKED, Window};
 use crate::land::{LandPatch, MapParams, PATCH_TILES, Tile, tile_of};
 use crate::route::RouteParams;
 use crate::wire::{Header, Message, encode};
 use heapless::Vec;
 
-type Sharing = MapSharing<RouteGuidance<CELLS, VISITS>, MAP_TILES>;
-type Sharer = Agent<f32, Sharing, NEIGHBORS>;
+type Sharer = Agent<f32, RouteGuidance<CELLS, VISITS, 0, SharedMap<MAP_TILES>>, NEIGHBORS>;
 
 const TICK: Duration = Duration::from_millis(1000);
 
-fn sharer(id: u32, maps: Option<MapParams>) -> Sharer {
+fn sharer(id: u32) -> Sharer {
     let config = AgentConfig::new(RobotId(id), 0.0, TICK);
-    let law = MapSharing::new(RouteGuidance::new(RouteParams::default()), maps);
+    let law = RouteGuidance::with_map(RouteParams::default(), SharedMap::new(MapParams::default()));
     Agent::new(&config, law, Unguarded, Postcard)
 }
 
@@ -47,23 +45,10 @@ fn step(
 }
 
 #[test]
-fn without_sharing_the_law_inside_is_unchanged_and_sends_no_map() {
-    let config = AgentConfig::new(RobotId(1), 0.0, TICK);
-    let law = RouteGuidance::<CELLS, VISITS>::new(RouteParams::default());
-    let plain = Agent::<f32, _, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
-    let mut wrapped = sharer(1, None);
-    assert_eq!(digest(&wrapped), digest(&plain));
-    wrapped.assign_goal(Cell::new(50, 5));
-    let (_, said) = step(&mut wrapped, &|_| 1, Cell::new(5, 5), Instant::from_micros(0), &[]);
-    let messages = crate::wire::frames(&said).map(|frame| crate::wire::decode(frame).unwrap().message);
-    assert_eq!(messages.filter(|message| matches!(message, Message::Land(_))).count(), 0);
-}
-
-#[test]
 fn a_map_patch_follows_each_beacon_and_is_stored_by_receivers() {
-    let (mut one, mut two) = (sharer(1, Some(MapParams::default())), sharer(2, Some(MapParams::default())));
-    one.assign_goal(Cell::new(50, 5));
-    two.assign_goal(Cell::new(50, 5));
+    let (mut one, mut two) = (sharer(1), sharer(2));
+    one.order(GridOrder::Goal(Cell::new(50, 5)));
+    two.order(GridOrder::Goal(Cell::new(50, 5)));
     let mut now = Instant::from_micros(0);
     let mut said = Vec::<u8, OUTBOX>::new();
     for _ in 0..6 {
@@ -74,7 +59,7 @@ fn a_map_patch_follows_each_beacon_and_is_stored_by_receivers() {
     let messages = crate::wire::frames(&said).map(|frame| crate::wire::decode(frame).unwrap().message);
     let kinds: std::vec::Vec<bool> = messages.map(|message| matches!(message, Message::Land(_))).collect();
     assert_eq!(kinds, [false, true]);
-    let known = two.guidance().land().unwrap().get(tile_of(Cell::new(5, 5)));
+    let known = two.law().map().inside().get(tile_of(Cell::new(5, 5)));
     assert_eq!(known.ticks_16(), Some(64));
 }
 
@@ -82,8 +67,8 @@ fn a_map_patch_follows_each_beacon_and_is_stored_by_receivers() {
 fn moves_among_lies(liar: &dyn Fn(Cell) -> [LandPatch; 3]) -> Option<u32> {
     let land = |cell: Cell| if cell.x == 20 && (-6..7).contains(&cell.y) { BLOCKED } else { 2 };
     let goal = Cell::new(40, 0);
-    let mut robot = sharer(1, Some(MapParams::default()));
-    robot.assign_goal(goal);
+    let mut robot = sharer(1);
+    robot.order(GridOrder::Goal(goal));
     let (mut cell, mut now) = (Cell::new(0, 0), Instant::from_micros(0));
     let mut sequence = 0;
     for moves in 0..1000 {

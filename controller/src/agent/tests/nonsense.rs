@@ -187,13 +187,13 @@ fn template() -> impl Strategy<Value = Template<TEMPLATE>> {
 
 fn survives<G>(law: G, goal: Option<Cell>, steps: &[Step]) -> Result<(), TestCaseError>
 where
-    G: for<'a> Guidance<f32, Input<'a> = OnGrid<'a>, Destination = ToCells, Workspace = GridWorkspace<CELLS>>,
+    G: for<'a> Law<f32, Surroundings<'a> = OnGrid<'a>, Protocol = Grid, Workspace = GridWorkspace<CELLS>>,
 {
     let config = config(OWN.0);
     let mut agent = Agent::<f32, G, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
     let mut ws = workspace();
     if let Some(goal) = goal {
-        agent.assign_goal(goal);
+        agent.order(GridOrder::Goal(goal));
     }
     for step in steps {
         let inbox = step.inbox();

@@ -15,7 +15,7 @@ use crate::wire::WaypointAssignment;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-type Any = Agent<f32, AnyGuidance<f32, CELLS, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, 16>>;
+type Any = Agent<f32, AnyLaw<f32, CELLS, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, 16>>;
 
 fn number() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![
@@ -115,31 +115,30 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     })
 }
 
-fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISITS, TEMPLATE> {
+fn guidance(which: u8, speed: f32, length: f32) -> AnyLaw<f32, CELLS, VISITS, TEMPLATE> {
     match which % 6 {
-        0 => AnyGuidance::Waypoint(WaypointGuidance::new(speed, length)),
-        1 if which < 64 => AnyGuidance::Lattice(LatticeGuidance::following(
-            LatticeParams::new(length),
-            ReferenceMotion::Resting(length),
-        )),
-        1 => AnyGuidance::Lattice(LatticeGuidance::new(LatticeParams::new(length), which < 128)),
+        0 => AnyLaw::Waypoint(WaypointGuidance::new(speed, length)),
+        1 if which < 64 => {
+            AnyLaw::Lattice(LatticeGuidance::following(LatticeParams::new(length), ReferenceMotion::Resting(length)))
+        }
+        1 => AnyLaw::Lattice(LatticeGuidance::new(LatticeParams::new(length), which < 128)),
         2 => {
             let params = GoalParams::new(length, speed);
-            AnyGuidance::GoalFlock(GoalFlockGuidance::new(params, length, 5))
+            AnyLaw::GoalFlock(GoalFlockGuidance::new(params, length, 5))
         }
         3 => {
             let params = BoidsParams::new(length, 3.0 * length, 0.05, 0.02);
-            AnyGuidance::Boids(BoidsGuidance::new(params, speed))
+            AnyLaw::Boids(BoidsGuidance::new(params, speed))
         }
         4 => {
             let inside = RouteGuidance::new(RouteParams::default());
-            AnyGuidance::Route(large(CellFollower::new(inside, speed)))
+            AnyLaw::Route(large(CellFollower::new(inside, speed)))
         }
         _ => {
             let template = Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
             let (route, keeping) = (RouteParams::default(), FormationParams::default());
             let inside = FormationGuidance::new(route, keeping, template.unwrap());
-            AnyGuidance::Formation(large(FormationInPlane::new(inside, speed)))
+            AnyLaw::Formation(large(FormationInPlane::new(inside, speed)))
         }
     }
 }

@@ -15,43 +15,43 @@ struct Teller {
     heard: Vec<(u32, Told)>,
 }
 
-impl Teamwork for Teller {}
+struct Tells;
 
-impl Guidance<f32> for Teller {
-    type Input<'a> = InPlane<'a, f32>;
-    type Destination = Roams;
-    type Workspace = ();
+impl Protocol for Tells {
     type Payload = Told;
+    type Message = Never;
+    type Order = Never;
+}
+
+impl Law<f32> for Teller {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = Tells;
+    type Workspace = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32, Told>,
+        view: &View<'_, f32, Told>,
         _: &InPlane<'_, f32>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        self.heard = input.neighbors.iter().map(|other| (other.id.0, other.payload)).collect();
+        self.heard = view.neighbors.iter().map(|other| (other.id.0, other.payload)).collect();
         Ok(Decision::default())
     }
 
-    fn has_own_goal(&self) -> bool {
-        true
-    }
-
-    fn payload(&mut self, _: Instant) -> Told {
+    fn payload(&mut self, _: &mut Radio<'_, Never>) -> Told {
         self.own
     }
 }
 
 const OWN: Told = (7, -300, 1.5);
 
-fn teller<G: Guidance<f32>, W: Wire>(id: u32, law: G, wire: W) -> Agent<f32, G, 4, Unguarded, W> {
+fn teller<G: Law<f32>, W: Wire>(id: u32, law: G, wire: W) -> Agent<f32, G, 4, Unguarded, W> {
     Agent::new(&config(id), law, Unguarded, wire)
 }
 
 fn step<G, W: Wire>(agent: &mut Agent<f32, G, 4, Unguarded, W>, n: u32, inbox: &[u8]) -> Outputs<f32>
 where
-    G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
+    G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()>,
 {
     let surroundings = InPlane { max_speed_mps: 1.0, obstacles: &[] };
     agent.step(&Inputs { state: KinematicState::default(), surroundings, inbox }, tick(n), &mut ())
@@ -77,21 +77,15 @@ fn a_payload_follows_each_beacon_and_is_stored_with_the_neighbour() {
     assert_eq!(kinds, [false, true]);
     let _ = step(&mut two, 0, &out.outbox);
     assert_eq!(two.neighbors().iter().map(|other| other.payload).collect::<Vec<_>>(), [OWN]);
-    assert_eq!(two.guidance().heard, [(1, OWN)]);
+    assert_eq!(two.law().heard, [(1, OWN)]);
 }
 
 #[test]
 fn a_wrapper_sends_the_payload_of_the_law_inside() {
     let mut plain = teller(1, law(OWN), Postcard);
     let said = step(&mut plain, 0, &[]).outbox;
-    let mut commanded = teller(1, Commanded::new(law(OWN), 1.0, 0.1), Postcard);
-    assert_eq!(step(&mut commanded, 0, &[]).outbox, said);
-    let mut told = teller(1, AnyWorld(law(OWN)), Postcard);
-    let plane = AnySurroundings::InPlane(InPlane { max_speed_mps: 1.0, obstacles: &[] });
-    let inputs = Inputs { state: KinematicState::default(), surroundings: plane, inbox: &[] };
-    assert_eq!(told.step(&inputs, tick(0), &mut ()).outbox, said);
-    let mut shares = teller(1, MapSharing::<_, 0>::new(law(OWN), None), Postcard);
-    assert_eq!(step(&mut shares, 0, &[]).outbox, said);
+    let mut guided = teller(1, Guided::new(law(OWN), 1.0, 0.1), Postcard);
+    assert_eq!(step(&mut guided, 0, &[]).outbox, said);
 }
 
 #[test]
@@ -128,9 +122,9 @@ fn with_a_key_a_forged_payload_is_refused() {
     let mut one = teller(1, law(OWN), wire(b"swarm"));
     let (mut two, mut forger) = (teller(2, law(OWN), wire(b"swarm")), teller(1, law((1, 1, 1.0)), wire(b"guessed")));
     let _ = step(&mut two, 0, &step(&mut one, 0, &[]).outbox);
-    assert_eq!(two.guidance().heard, [(1, OWN)]);
+    assert_eq!(two.law().heard, [(1, OWN)]);
     let out = step(&mut two, 1, &step(&mut forger, 1, &[]).outbox);
-    assert_eq!((out.refused.forged, &two.guidance().heard[..]), (2, &[(1, OWN)][..]));
+    assert_eq!((out.refused.forged, &two.law().heard[..]), (2, &[(1, OWN)][..]));
 }
 
 #[test]

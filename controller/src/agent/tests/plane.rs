@@ -44,18 +44,28 @@ pub(super) fn length([x, y]: [f64; 2]) -> f64 {
 }
 
 /// A body that follows commands at once.
-pub(super) struct Robot<S: Scalar, G: Guidance<S>, A> {
-    pub(super) agent: Agent<S, G, 8, A>,
+pub(super) struct Robot<S: Scalar, G: Law<S>, A, P = RadioOnly> {
+    pub(super) agent: Agent<S, G, 8, A, Postcard, P>,
     pub(super) at_m: [f64; 2],
     pub(super) velocity_mps: [f64; 2],
 }
 
 impl<S: Scalar, G, A: Safety<S>> Robot<S, G, A>
 where
-    G: for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()>,
+    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()>,
 {
-    pub(super) fn new(config: &AgentConfig<S>, guidance: G, safety: A, at_m: [f64; 2]) -> Self {
-        Self { agent: Agent::new(config, guidance, safety, Postcard), at_m, velocity_mps: [0.0; 2] }
+    pub(super) fn new(config: &AgentConfig<S>, law: G, safety: A, at_m: [f64; 2]) -> Self {
+        Self::seeing(config, law, safety, at_m, RadioOnly)
+    }
+}
+
+impl<S: Scalar, G, A: Safety<S>, P: Perception<S>> Robot<S, G, A, P>
+where
+    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()>,
+{
+    pub(super) fn seeing(config: &AgentConfig<S>, law: G, safety: A, at_m: [f64; 2], perception: P) -> Self {
+        let agent = Agent::with_perception(config, law, safety, Postcard, perception);
+        Self { agent, at_m, velocity_mps: [0.0; 2] }
     }
 
     /// The speed limit is 1 m/s.
@@ -94,30 +104,22 @@ struct Onlooker {
     is_broken: bool,
 }
 
-impl Teamwork for Onlooker {}
-
-impl Guidance<f32> for Onlooker {
-    type Input<'a> = InPlane<'a, f32>;
-    type Destination = Roams;
+impl Law<f32> for Onlooker {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = ();
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32>,
+        view: &View<'_, f32>,
         _: &InPlane<'_, f32>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        self.seen = input.nearby.to_vec();
+        self.seen = view.nearby.to_vec();
         if self.is_broken {
             return Err(BadInput);
         }
         Ok(Decision::default())
-    }
-
-    fn has_own_goal(&self) -> bool {
-        true
     }
 }
 
@@ -153,7 +155,7 @@ fn a_robot_without_a_waypoint_is_idle_and_sends_its_position() {
 #[test]
 fn a_robot_moves_straight_to_its_waypoint_and_stops_there() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
-    assert!(robot.agent.assign_waypoint(0, &place(3000, 4000)));
+    assert!(robot.agent.order(WaypointOrder::first(place(3000, 4000))));
     for n in 0..50 {
         let _ = robot.step(step_number(n), &[]);
         assert!((robot.speed() - 1.0).abs() < 1e-5, "step {n}");
@@ -173,7 +175,8 @@ fn a_robot_moves_straight_to_its_waypoint_and_stops_there() {
 #[test]
 fn a_robot_follows_a_moving_waypoint() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [1.0, 0.0]);
-    let _ = robot.agent.assign_waypoint(0, &Waypoint { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..place(1000, 0) });
+    let _ =
+        robot.agent.order(WaypointOrder::first(Waypoint { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..place(1000, 0) }));
     for n in 0..100 {
         let _ = robot.step(step_number(n), &[]);
         let age_s = f64::from(n + 1) * 0.1;
@@ -187,7 +190,7 @@ fn a_robot_follows_a_moving_waypoint() {
 #[test]
 fn beacons_carry_the_next_velocity() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.assign_waypoint(0, &place(-6000, 8000));
+    let _ = robot.agent.order(WaypointOrder::first(place(-6000, 8000)));
     let beacon = said(&robot.step(step_number(0), &[]));
     assert_eq!(beacon.velocity_mmps, [-600, 800, 0]);
 }
@@ -196,7 +199,7 @@ fn beacons_carry_the_next_velocity() {
 fn a_body_with_a_lag_sends_the_velocity_that_it_will_have() {
     for lag_s in [0.001, 0.1, 0.4, 2.0_f32] {
         let mut robot = Robot::new(&AgentConfig { lag_s, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
-        let _ = robot.agent.assign_waypoint(0, &place(-60_000, 80_000));
+        let _ = robot.agent.order(WaypointOrder::first(place(-60_000, 80_000)));
         let own = [0.3, 0.25];
         robot.velocity_mps = own;
         let beacon = said(&robot.step(step_number(0), &[]));
@@ -232,9 +235,9 @@ fn evades(mode: Mode) -> bool {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), own);
     let mut inbox = inbox;
     match mode {
-        Mode::Arrived => drop(robot.agent.assign_waypoint(0, &place(0, 0))),
+        Mode::Arrived => drop(robot.agent.order(WaypointOrder::first(place(0, 0)))),
         Mode::Hold => {
-            let _ = robot.agent.assign_waypoint(0, &place(0, 9000));
+            let _ = robot.agent.order(WaypointOrder::first(place(0, 9000)));
             inbox = bytes(2, 0, 0, &[coming, stop(2, 1, 0, RequestKind::Stop)]);
         }
         _ => {}
@@ -256,7 +259,7 @@ fn a_neighbour_that_does_not_give_way_gets_the_whole_correction() {
         let mut robot = Robot::new(&in_plane(1), Onlooker::default(), orca(), [0.0; 2]);
         let inbox = bytes(2, 0, 0, &[body_at([900, 100], [-600, 0], mode)]);
         let _ = robot.step(step_number(0), &inbox);
-        let gives_way = robot.agent.guidance().seen[0].gives_way;
+        let gives_way = robot.agent.law().seen[0].gives_way;
         assert_eq!(gives_way, mode == Mode::Cruise);
         robot.speed()
     };
@@ -275,7 +278,7 @@ fn neighbours_are_extrapolated_by_the_latency() {
         let mut robot = Robot::new(&config, Onlooker::default(), orca(), [0.0; 2]);
         let inbox = bytes(2, 0, 0, &[body_at([5000, 0], [-1000, 0], Mode::Cruise)]);
         let _ = robot.step(step_number(0), &inbox);
-        let seen = &robot.agent.guidance().seen;
+        let seen = &robot.agent.law().seen;
         assert!((seen[0].offset_m.x - x_m).abs() < 1e-5, "{seen:?}");
     }
 }
@@ -288,7 +291,7 @@ fn a_silent_neighbour_is_extrapolated_then_grows_then_expires() {
     for n in 0..32 {
         let inbox = if n == 0 { &inbox[..] } else { &[] };
         let _ = robot.step(step_number(n), inbox);
-        sights.push(robot.agent.guidance().seen.first().copied());
+        sights.push(robot.agent.law().seen.first().copied());
     }
     // Stale after 4 steps, expired after 30; the ball grows by 0.05 m per step, at most by 0.3 m.
     for (n, x_m, radius_m, is_fresh) in [
@@ -311,8 +314,8 @@ fn a_silent_neighbour_is_extrapolated_then_grows_then_expires() {
 fn swap<S: Scalar>() -> Vec<[[f64; 2]; 2]> {
     let mut one = Robot::new(&one_step_late(1), waypoint::<S>(), orca(), [-2.0, 0.0]);
     let mut two = Robot::new(&one_step_late(2), waypoint::<S>(), orca(), [2.0, 0.0]);
-    let _ = one.agent.assign_waypoint(0, &place(2000, 0));
-    let _ = two.agent.assign_waypoint(0, &place(-2000, 0));
+    let _ = one.agent.order(WaypointOrder::first(place(2000, 0)));
+    let _ = two.agent.order(WaypointOrder::first(place(-2000, 0)));
     let mut heard = [Vec::new(), Vec::new()];
     let mut track = Vec::new();
     for n in 0..80 {
@@ -346,29 +349,23 @@ fn robots_swap_places_alike_in_all_scalar_types() {
 #[test]
 fn a_desired_velocity_of_nan_is_ignored() {
     struct Mad;
-    impl Teamwork for Mad {}
-    impl Guidance<f32> for Mad {
-        type Input<'a> = InPlane<'a, f32>;
-        type Destination = Roams;
+    impl Law<f32> for Mad {
+        type Surroundings<'a> = InPlane<'a, f32>;
+        type Protocol = ();
         type Workspace = ();
-        type Payload = ();
         fn decide(
             &mut self,
-            _: &GuidanceInput<'_, f32>,
+            _: &View<'_, f32>,
             _: &InPlane<'_, f32>,
-            _: &mut Rng,
-            (): &mut (),
+            _: Tools<'_, f32, Self>,
         ) -> Result<Decision<f32>, BadInput> {
             Ok(Decision {
                 action: Action::Velocity {
                     wish_mps: Vec2::new(f32::NAN, 1.0).extend(0.0),
                     way_m: Some(Vec3::new(f32::NAN, 1.0, 0.0)),
                 },
-                ..Decision::default()
+                status: Status::default(),
             })
-        }
-        fn has_own_goal(&self) -> bool {
-            true
         }
     }
     let mut robot = Robot::new(&in_plane(1), Mad, orca(), [0.0; 2]);
@@ -402,9 +399,9 @@ fn a_robot_without_a_speed_is_in_fault_and_stands() {
     use crate::flock::{boids::BoidsParams, goal::GoalParams, lattice::LatticeParams};
     fn check<G>(mut law: G)
     where
-        G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
+        G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()>,
     {
-        let _ = law.assign_waypoint(0, &place(1000, 0));
+        let _ = OrderOf::<G, f32>::waypoint(0, place(1000, 0)).map(|order| law.order(order));
         let config = one_step_late(1);
         let mut agent = Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law, orca(), Postcard);
         let inputs = Inputs {
@@ -423,7 +420,7 @@ fn a_robot_without_a_speed_is_in_fault_and_stands() {
 
 #[test]
 fn the_input_of_another_law_is_a_fault() {
-    type Any = AnyGuidance<f32, CELLS, VISITS, TEMPLATE>;
+    type Any = AnyLaw<f32, CELLS, VISITS, TEMPLATE>;
     let route = || RouteGuidance::new(RouteParams::default());
     let plane = InPlane { max_speed_mps: 1.0, obstacles: &[] };
     let grid = inputs(&FLAT, Cell::new(5, 5), &[]).surroundings;

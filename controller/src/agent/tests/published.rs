@@ -14,7 +14,7 @@ fn agent(id: u32) -> Published {
     let params = PublishedParams { halt: 4 * UNIT as u16, resume: UNIT as u16, ..PublishedParams::default() };
     let mut agent =
         Published::new(&config(id), Law::new(RouteParams::default(), params, template), Unguarded, Postcard);
-    agent.assign_goal(Cell::new(100 - 3 * (id as i16 - 1), 50));
+    agent.order(GridOrder::Goal(Cell::new(100 - 3 * (id as i16 - 1), 50)));
     agent
 }
 

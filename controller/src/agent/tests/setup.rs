@@ -8,6 +8,7 @@ use crate::geom::{Position, Vec3};
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
+use crate::robot::RobotId;
 use crate::route::{Replan, RouteParams};
 use crate::scalar::{Q16, Scalar};
 use crate::shuffle::Sharpness;
@@ -110,13 +111,14 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
 }
 
 #[test]
-fn each_law_states_whether_it_goes_to_cells_and_by_velocities() {
-    let goes = guidances().map(|setup| {
-        let law: AnyGuidance<f32, CELLS, VISITS, TEMPLATE> = setup.guidance();
-        (law.goes_to_cells(), law.goes_by_velocity())
+fn each_law_takes_either_a_cell_or_a_waypoint() {
+    let takes = guidances().map(|setup| {
+        let mut law: AnyLaw<f32, CELLS, VISITS, TEMPLATE> = setup.law(());
+        let waypoint = WaypointOrder::first(Waypoint::fixed(crate::geom::Position::ORIGIN));
+        [AnyOrder::Grid(GridOrder::Goal(Cell::new(3, 4))), AnyOrder::Waypoint(waypoint)].map(|order| law.order(order))
     });
-    let (by_waypoints, on_grid, in_cells) = ((false, true), (true, false), (true, true));
-    assert_eq!(goes, [by_waypoints, by_waypoints, by_waypoints, by_waypoints, by_waypoints, on_grid, in_cells]);
+    let (waypoint, none, cell) = ([false, true], [false, false], [true, false]);
+    assert_eq!(takes, [waypoint, waypoint, waypoint, waypoint, none, cell, cell]);
 }
 
 #[test]

@@ -2,10 +2,9 @@
 
 use super::plane::{RADIUS_MM, Robot, STEP, body_at, in_plane, one_step_late, orca, place, step_number, waypoint};
 use super::*;
-use crate::agent::NeighborTracking;
 use crate::digest::digest;
 use crate::geom::{Position, Vec3};
-use crate::neighbor::{Sighting, TrackParams};
+use crate::neighbor::{Sighting, TrackParams, Tracker};
 use crate::scalar::cast;
 use crate::wire::{Header, encode};
 
@@ -22,12 +21,11 @@ fn params<S: Scalar>() -> TrackParams<S> {
     params.cast()
 }
 
-type Seer<S> = Robot<S, NeighborTracking<S, WaypointGuidance<S>>, OrcaSafety<S, 16>>;
+type Seer<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>, Tracker<S>>;
 
 fn seer<S: Scalar>(id: u32, at_m: [f64; 2], goal: Waypoint<S>) -> Seer<S> {
-    let law = NeighborTracking::new(waypoint(), Some(params()));
-    let mut robot = Robot::new(&in_plane(id), law, orca(), at_m);
-    robot.agent.assign_waypoint(0, &goal);
+    let mut robot = Robot::seeing(&in_plane(id), waypoint(), orca(), at_m, Tracker::new(params()));
+    robot.agent.order(WaypointOrder::first(goal.cast()));
     robot
 }
 
@@ -81,11 +79,9 @@ fn two_robots_that_detect_each_other_pass_without_radio() {
 }
 
 #[test]
-fn without_sensors_the_law_inside_is_unchanged() {
-    let plain = Robot::<f32, _, _>::new(&in_plane(1), waypoint(), orca(), [0.0; 2]);
-    let law = NeighborTracking::new(waypoint(), None);
-    let mut blind = Robot::<f32, _, _>::new(&in_plane(1), law, orca(), [0.0; 2]);
-    assert_eq!(digest(&blind.agent), digest(&plain.agent));
+fn without_a_tracker_detections_are_dropped() {
+    let mut blind = Robot::<f32, _, _>::new(&in_plane(1), waypoint(), orca(), [0.0; 2]);
+    let before = digest(&blind.agent);
     let state = KinematicState::default();
     let sighting = Sighting {
         offset_m: Vec3::new(1.0, 0.0, 0.0),
@@ -96,7 +92,7 @@ fn without_sensors_the_law_inside_is_unchanged() {
         velocity_mps: None,
     };
     assert_eq!(blind.agent.see(&[sighting], &state, step_number(0)).no_room, 1);
-    assert_eq!(digest(&blind.agent), digest(&plain.agent));
+    assert_eq!(digest(&blind.agent), before);
 }
 
 #[test]
@@ -108,8 +104,8 @@ fn a_silent_robot_in_sight_is_in_contact_and_otherwise_lost() {
         bytes.to_vec()
     };
     let run = |is_seen: bool| {
-        let law = NeighborTracking::new(waypoint(), Some(params()));
-        let mut robot: Seer<f32> = Robot::new(&one_step_late(1), law, orca(), [0.0; 2]);
+        let tracker = Tracker::new(params());
+        let mut robot: Seer<f32> = Robot::seeing(&one_step_late(1), waypoint(), orca(), [0.0; 2], tracker);
         let mut events = std::vec::Vec::new();
         for n in 0..60 {
             if is_seen {

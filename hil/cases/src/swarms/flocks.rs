@@ -3,7 +3,9 @@ use crate::medium::Faults;
 use crate::plane::{Scene, Solid, run};
 use crate::{Probe, Summary};
 use heapless::Vec;
-use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance, PushOutSafety, Unguarded, Waypoint};
+use staya_controller::agent::{
+    BoidsGuidance, GoalFlockGuidance, LatticeGuidance, PushOutSafety, Unguarded, Waypoint, WaypointOrder,
+};
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Gain, LatticeParams};
@@ -37,12 +39,10 @@ pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     };
     let mut movers = Vec::new();
     add_movers(&mut movers, &CROWD, |_| LatticeGuidance::new(params, true), || Unguarded);
-    let reference = Waypoint {
-        velocity_mps: Vec3::new(S::from_ratio(1, 4), S::ZERO, S::ZERO),
-        ..Waypoint::fixed(Position::from_mm([1000, 0, 0]))
-    };
+    let reference =
+        Waypoint { velocity_mps: Vec3::new(0.25, 0.0, 0.0), ..Waypoint::fixed(Position::from_mm([1000, 0, 0])) };
     for mover in &mut movers {
-        let _ = mover.agent.assign_waypoint(0, &reference);
+        mover.agent.order(WaypointOrder::first(reference));
     }
     run(&scene(&BALL, 400), &mut movers, &mut (), probe)
 }
@@ -60,7 +60,7 @@ pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     for mover in &mut movers {
         for (index, goal) in (0..).zip([[9000, 4000, 0], [9000, -4000, 0]]) {
             let waypoint = Waypoint::fixed(Position::from_mm(goal));
-            let _ = mover.agent.assign_waypoint(index, &waypoint);
+            mover.agent.order(WaypointOrder { index, waypoint });
         }
     }
     run(&scene(&[], 400), &mut movers, &mut (), probe)

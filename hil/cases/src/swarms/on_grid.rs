@@ -3,7 +3,7 @@ use crate::land::Land;
 use crate::medium::{Faults, INBOX};
 use crate::{Probe, Summary};
 use heapless::Vec;
-use staya_controller::agent::{AgentConfig, Unguarded};
+use staya_controller::agent::{AgentConfig, GridOrder, Unguarded};
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
@@ -40,7 +40,7 @@ fn add_travellers<S: Scalar>(walkers: &mut Vec<Walker<S, Route>, ROBOTS>) {
     for (index, (cell, goal)) in corners.into_iter().zip(corners.into_iter().rev()).enumerate() {
         let guidance = Route::new(RouteParams::default());
         let mut agent = GridAgent::new(&config(index), guidance, Unguarded, Postcard);
-        agent.assign_goal(goal);
+        agent.order(GridOrder::Goal(goal));
         let _ = walkers.push(Walker { agent, cell, free_at_ms: 0 });
     }
 }
@@ -82,7 +82,7 @@ fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -
     let mut walkers = Vec::new();
     add_members(&mut walkers, params, &Postcard, template);
     for (walker, place) in walkers.iter_mut().zip(PLACES) {
-        walker.agent.assign_goal(GOAL + place);
+        walker.agent.order(GridOrder::Goal(GOAL + place));
     }
     let scene = Scene { land: LAND, faults: Faults::default(), ticks: 300 };
     run(&scene, &mut walkers, Postcard, |_, _| {}, probe)

@@ -6,7 +6,8 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    AgentConfig, CellFollower, FlySafety, Guidance, OrcaSafety, PushOutSafety, Safety, Waypoint, WaypointGuidance,
+    AgentConfig, CellFollower, FlySafety, GridOrder, Law, OrcaSafety, PushOutSafety, Safety, Waypoint,
+    WaypointGuidance, WaypointOrder,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
@@ -38,7 +39,7 @@ fn inflation<S: Scalar>() -> StalenessInflation<S> {
 
 /// Fills the caller's vector because a small part has no memory for two.
 #[inline(never)]
-pub(super) fn add_movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
+pub(super) fn add_movers<S: Scalar, G: Law<S>, A: Safety<S>, const R: usize>(
     movers: &mut Vec<Mover<S, G, A>, R>,
     starts: &[[i32; 3]; R],
     guidance: impl Fn(usize) -> G,
@@ -71,9 +72,7 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
     let mut movers = Vec::new();
     add_movers(&mut movers, starts, |_| waypoint(), safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
-        let waypoint = Waypoint::fixed(Position::from_mm(*goal));
-        // A law has at least waypoint 0.
-        let _ = mover.agent.assign_waypoint(0, &waypoint);
+        mover.agent.order(WaypointOrder::first(Waypoint::fixed(Position::from_mm(*goal))));
     }
     run(scene, &mut movers, &mut (), probe)
 }
@@ -135,7 +134,7 @@ pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let mut movers = Vec::new();
     add_movers(&mut movers, &starts, guidance, safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
-        mover.agent.assign_goal(goal);
+        mover.agent.order(GridOrder::Goal(goal));
     }
     let scene = Scene { land: Some(land), ticks: 700, ..scene(&[]) };
     run(&scene, &mut movers, &mut workspace(), probe)

@@ -16,7 +16,7 @@ mod program {
     #[cfg(not(part = "nrf51"))]
     use staya_cases::Case;
     use staya_cases::{Probe, Summary, WorstCase};
-    use staya_controller::agent::{Agent, Guidance, Inputs, OUTBOX, Outputs, Safety};
+    use staya_controller::agent::{Agent, Inputs, Law, OUTBOX, Outputs, Safety};
     use staya_controller::grid::{Cell, Dir};
     use staya_controller::robot::{Mode, RobotId};
     #[cfg(all(part = "stm32f405", not(debug_assertions)))]
@@ -89,10 +89,10 @@ mod program {
     }
 
     impl<S: Scalar> Probe<S> for Meter {
-        fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+        fn step<G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
             &mut self,
             agent: &mut Agent<S, G, N, A, W>,
-            inputs: &Inputs<'_, S, G::Input<'_>>,
+            inputs: &Inputs<'_, S, G::Surroundings<'_>>,
             now: Instant,
             workspace: &mut G::Workspace,
         ) -> Outputs<S> {
@@ -102,9 +102,9 @@ mod program {
 
     /// Not inlined, so that the caller's frame does not count.
     #[inline(never)]
-    fn step<S: Scalar, G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+    fn step<S: Scalar, G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
         agent: &mut Agent<S, G, N, A, W>,
-        inputs: &Inputs<'_, S, G::Input<'_>>,
+        inputs: &Inputs<'_, S, G::Surroundings<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
     ) -> Outputs<S> {

@@ -11,7 +11,7 @@ mod program {
     use heapless::Vec;
     use serde::Serialize;
     use staya_cases::{Probe, worst_orca};
-    use staya_controller::agent::{Agent, Guidance, Inputs, Outputs, Safety};
+    use staya_controller::agent::{Agent, Inputs, Law, Outputs, Safety};
     use staya_controller::geom::Vec2;
     use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VoxelTable2k};
     use staya_controller::rand::Rng;
@@ -55,10 +55,10 @@ mod program {
     }
 
     impl<S: Scalar> Probe<S> for Meter {
-        fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+        fn step<G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
             &mut self,
             agent: &mut Agent<S, G, N, A, W>,
-            inputs: &Inputs<'_, S, G::Input<'_>>,
+            inputs: &Inputs<'_, S, G::Surroundings<'_>>,
             now: Instant,
             workspace: &mut G::Workspace,
         ) -> Outputs<S> {

@@ -15,7 +15,7 @@ mod program {
     mod agents {
         use core::hint::black_box;
         use staya_cases::{Case, Opaque, Probe};
-        use staya_controller::agent::{Agent, Commanded, Guidance, Inputs, Outputs, Parameter, Safety, Wish};
+        use staya_controller::agent::{Agent, Guided, Inputs, Law, Outputs, Parameter, Safety, Wish};
         use staya_controller::scalar::{Fast32, Q16, Scalar};
         use staya_controller::time::Instant;
         use staya_controller::wire::Wire;
@@ -23,18 +23,18 @@ mod program {
         struct Operator;
 
         impl<S: Scalar> Probe<S> for Operator {
-            fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
+            fn step<G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
                 &mut self,
                 agent: &mut Agent<S, G, N, A, W>,
-                inputs: &Inputs<'_, S, G::Input<'_>>,
+                inputs: &Inputs<'_, S, G::Surroundings<'_>>,
                 now: Instant,
                 workspace: &mut G::Workspace,
             ) -> Outputs<S> {
-                let mut commanded = black_box(None::<Agent<S, Commanded<S, G>, N, A, W>>);
-                if let Some(agent) = black_box(&mut commanded) {
+                let mut guided = black_box(None::<Agent<S, Guided<S, G>, N, A, W>>);
+                if let Some(agent) = black_box(&mut guided) {
                     tune(agent);
-                    black_box(agent.guidance_mut().command(black_box(Wish::Own)).is_ok());
-                    black_box(agent.guidance_mut().wish());
+                    black_box(agent.law_mut().command(black_box(Wish::Own)).is_ok());
+                    black_box(agent.law_mut().wish());
                     let (inputs, workspace) = (black_box(inputs), black_box(&mut *workspace));
                     let _ = black_box(agent.step(inputs, black_box(now), workspace));
                 }
@@ -44,7 +44,7 @@ mod program {
             }
         }
 
-        fn tune<S: Scalar, G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(agent: &mut Agent<S, G, N, A, W>) {
+        fn tune<S: Scalar, G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(agent: &mut Agent<S, G, N, A, W>) {
             let parameter = black_box(Parameter::Radius);
             black_box(black_box(&mut *agent).set_parameter(parameter, black_box(1.0)));
             black_box(black_box(&*agent).parameter(parameter));

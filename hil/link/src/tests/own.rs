@@ -7,11 +7,10 @@ use crate::session::{About, Session};
 use crate::surroundings::PackedSurroundings;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Command, Decision, Guidance, GuidanceInput, InPlane, KinematicState, Roams, Setup, Task,
-    Teamwork, Waypoint,
+    Action, BadInput, Command, Decision, InPlane, KinematicState, Law, Never, Protocol, Setup, Status, Task, Tools,
+    View, Waypoint,
 };
 use staya_controller::geom::{Position, Vec3};
-use staya_controller::rand::Rng;
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Instant;
 use std::vec::Vec;
@@ -22,29 +21,29 @@ struct East {
     gain_mmps: u16,
 }
 
-impl Teamwork for East {}
+enum Bytes {}
 
-impl<S: Scalar> Guidance<S> for East {
-    type Input<'a> = InPlane<'a, S>;
-    type Destination = Roams;
-    type Workspace = ();
+impl Protocol for Bytes {
     type Payload = u8;
+    type Message = Never;
+    type Order = Never;
+}
+
+impl<S: Scalar> Law<S> for East {
+    type Surroundings<'a> = InPlane<'a, S>;
+    type Protocol = Bytes;
+    type Workspace = ();
 
     fn decide(
         &mut self,
-        _: &GuidanceInput<'_, S, u8>,
+        _: &View<'_, S, u8>,
         _: &InPlane<'_, S>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
         self.mmps += self.gain_mmps;
         let x = S::from_f32(f32::from(self.mmps) / 1000.0).unwrap_or(S::ZERO);
         let wish_mps = Vec3 { x, ..Vec3::ZERO };
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
-    }
-
-    fn has_own_goal(&self) -> bool {
-        true
+        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
     }
 }
 

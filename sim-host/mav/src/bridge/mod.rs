@@ -3,7 +3,7 @@
 //!
 //! [`Swarm`] runs a scenario in real time; [`Vehicle`] is one robot's side of the protocol, without
 //! sockets or a clock. A command becomes a goal of the robot's controller
-//! ([`Commanded`](staya_controller::agent::Commanded)), so the safety layer still applies.
+//! ([`Guided`](staya_controller::agent::Guided)), so the safety layer still applies.
 
 mod budget;
 mod commands;

@@ -1,8 +1,8 @@
 //! The controller of one vehicle: telemetry and the scenario's map in, a velocity out.
 
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyGuidance, AnySafety, Command, Commanded, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS,
-    Outputs, Parameter, TEMPLATE, VISITS, Wait, Wish,
+    Agent, AgentConfig, AnyLaw, AnySafety, Command, GridWorkspace, Guided, HALF_PLANES, LEARNED, NEIGHBORS, Outputs,
+    Parameter, TEMPLATE, VISITS, Wait, Wish,
 };
 use staya_controller::agent::{GuidanceKind, SafetyKind, SafetySetup};
 use staya_controller::geom::{Position, Vec3};
@@ -25,8 +25,8 @@ pub struct Body {
     pub error_m: f64,
 }
 
-type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
-type ControllerAgent<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+type OperatedLaw = Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
+type ControllerAgent<W> = Agent<f32, OperatedLaw, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// The agent of one vehicle with its map and senses.
 pub struct Controller<W> {
@@ -56,9 +56,8 @@ impl<W: Wire> Controller<W> {
             ..ground.config(index, tick)
         };
         // No operator sends goals here, so speed and tolerance are unused.
-        let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
-        let mut agent =
-            Box::new(Agent::new(&config, guidance, with_room(scenario.safety(index), error_m).safety(), wire));
+        let law = Guided::new(scenario.guidance(index).law(()), 0.0, 0.0);
+        let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).safety(), wire));
         // A law that takes no task refuses it; the scenario was validated for that.
         let _ = agent.assign(&ground.task(index, 0));
         let plane = scenario.plane.as_ref();
@@ -97,7 +96,7 @@ impl<W: Wire> Controller<W> {
 
     /// Robot that this one follows; 0 for none.
     #[must_use]
-    pub const fn leader(&self) -> RobotId {
+    pub fn leader(&self) -> RobotId {
         self.agent.leader()
     }
 
@@ -141,8 +140,8 @@ impl<W: Wire> Controller<W> {
         let mut inputs = self.ground.sense_at(self.index, position_m, velocity_mps, &mut self.senses);
         inputs.inbox = inbox;
         let wish = if steers { Wish::Own } else { Wish::Off };
-        if *self.agent.guidance().wish() != wish {
-            let _ = self.agent.guidance_mut().command(wish);
+        if *self.agent.law().wish() != wish {
+            let _ = self.agent.law_mut().command(wish);
         }
         let [least, greatest] = Parameter::Radius.range();
         let radius_m = (self.radius_m + body.error_m) as f32;

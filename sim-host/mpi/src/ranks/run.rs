@@ -6,7 +6,7 @@ use super::ground::Part as Ground;
 use super::outcome::{Part, Row, Sums, nothing};
 use super::region::Region;
 use super::wire::Wire;
-use staya_controller::agent::{Guidance, Safety, Wait};
+use staya_controller::agent::{Law, Safety, Wait};
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::wire::Ring;
@@ -133,7 +133,7 @@ fn go(
     }
 }
 
-pub(super) struct Rank<'a, W, G: Guidance<f32>, A> {
+pub(super) struct Rank<'a, W, G: Law<f32>, A> {
     pub(super) scenario: &'a Scenario,
     pub(super) sharing: &'a Sharing,
     pub(super) engine: Engine<W, G, A>,

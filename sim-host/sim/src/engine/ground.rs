@@ -9,7 +9,7 @@ use crate::world::Refusal;
 use crate::world::plane::{Clearance, Disc, Solid};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, Command, Guidance, Task, WAYPOINTS};
+use staya_controller::agent::{AgentConfig, AnyInputs, Command, Law, Task, WAYPOINTS};
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Sighting;
 use staya_controller::time::Duration;
@@ -184,10 +184,10 @@ pub trait Ground: Send + Sync {
     }
 }
 
-/// A guidance law that accepts the sensor data of every world and can change threads.
-pub trait HostLaw: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}
+/// A law that can change threads and whose scratch memory displays can show.
+pub trait HostLaw: Law<f32, Workspace: Scratchpad> + Send {}
 
-impl<G> HostLaw for G where G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}
+impl<L: Law<f32, Workspace: Scratchpad> + Send> HostLaw for L {}
 
 /// State of a body as 64-bit words.
 pub type StateWords = heapless::Vec<u64, 8>;

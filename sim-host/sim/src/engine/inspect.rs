@@ -3,7 +3,7 @@
 use super::simulate::SafetyOf;
 use super::witness::Asked;
 use super::{Engine, Ground, HostLaw, Tick};
-use staya_controller::agent::{AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, Guidance, Parameter};
+use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Guided, Inputs, Law, Parameter};
 use staya_controller::cost::TICK;
 use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
@@ -116,7 +116,7 @@ impl<const CELLS: usize> Scratchpad for GridWorkspace<CELLS> {
     }
 }
 
-impl<W, G> Engine<W, Commanded<f32, G>, SafetyOf>
+impl<W, G> Engine<W, Guided<f32, G>, SafetyOf>
 where
     W: Ground,
     G: HostLaw + Clone,
@@ -133,11 +133,15 @@ where
         let moment = Tick { tick: self.tick, ground: &self.ground, radio: &self.radio };
         let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
         let now = computer.now(self.tick, self.tick_us);
-        let mut workspace = <Commanded<f32, G> as Guidance<f32>>::Workspace::default();
+        let mut workspace = <Guided<f32, G> as Law<f32>>::Workspace::default();
         let mut seen = Vec::new();
         self.ground.sightings(index, self.tick, &mut seen);
         let _ = agent.see(&seen, &inputs.state, now);
-        let out = agent.step(&inputs, now, &mut workspace);
+        let Ok(surroundings) = inputs.surroundings.try_into() else {
+            return Inspection::default();
+        };
+        let own = Inputs { state: inputs.state, surroundings, inbox: inputs.inbox };
+        let out = agent.step(&own, now, &mut workspace);
         let own = inputs.state.position;
         let own_m = self.ground.motion(index, self.tick).position_m;
         let window = match &inputs.surroundings {

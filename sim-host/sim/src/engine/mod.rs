@@ -40,7 +40,7 @@ pub use operator::{Observation, Operated, operated};
 pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own, simulate_own_with};
 pub use plane::{PlaneGround, Sensor};
 #[doc(hidden)]
-pub use simulate::{GuidanceOf, SafetyOf, agents};
+pub use simulate::{LawOf, SafetyOf, agents};
 pub use simulate::{Moment, Outcome, StartError, WIDE, Watch, simulate, simulate_from, simulate_with};
 pub use state::{Saves, State, StateError};
 pub use status::Status;
@@ -58,11 +58,11 @@ use intruder::Intruder;
 use key_server::KeyServer;
 use rayon::prelude::*;
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, Guidance, Inputs, NEIGHBORS, Outputs, Safety, Setup,
+    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, Law, NEIGHBORS, Outputs, Safety, Setup,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::Torus;
-use staya_controller::neighbor::PlausibilityLimits;
+use staya_controller::neighbor::{PlausibilityLimits, TrackParams, Tracker};
 use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Ring};
@@ -73,11 +73,14 @@ use transmitters::ring;
 /// Smallest number of robots per parallel task; smaller tasks cost more to schedule than to run.
 const BATCH: usize = 64;
 
+/// An agent of this process; it has a tracker if the scenario's robots have sensors.
+pub type HostAgent<L, A> = Agent<f32, L, NEIGHBORS, A, HostWire, Option<Box<Tracker<f32>>>>;
+
 /// A robot's computer.
 #[derive(Debug)]
-pub struct OnboardComputer<G: Guidance<f32>, A> {
+pub struct OnboardComputer<G: Law<f32>, A> {
     /// `None`: the controller is external.
-    agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
+    agent: Option<HostAgent<G, A>>,
     /// Frames of the last step, without spare capacity.
     outbox: Vec<u8>,
     events: Vec<Event>,
@@ -90,7 +93,7 @@ pub struct OnboardComputer<G: Guidance<f32>, A> {
     heard_bytes: u64,
 }
 
-impl<G: Guidance<f32>, A> OnboardComputer<G, A> {
+impl<G: Law<f32>, A> OnboardComputer<G, A> {
     const fn now(&self, tick: u32, tick_us: u32) -> Instant {
         Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
     }
@@ -103,7 +106,7 @@ struct Tick<'a, W> {
 }
 
 impl<W: Ground> Tick<'_, W> {
-    fn inputs<'b, G: Guidance<f32>, A>(
+    fn inputs<'b, G: Law<f32>, A>(
         &'b self,
         index: usize,
         computer: &OnboardComputer<G, A>,
@@ -136,7 +139,7 @@ type AgentFactory<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 /// A running scenario in world `W`, with guidance laws `G` and safety layers `A`.
 ///
 /// Fields are public for `staya-mpi`, which steps a part of a world in each process.
-pub struct Engine<W, G: Guidance<f32>, A> {
+pub struct Engine<W, G: Law<f32>, A> {
     seed: u64,
     format: Format,
     key: Option<Key>,
@@ -160,6 +163,7 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     #[doc(hidden)]
     pub ground: W,
     torus: Option<Torus<f32>>,
+    tracking: Option<TrackParams<f32>>,
     #[doc(hidden)]
     pub radio: Radio,
     #[doc(hidden)]
@@ -250,6 +254,7 @@ where
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
             ground,
             torus: scenario.torus_m().map(|sides_m| Torus { size_m: sides_m.map(|side_m| side_m as f32) }),
+            tracking: scenario.sensing.map(|sensing| sensing.tracking),
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],
             statuses: Vec::new(),
@@ -295,7 +300,7 @@ where
 
     fn start(&self, index: usize, boot: u8) -> OnboardComputer<G, A> {
         let number = self.number(index);
-        let (guidance, safety) = (self.factory)(number);
+        let (law, safety) = (self.factory)(number);
         let wire = match &self.master {
             None => radio::wire(self.format, self.key.as_ref(), boot),
             // The last key survives a restart in persistent memory.
@@ -305,7 +310,8 @@ where
                 radio::own_wire(master, self.config(index, boot).id, stored, boot)
             }
         };
-        let mut agent = Agent::new(&self.config(index, boot), guidance, safety, wire);
+        let tracker = self.tracking.map(|params| Box::new(Tracker::new(params)));
+        let mut agent = Agent::with_perception(&self.config(index, boot), law, safety, wire, tracker);
         if let Some(torus) = self.torus {
             agent.set_torus(torus);
         }
@@ -316,7 +322,7 @@ where
     }
 
     #[doc(hidden)]
-    pub fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>, boot: u8) -> OnboardComputer<G, A> {
+    pub fn computer(&self, agent: Option<HostAgent<G, A>>, boot: u8) -> OnboardComputer<G, A> {
         OnboardComputer {
             agent,
             outbox: Vec::new(),
@@ -443,7 +449,12 @@ where
                     if !seen.is_empty() {
                         let _ = agent.see(seen, &inputs.state, now);
                     }
-                    agent.step_into(&inputs, now, workspace, out);
+                    // A robot whose law needs other surroundings than its world has does nothing.
+                    let Ok(surroundings) = inputs.surroundings.try_into() else {
+                        return PacketCounts::default();
+                    };
+                    let own = Inputs { state: inputs.state, surroundings, inbox: inputs.inbox };
+                    agent.step_into(&own, now, workspace, out);
                     if is_mute {
                         out.outbox.clear();
                     }

@@ -8,7 +8,7 @@ use crate::scenario::{Intervention, Scenario};
 use crate::terrain::Terrain;
 use crate::world::plane::{Disc, Solid};
 use crate::world::{Misplaced, Refusal};
-use staya_controller::agent::{Commanded, Event, Guidance, Parameter, Wish};
+use staya_controller::agent::{Event, Guided, Law, Parameter, Wish};
 use staya_controller::auth::Master;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message, OperatorWire, Wire as _};
@@ -105,7 +105,7 @@ pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
     })
 }
 
-pub(super) fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Commanded<f32, G>, SafetyOf>) -> Box<dyn Operated>
+pub(super) fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Guided<f32, G>, SafetyOf>) -> Box<dyn Operated>
 where
     W: Ground + 'static,
     G: HostLaw + Clone + 'static,
@@ -121,8 +121,8 @@ where
     Box::new(OperatedEngine { engine, row, wire, own, number: key.map(|_| number), sequence: 0 })
 }
 
-struct OperatedEngine<W, G: Guidance<f32>> {
-    engine: Engine<W, Commanded<f32, G>, SafetyOf>,
+struct OperatedEngine<W, G: Law<f32>> {
+    engine: Engine<W, Guided<f32, G>, SafetyOf>,
     row: TickRow,
     wire: HostWire,
     /// Wire for robots that have keys of their own.
@@ -149,7 +149,7 @@ where
             status: self.engine.statuses[index],
             boot: computer.boot,
             is_up: self.engine.is_up(index),
-            wish: agent.map_or(Wish::Own, |agent| *agent.guidance().wish()),
+            wish: agent.map_or(Wish::Own, |agent| *agent.law().wish()),
             neighbors: agent.map_or(0, |agent| agent.neighbors().len()),
         }
     }
@@ -161,8 +161,13 @@ where
     fn command(&mut self, index: usize, wish: Wish<f32>) -> bool {
         let is_up = self.engine.is_up(index);
         let agent = self.engine.computers[index].agent.as_mut();
-        let agent = agent.filter(|_| is_up);
-        agent.is_some_and(|agent| agent.guidance_mut().command(wish).is_ok())
+        let Some(agent) = agent.filter(|_| is_up) else { return false };
+        let is_possible = match wish {
+            Wish::Own | Wish::Off | Wish::Hold => true,
+            Wish::Velocity { .. } | Wish::Waypoint { .. } => self.engine.ground.has_bodies(),
+            Wish::Cell(_) => agent.law().report().goal.is_some(),
+        };
+        is_possible && agent.law_mut().command(wish).is_ok()
     }
 
     fn tell(&mut self, index: usize, header: Header, message: &Message) {

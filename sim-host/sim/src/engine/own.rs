@@ -7,18 +7,18 @@ use super::witness::Witness;
 use super::{Engine, ExternalController, Moment, Outcome, PlaneGround, Watch};
 use crate::record::RobotRow;
 use crate::scenario::Scenario;
-use staya_controller::agent::{AnyWorld, Commanded, Guidance, InPlane, NeighborTracking};
+use staya_controller::agent::{Guided, InPlane, Law};
 use std::ops::ControlFlow;
 use thiserror::Error;
 
 /// A guidance law supplied by the caller. Its state is serialized in checkpoints.
 pub trait OwnLaw:
-    for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
+    for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
 {
 }
 
 impl<G> OwnLaw for G where
-    G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
+    G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
 {
 }
 
@@ -29,7 +29,7 @@ pub struct NotInPlane;
 
 /// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the guidance law of
 /// robot `i` in [`Scenario::robots`] at each of its starts. The scenario determines the bodies,
-/// safety layers, radio, faults and goals (given by [`Guidance::assign_waypoint`]).
+/// safety layers, radio, faults and goals (given by orders).
 ///
 /// # Errors
 /// [`NotInPlane`].
@@ -65,24 +65,19 @@ pub fn operated_own<G: OwnLaw>(
     Ok(boxed(scenario, engine(scenario, law)?))
 }
 
-type GuidanceOf<G> = Commanded<f32, NeighborTracking<f32, AnyWorld<G>>>;
-
 fn engine<G: OwnLaw>(
     scenario: &Scenario,
     law: impl Fn(usize) -> G + Send + Sync + 'static,
-) -> Result<Engine<PlaneGround, GuidanceOf<G>, SafetyOf>, NotInPlane> {
+) -> Result<Engine<PlaneGround, Guided<f32, G>, SafetyOf>, NotInPlane> {
     let setup = scenario.plane.as_ref().ok_or(NotInPlane)?;
     let robots = (0..scenario.robots.len()).map(|index| {
         let group = setup.group(index);
         (scenario.safety(index), [group.cruise_mps, group.tolerance_m].map(|x| x as f32))
     });
     let robots: Vec<_> = robots.collect();
-    let tracking = scenario.sensing.map(|sensing| sensing.tracking);
     let factory = move |index: usize| {
         let (safety, [speed_mps, tolerance_m]) = &robots[index];
-        let law = NeighborTracking::new(AnyWorld(law(index)), tracking);
-        let guidance = Commanded::new(law, *speed_mps, *tolerance_m);
-        (guidance, Witness::new(safety.safety()))
+        (Guided::new(law(index), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     };
     Ok(Engine::new(scenario, PlaneGround::new(scenario, setup), factory))
 }

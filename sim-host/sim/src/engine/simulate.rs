@@ -11,8 +11,7 @@ use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, NeighborTracking, Safety, TEMPLATE,
-    VISITS, WAYPOINTS, Wait,
+    AnyLaw, AnySafety, Guided, HALF_PLANES, LEARNED, MAP_TILES, Safety, SharedMap, TEMPLATE, VISITS, WAYPOINTS, Wait,
 };
 use staya_controller::robot::Mode;
 use std::collections::HashMap;
@@ -137,16 +136,15 @@ pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -
     })
 }
 
-/// Law of an agent: any built-in guidance law, which an operator may override.
-pub type GuidanceOf =
-    Commanded<f32, NeighborTracking<f32, MapSharing<AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>, MAP_TILES>>>;
+/// Law of an agent: any built-in law, which an operator may override.
+pub type LawOf = Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Option<Box<SharedMap<MAP_TILES>>>>>;
 #[doc(hidden)]
 pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
 /// Engines of both worlds; instantiated only here, to compile the generic code once.
 pub(super) enum AnyEngine {
-    Plane(Box<Engine<PlaneGround, GuidanceOf, SafetyOf>>),
-    Cells(Box<Engine<Grid, GuidanceOf, SafetyOf>>),
+    Plane(Box<Engine<PlaneGround, LawOf, SafetyOf>>),
+    Cells(Box<Engine<Grid, LawOf, SafetyOf>>),
 }
 
 impl AnyEngine {
@@ -162,7 +160,7 @@ impl AnyEngine {
 }
 
 /// Returns a function that creates the law and the safety layer of a robot.
-pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) + Send + Sync + 'static + use<> {
+pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (LawOf, SafetyOf) + Send + Sync + 'static + use<> {
     let kind = |index| {
         let group = scenario.plane.as_ref().map(|setup| setup.group(index));
         let [speed_mps, tolerance_m] =
@@ -184,13 +182,12 @@ pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) +
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, tracking) = (scenario.maps, scenario.sensing.map(|sensing| sensing.tracking));
+    let maps = scenario.maps;
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
-        let maps = maps.filter(|_| guidance.kind().is_on_grid());
-        let law = NeighborTracking::new(MapSharing::new(guidance.guidance(), maps), tracking);
-        (Commanded::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
+        (Guided::new(guidance.law(map), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     }
 }
 

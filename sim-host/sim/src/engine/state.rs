@@ -1,20 +1,20 @@
 //! Saves and restores single robots and whole runs, in postcard format. The bytes contain keys.
 //! Constant data is not saved: restore into an engine of the same scenario and program version.
 
-use super::{Engine, Ground, HostLaw, OnboardComputer, Status};
+use super::{Engine, Ground, HostAgent, HostLaw, OnboardComputer, Status};
 use crate::engine::attacker::AttackerState;
 use crate::engine::hash::StateHash;
 use crate::engine::intervene::Tuned;
 use crate::engine::intruder::IntruderState;
 use crate::engine::key_server::KeeperState;
 use crate::metrics::waits;
-use crate::radio::{End, HostWire, Weather};
+use crate::radio::{End, Weather};
 use crate::record::PacketCounts;
 use crate::scenario::Fault;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Agent, Command, NEIGHBORS, Safety};
+use staya_controller::agent::{Agent, Command, Safety};
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 use std::fmt;
@@ -196,7 +196,7 @@ where
             let what = format!("this is robot {}, not robot {}", id.0, own.0);
             return Err(StateError::new(0, what, SAME));
         }
-        let agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>> = from.read("an agent")?;
+        let agent: Option<HostAgent<G, A>> = from.read("an agent")?;
         let at = from.at();
         let robot: Robot<W::Body> = from.read("a robot")?;
         let unfit = |at: usize| move |what: &'static str| StateError::new(at, what, SAME);
@@ -349,7 +349,7 @@ where
     fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
         let _: RobotId = from.read("the number of a robot")?;
-        let _: Option<Agent<f32, G, NEIGHBORS, A, HostWire>> = from.read("an agent")?;
+        let _: Option<HostAgent<G, A>> = from.read("an agent")?;
         let robot: Robot<W::Body> = from.read("a robot")?;
         self.ground.note(number, robot.body);
         let _: End = from.read("an end of the radio")?;

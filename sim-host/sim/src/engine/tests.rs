@@ -3,8 +3,8 @@ use crate::record::RobotRow;
 use crate::scenario::Overrides;
 use proptest::prelude::*;
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Status as Standing, Surroundings as _,
-    Teamwork, ToCells, Unguarded,
+    Action, AnySurroundings, BadInput, Decision, Grid as OnCells, GridOrder, Report, Status as Standing,
+    Surroundings as _, Tools, Unguarded, View,
 };
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::rand::Rng;
@@ -36,45 +36,45 @@ struct Known {
     others: Vec<(u32, Cell)>,
 }
 
-struct Scout(Arc<Mutex<Vec<Known>>>);
+struct Scout(Notes, Option<Cell>);
 
-impl Teamwork for Scout {}
-
-impl Guidance<f32> for Scout {
-    type Input<'a> = AnySurroundings<'a, f32>;
-    type Destination = ToCells;
+impl Law<f32> for Scout {
+    type Surroundings<'a> = AnySurroundings<'a, f32>;
+    type Protocol = OnCells;
     type Workspace = ();
-    type Payload = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32>,
+        view: &View<'_, f32>,
         here: &AnySurroundings<'_, f32>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
         let grid = here.on_grid().ok_or(BadInput)?;
         let cell = grid.cell.cell;
         let window = grid.window.ok_or(BadInput)?;
-        let position = input.state.position;
+        let position = view.state.position;
         self.0.lock().expect("no test panics").push(Known {
-            id: input.id.0,
-            now_us: input.now.as_micros(),
+            id: view.id.0,
+            now_us: view.now.as_micros(),
             cell,
             position_mm: position.mm,
             window: (window.origin(), window.width(), window.height()),
-            others: input.neighbors.iter().map(|n| (n.id.0, n.cell)).collect(),
+            others: view.neighbors.iter().map(|n| (n.id.0, n.cell)).collect(),
         });
         Ok(Decision {
             action: Action::Moves([Dir::East].into_iter().collect()),
-            status: Standing { is_at_goal: cell == input.goal, ..Standing::default() },
-            target: input.goal,
-            ..Decision::default()
+            status: Standing { is_at_goal: cell == self.1.unwrap_or_default(), ..Standing::default() },
         })
     }
 
-    fn goes_to_cells(&self) -> bool {
+    fn order(&mut self, order: GridOrder) -> bool {
+        let GridOrder::Goal(goal) = order else { return false };
+        self.1 = Some(goal);
         true
+    }
+
+    fn report(&self) -> Report {
+        Report { goal: self.1, target: self.1, ..Report::default() }
     }
 }
 
@@ -84,7 +84,7 @@ fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Notes) {
     let known = Arc::new(Mutex::new(Vec::new()));
     let shared = known.clone();
     let ground = Grid::new(scenario).expect("free starts");
-    let engine = Engine::new(scenario, ground, move |_| (Scout(shared.clone()), Unguarded));
+    let engine = Engine::new(scenario, ground, move |_| (Scout(shared.clone(), None), Unguarded));
     (engine, known)
 }
 
@@ -355,8 +355,8 @@ mod waiting_scenes;
 /// A swarm may have a million robots, so the size of one is pinned; rare data is on the heap.
 #[test]
 fn a_robot_takes_no_more_memory_than_this() {
-    use super::simulate::{GuidanceOf, SafetyOf};
-    let computer = size_of::<OnboardComputer<GuidanceOf, SafetyOf>>();
-    let parts = [computer, size_of::<GuidanceOf>(), size_of::<SafetyOf>(), size_of::<HostWire>()];
+    use super::simulate::{LawOf, SafetyOf};
+    let computer = size_of::<OnboardComputer<LawOf, SafetyOf>>();
+    let parts = [computer, size_of::<LawOf>(), size_of::<SafetyOf>(), size_of::<HostWire>()];
     assert!(parts[0] <= 2600 && parts[1] <= 760 && parts[2] <= 100, "{parts:?}");
 }

@@ -91,9 +91,9 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
     let course = [(5_000, 0), (5_000, 5_000), (0, 5_000)];
     for (index, (x_mm, y_mm)) in (0..).zip(course) {
-        assert!(robot.agent.assign_waypoint(index, &place(x_mm, y_mm)));
+        assert!(robot.agent.order(WaypointOrder { index, waypoint: place(x_mm, y_mm) }));
     }
-    assert!(!robot.agent.assign_waypoint(4, &place(9_000, 9_000)), "there is no number 3 yet");
+    assert!(!robot.agent.order(WaypointOrder { index: 4, waypoint: place(9_000, 9_000) }), "there is no number 3 yet");
     let mut nearest_m = [f64::INFINITY; 3];
     let mut arrived = Vec::new();
     for n in 0..200 {
@@ -109,7 +109,7 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
     assert!(nearest_m[0] < 0.6 && nearest_m[1] < 0.6 && nearest_m[2] < 0.01, "{nearest_m:?}");
     // 15 m minus two corners, at 1 m/s without stops.
     assert!((130..150).contains(&arrived[0]) && arrived.len() > 40, "{:?}", arrived.first());
-    assert!(robot.agent.assign_waypoint(0, &place(0, 0)));
+    assert!(robot.agent.order(WaypointOrder::first(place(0, 0))));
     for n in 200..300 {
         let _ = robot.step(step_number(n), &[]);
     }
@@ -120,7 +120,7 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
 fn first_step(config: &AgentConfig<f32>, tolerance_m: f32, course: &[[i32; 2]], own_mps: f64) -> ([f64; 2], Mode) {
     let mut robot = Robot::new(config, WaypointGuidance::new(1.0, tolerance_m), orca(), [0.0; 2]);
     for (index, [x, y]) in (0..).zip(course) {
-        assert!(robot.agent.assign_waypoint(index, &place(*x, *y)));
+        assert!(robot.agent.order(WaypointOrder { index, waypoint: place(*x, *y) }));
     }
     robot.velocity_mps = [own_mps, 0.0];
     let _ = robot.step(step_number(0), &[]);
@@ -177,7 +177,7 @@ fn run_lagging(
 ) -> Vec<([f64; 2], [[f64; 2]; 2], Mode)> {
     let config = AgentConfig { lag_s: stated_s, max_acceleration_mps2: 1.5, ..in_plane(1) };
     let mut robot = Robot::new(&config, WaypointGuidance::new(1.0, tolerance_m), orca(), [0.0; 2]);
-    assert!(robot.agent.assign_waypoint(0, goal));
+    assert!(robot.agent.order(WaypointOrder::first(goal.cast())));
     let (left, mut own) = (libm::exp(-0.1 / lag_s), [0.0; 2]);
     let step = |n| {
         robot.velocity_mps = own;

@@ -4,7 +4,6 @@
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
 use staya_controller::geom::Vec3;
-use staya_controller::rand::Rng;
 
 /// Drives straight to the goal, slower near other robots. Write your own law here.
 ///
@@ -29,44 +28,35 @@ impl Law {
     }
 }
 
-impl Teamwork for Law {}
-
-impl Guidance<f32> for Law {
-    type Input<'a> = InPlane<'a, f32>;
-    type Destination = ToWaypoints;
+impl Law<f32> for Law {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = Waypoints;
     type Workspace = ();
-    type Payload = ();
 
     /// The preferred velocity. The safety layer changes it to avoid collisions.
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32>,
+        view: &View<'_, f32>,
         _: &InPlane<'_, f32>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        input.can_go()?;
-        let goal = self.goal.as_mut().ok_or(BadInput)?;
-        let way_m: Vec3<f32> = goal.way(input.state.position, input.now);
+        let Some(goal) = &mut self.goal else { return Ok(Decision::idle()) };
+        view.can_move()?;
+        let way_m: Vec3<f32> = goal.way(view.state.position, view.now);
         let distance_m = way_m.norm();
-        let is_crowded = input.nearby.iter().any(|other| other.offset_m.norm() < self.careful_m);
+        let is_crowded = view.nearby.iter().any(|other| other.offset_m.norm() < self.careful_m);
         let speed_mps = if is_crowded { self.speed_mps * 0.5 } else { self.speed_mps };
         // Slows down over the last half second.
-        let speed_mps = speed_mps.min(input.body.max_speed_mps).min(distance_m * 2.0);
+        let speed_mps = speed_mps.min(view.body.max_speed_mps).min(distance_m * 2.0);
         let wish_mps = way_m.normalized().unwrap_or_default() * speed_mps;
         Ok(Decision {
             action: Action::Velocity { wish_mps, way_m: Some(way_m) },
             status: Status { is_at_goal: distance_m <= self.tolerance_m, ..Status::default() },
-            ..Decision::default()
         })
     }
 
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<f32>) -> bool {
-        self.goal = Some(*waypoint);
-        index == 0
-    }
-
-    fn has_own_goal(&self) -> bool {
-        self.goal.is_some()
+    fn order(&mut self, order: WaypointOrder) -> bool {
+        self.goal = Some(order.waypoint);
+        order.index == 0
     }
 }

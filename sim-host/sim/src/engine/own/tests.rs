@@ -3,49 +3,47 @@ use crate::engine::{StartError, simulate};
 use crate::scenario::Overrides;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Decision, GuidanceInput, Roams, Status, Teamwork, Waypoint, WaypointGuidance,
+    Action, BadInput, Decision, Never, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
 };
-use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
-use staya_controller::time::Instant;
 use staya_controller::wire::Format;
 use std::path::Path;
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Highest(u32);
 
-impl Teamwork for Highest {}
+enum Numbers {}
 
-impl Guidance<f32> for Highest {
-    type Input<'a> = InPlane<'a, f32>;
-    type Destination = Roams;
-    type Workspace = ();
+impl Protocol for Numbers {
     type Payload = u32;
+    type Message = Never;
+    type Order = Never;
+}
+
+impl Law<f32> for Highest {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = Numbers;
+    type Workspace = ();
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, f32, u32>,
+        view: &View<'_, f32, u32>,
         _: &InPlane<'_, f32>,
-        _: &mut Rng,
-        (): &mut (),
+        _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        let heard = input.neighbors.iter().map(|other| other.payload);
-        self.0 = heard.fold(self.0.max(input.id.0), u32::max);
-        // The leader field also shows the number, so that record rows contain it.
+        let heard = view.neighbors.iter().map(|other| other.payload);
+        self.0 = heard.fold(self.0.max(view.id.0), u32::max);
         let status = Status { is_at_goal: self.0 == ROBOTS, ..Status::default() };
-        Ok(Decision { action: Action::Stay, status, leader: RobotId(self.0), ..Decision::default() })
+        Ok(Decision { action: Action::Stay, status })
     }
 
-    fn has_own_goal(&self) -> bool {
-        true
-    }
-
-    fn assign_waypoint(&mut self, _: u8, _: &Waypoint<f32>) -> bool {
-        true
-    }
-
-    fn payload(&mut self, _: Instant) -> u32 {
+    fn payload(&mut self, _: &mut Radio<'_, Never>) -> u32 {
         self.0
+    }
+
+    /// The leader field also shows the number, so that record rows contain it.
+    fn report(&self) -> Report {
+        Report { leader: RobotId(self.0), ..Report::default() }
     }
 }
 

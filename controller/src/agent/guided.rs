@@ -1,17 +1,14 @@
 //! Lets an operator take over a robot temporarily.
 
-use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, pass_on};
+use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
+use super::protocol::{LawOrder as _, Radio};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{Parameter, Wait, Waypoint, WrongTask};
+use super::{Parameter, Surroundings, Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
 use crate::grid::Cell;
-use crate::land::LandPatch;
-use crate::neighbor::Tracker;
-use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
 /// A command of an operator.
@@ -44,21 +41,21 @@ pub enum Wish<S> {
     Cell(Cell),
 }
 
-/// Guidance law `G`, which an operator can override. The safety layer still avoids other robots,
+/// Law `L`, which an operator can override. The safety layer still avoids other robots,
 /// and followers see in the beacon that this robot left the formation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Commanded<S, G> {
-    inside: G,
+pub struct Guided<S, L> {
+    inside: L,
     wish: Wish<S>,
     /// When the command took effect.
     since: Option<Instant>,
     straight: WaypointGuidance<S>,
 }
 
-impl<S: Scalar, G> Commanded<S, G> {
+impl<S: Scalar, L> Guided<S, L> {
     /// Wraps `inside`; speed and arrival distance `tolerance_m` apply to [`Wish::Waypoint`].
     #[must_use]
-    pub const fn new(inside: G, speed_mps: S, tolerance_m: S) -> Self {
+    pub const fn new(inside: L, speed_mps: S, tolerance_m: S) -> Self {
         Self { inside, wish: Wish::Own, since: None, straight: WaypointGuidance::new(speed_mps, tolerance_m) }
     }
 
@@ -66,17 +63,18 @@ impl<S: Scalar, G> Commanded<S, G> {
     ///
     /// # Errors
     /// [`WrongTask`], with the previous command still active, for a velocity or a waypoint if the
-    /// law moves cell by cell, a cell if it does not go to cells, and a velocity that is not
-    /// finite.
+    /// law moves cell by cell, a cell if its orders have none, and a velocity that is not finite.
+    /// An enum of laws accepts all of these; its host knows which body it has.
     pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
     where
-        G: Guidance<S>,
+        L: Law<S>,
     {
+        let has_plane = <L::Surroundings<'_> as Surroundings<S>>::HAS_PLANE;
         let is_possible = match &wish {
             Wish::Own | Wish::Off | Wish::Hold => true,
-            Wish::Velocity { velocity_mps, .. } => self.inside.goes_by_velocity() && velocity_mps.is_finite(),
-            Wish::Waypoint { .. } => self.inside.goes_by_velocity(),
-            Wish::Cell(_) => self.inside.goes_to_cells(),
+            Wish::Velocity { velocity_mps, .. } => has_plane && velocity_mps.is_finite(),
+            Wish::Waypoint { .. } => has_plane,
+            Wish::Cell(cell) => OrderOf::<L, S>::goal(*cell).is_some(),
         };
         if !is_possible {
             return Err(WrongTask);
@@ -94,7 +92,7 @@ impl<S: Scalar, G> Commanded<S, G> {
 
     /// The wrapped guidance law.
     #[must_use]
-    pub const fn inside(&self) -> &G {
+    pub const fn inside(&self) -> &L {
         &self.inside
     }
 
@@ -108,7 +106,7 @@ impl<S: Scalar, G> Commanded<S, G> {
             self.since = Some(now);
             if let Wish::Waypoint { waypoint, .. } = &mut self.wish {
                 waypoint.at = now;
-                let _ = self.straight.assign_waypoint(0, waypoint);
+                self.straight.begin(waypoint);
             }
             return;
         };
@@ -119,88 +117,75 @@ impl<S: Scalar, G> Commanded<S, G> {
     }
 }
 
-fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
+fn on_order<S>(action: Action<S>) -> Decision<S> {
     let stays = matches!(action, Action::Stay);
     Decision {
         action,
         status: Status { waits_for: stays.then_some(Wait::Stopped), recovers: !stays, ..Status::default() },
-        target: goal,
-        leader: RobotId::NONE,
-        slot: 0,
-        asks: heapless::Vec::new(),
     }
-}
-
-impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
-    pass_on!(orders: self => self.inside);
-    pass_on!(land: self => self.inside);
 }
 
 /// Distance of the way point of a commanded velocity, own radii: farther than robots swerve.
 const LEADS_TO_RADII: i32 = 100;
 
-impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
-    type Input<'a> = G::Input<'a>;
-    type Destination = G::Destination;
-    type Workspace = G::Workspace;
-    type Payload = G::Payload;
+impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
+    type Surroundings<'a> = L::Surroundings<'a>;
+    type Protocol = L::Protocol;
+    type Workspace = L::Workspace;
 
     fn decide(
         &mut self,
-        input: &GuidanceInput<'_, S, Self::Payload>,
-        here: &Self::Input<'_>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
+        view: &View<'_, S, PayloadOf<Self, S>>,
+        here: &Self::Surroundings<'_>,
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        self.renew(input.now);
+        let Tools { rng, radio, workspace } = tools;
+        let tools = Tools { rng, radio, workspace };
+        self.renew(view.now);
         match self.wish {
-            Wish::Own => self.inside.decide(input, here, rng, workspace),
-            Wish::Off => Ok(on_order(Action::Release, input.goal)),
-            Wish::Hold => Ok(on_order(Action::Stay, input.goal)),
+            Wish::Own => self.inside.decide(view, here, tools),
+            Wish::Off => Ok(on_order(Action::Release)),
+            Wish::Hold => Ok(on_order(Action::Stay)),
             Wish::Velocity { velocity_mps, .. } => {
-                input.can_go()?;
-                let wish_mps = velocity_mps.clamp_norm(input.body.max_speed_mps);
+                view.can_move()?;
+                let wish_mps = velocity_mps.clamp_norm(view.body.max_speed_mps);
                 // Lets two robots that are sent against each other pass.
-                let far_m = input.body.radius_m * S::from_i32(LEADS_TO_RADII);
+                let far_m = view.body.radius_m * S::from_i32(LEADS_TO_RADII);
                 let way_m = wish_mps.normalized().map(|ahead| ahead * far_m);
-                let action = Action::Velocity { wish_mps, way_m };
-                Ok(on_order(action, input.goal))
+                Ok(on_order(Action::Velocity { wish_mps, way_m }))
             }
             Wish::Waypoint { .. } => {
-                let mut decision = self.straight.head(input)?;
-                decision.target = input.goal;
+                let mut decision = self.straight.head(view)?;
                 decision.status.recovers = true;
                 Ok(decision)
             }
-            Wish::Cell(goal) => {
-                let input = GuidanceInput { goal, ..*input };
-                self.inside.decide(&input, here, rng, workspace)
-            }
+            Wish::Cell(goal) => self.inside.decide(&View { sent_to: Some(goal), ..*view }, here, tools),
         }
     }
 
-    fn goes_to_cells(&self) -> bool {
-        self.inside.goes_to_cells()
+    fn payload(&mut self, radio: &mut Radio<'_, MessageOf<Self, S>>) -> PayloadOf<Self, S> {
+        self.inside.payload(radio)
     }
 
-    fn goes_by_velocity(&self) -> bool {
-        self.inside.goes_by_velocity()
+    fn receive(&mut self, from: RobotId, message: MessageOf<Self, S>) -> bool {
+        self.inside.receive(from, message)
     }
 
-    fn has_own_goal(&self) -> bool {
-        self.wish != Wish::Own || self.inside.has_own_goal()
+    fn order(&mut self, order: OrderOf<Self, S>) -> bool {
+        self.inside.order(order)
     }
 
-    fn tracker(&mut self) -> Option<&mut Tracker<S>> {
-        self.inside.tracker()
+    fn needs(&self, id: RobotId) -> bool {
+        self.inside.needs(id)
     }
 
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
-        self.inside.assign_waypoint(index, waypoint)
-    }
-
-    fn payload(&mut self, now: Instant) -> Self::Payload {
-        self.inside.payload(now)
+    /// A robot that an operator steers has left its formation.
+    fn report(&self) -> Report {
+        let shown = self.inside.report();
+        match self.wish {
+            Wish::Own | Wish::Cell(_) => shown,
+            _ => Report { goal: shown.goal, target: shown.target, ..Report::NONE },
+        }
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

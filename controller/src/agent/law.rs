@@ -1,0 +1,302 @@
+//! The interface between the agent and its law, which chooses where the robot goes.
+
+use super::protocol::{Protocol, Radio};
+use super::{AnySurroundings, KinematicState, Parameter, Surroundings, Wait};
+use crate::body::Body;
+use crate::geom::Vec3;
+use crate::grid::{Cell, Dir};
+use crate::neighbor::{Ages, Nearby, Neighbor};
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+use crate::time::{Duration, Instant};
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+/// The payload of a law.
+pub type PayloadOf<L, S> = <<L as Law<S>>::Protocol as Protocol>::Payload;
+/// The messages of a law.
+pub type MessageOf<L, S> = <<L as Law<S>>::Protocol as Protocol>::Message;
+/// The orders of a law.
+pub type OrderOf<L, S> = <<L as Law<S>>::Protocol as Protocol>::Order;
+
+/// Chooses where the robot goes. Built-in laws and laws of other crates implement the same trait.
+///
+/// The associated types of a law determine its surroundings and its orders, so that a wrong
+/// combination does not compile:
+///
+/// ```
+/// # use staya_controller::{agent::*, grid::Cell, time::Instant};
+/// # type Route = RouteGuidance<CELLS, VISITS>;
+/// # fn workspace() -> GridWorkspace<CELLS> { GridWorkspace::new() }
+/// fn on_grid(agent: &mut RouteAgent, surroundings: OnGrid, now: Instant) {
+///     let (state, inbox) = (KinematicState::default(), &[]);
+///     agent.order(GridOrder::Goal(Cell::new(9, 5)));
+///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut workspace());
+/// }
+/// fn in_plane(agent: &mut OrcaAgent, surroundings: InPlane<f32>, now: Instant) {
+///     let (state, inbox) = (KinematicState::default(), &[]);
+///     agent.order(WaypointOrder::first(Waypoint::fixed(Default::default())));
+///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut ());
+/// }
+/// fn law(law: CellFollower<f32, Route>) -> impl Law<f32> { law }
+/// ```
+///
+/// Surroundings of the grid for a law that moves by velocities, or the reverse:
+///
+/// ```compile_fail
+/// # use staya_controller::{agent::*, time::Instant};
+/// fn step(plane: &mut OrcaAgent, cell: OnGrid, now: Instant) {
+///     let (state, inbox) = (KinematicState::default(), &[]);
+///     let _ = plane.step(&Inputs { state, surroundings: cell, inbox }, now, &mut ());
+/// }
+/// ```
+///
+/// ```compile_fail
+/// # use staya_controller::{agent::*, time::Instant};
+/// fn step(grid: &mut RouteAgent, free: InPlane<f32>, now: Instant) {
+///     let inputs = Inputs { state: KinematicState::default(), surroundings: free, inbox: &[] };
+///     let _ = grid.step(&inputs, now, &mut GridWorkspace::new());
+/// }
+/// ```
+///
+/// A cell as the goal of a law with waypoints, or the reverse:
+///
+/// ```compile_fail
+/// # use staya_controller::{agent::*, grid::Cell};
+/// fn send(plane: &mut OrcaAgent) { plane.order(GridOrder::Goal(Cell::new(9, 5))); }
+/// ```
+///
+/// ```compile_fail
+/// # use staya_controller::agent::*;
+/// fn send(grid: &mut RouteAgent, to: Waypoint<f32>) { grid.order(WaypointOrder::first(to)); }
+/// ```
+///
+/// A follower of cells around a law without cells:
+///
+/// ```compile_fail
+/// # use staya_controller::agent::*;
+/// fn law(law: CellFollower<f32, WaypointGuidance<f32>>) -> impl Law<f32> { law }
+/// ```
+pub trait Law<S: Scalar>: Sized {
+    /// What the robot must be told besides its state and the radio:
+    /// [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane), [`InCells`](super::InCells).
+    type Surroundings<'a>: Surroundings<S> + TryFrom<AnySurroundings<'a, S>>;
+
+    /// What robots with this law say to each other, and an operator to them; `()` for nothing.
+    type Protocol: Protocol;
+
+    /// Scratch memory without state between calls; one can serve all robots.
+    type Workspace;
+
+    /// Decides on the next action. Called in each step in which the body is free to move. Without
+    /// a goal the action is [`Action::Idle`].
+    ///
+    /// # Errors
+    /// [`BadInput`] puts the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
+    fn decide(
+        &mut self,
+        view: &View<'_, S, PayloadOf<Self, S>>,
+        here: &Self::Surroundings<'_>,
+        tools: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput>;
+
+    /// Returns the payload when a beacon is due: a state rather than a change, since receivers may
+    /// get it late, repeatedly or never. What is broadcast here follows the beacon.
+    fn payload(&mut self, _radio: &mut Radio<'_, MessageOf<Self, S>>) -> PayloadOf<Self, S> {
+        Default::default()
+    }
+
+    /// Takes in a message of another robot, each once. Returns whether it was of use.
+    fn receive(&mut self, _from: RobotId, _message: MessageOf<Self, S>) -> bool {
+        false
+    }
+
+    /// Takes in an order. Returns whether it was of use; one that was not may come again.
+    fn order(&mut self, _order: OrderOf<Self, S>) -> bool {
+        false
+    }
+
+    /// Returns whether a full neighbour table must keep this robot.
+    fn needs(&self, _id: RobotId) -> bool {
+        false
+    }
+
+    /// Returns what beacons and displays show of it.
+    fn report(&self) -> Report {
+        Report::default()
+    }
+
+    /// Returns the value of a parameter, or `None` if the law does not have it.
+    fn parameter(&self, _parameter: Parameter) -> Option<S> {
+        None
+    }
+
+    /// Changes a parameter to a value within [`Parameter::range`]. Returns whether it was accepted.
+    fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
+        false
+    }
+}
+
+/// What a law knows at a decision besides its surroundings; `P` is its payload.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a, S, P = ()> {
+    /// Own id.
+    pub id: RobotId,
+    /// Time of the decision.
+    pub now: Instant,
+    /// Time in which a robot crosses a cell of impassability 1.
+    pub tick: Duration,
+    /// Own position and velocity; with a lag, those of the point ahead that is steered.
+    pub state: KinematicState<S>,
+    /// Position in `state` minus that of the body, metres; zero without a lag.
+    pub ahead_m: Vec3<S>,
+    /// Time constant with which bodies follow their commands, seconds.
+    pub lag_s: S,
+    /// Own body.
+    pub body: Body<S>,
+    /// Nearby robots, nearest first; empty for robots that move cell by cell.
+    pub nearby: &'a [Nearby<S>],
+    /// Known robots in ascending order of ids, none older than [`Ages::expire_after`].
+    pub neighbors: &'a [Neighbor<S, P>],
+    /// Age limits of neighbour states.
+    pub ages: Ages,
+    /// Whether another robot has asked this one to stop. The agent stops a robot without a leader
+    /// itself, unless [`Status::recovers`].
+    pub is_stopped: bool,
+    /// The cell that an operator sends it to instead of its goal.
+    pub sent_to: Option<Cell>,
+}
+
+impl<S: Scalar, P> View<'_, S, P> {
+    /// Checks that the body can move by velocities.
+    ///
+    /// # Errors
+    /// [`BadInput`] if [`InPlane::max_speed_mps`](super::InPlane::max_speed_mps) is 0 or less.
+    pub fn can_move(&self) -> Result<(), BadInput> {
+        if self.body.max_speed_mps > S::ZERO { Ok(()) } else { Err(BadInput) }
+    }
+}
+
+impl<'a, S, P> View<'a, S, P> {
+    /// Returns a neighbour by its id. O(log N).
+    #[must_use]
+    pub fn neighbor(&self, id: RobotId) -> Option<&'a Neighbor<S, P>> {
+        let at = self.neighbors.binary_search_by_key(&id, |n| n.id).ok()?;
+        self.neighbors.get(at)
+    }
+}
+
+/// What a law has at hand at a decision.
+#[derive(Debug)]
+pub struct Tools<'t, S: Scalar, L: Law<S>> {
+    /// Random numbers of this robot and decision.
+    pub rng: &'t mut Rng,
+    /// Sends messages.
+    pub radio: Radio<'t, MessageOf<L, S>>,
+    /// Scratch memory.
+    pub workspace: &'t mut L::Workspace,
+}
+
+/// What beacons and displays show of a law.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Report {
+    /// The cell of its goal; `None` without a goal on the grid.
+    pub goal: Option<Cell>,
+    /// The cell that it heads for: the goal, or a cell near it if the goal is impassable.
+    pub target: Option<Cell>,
+    /// The robot that it follows.
+    pub leader: RobotId,
+    /// Its place in the formation.
+    pub slot: u8,
+}
+
+impl Report {
+    /// Nothing to show.
+    pub(super) const NONE: Self = Self { goal: None, target: None, leader: RobotId::NONE, slot: 0 };
+}
+
+/// The decision of a guidance law.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use]
+pub struct Decision<S> {
+    /// The intended action; the supervisor and the safety layer may change it.
+    pub action: Action<S>,
+    /// Progress towards the goal.
+    pub status: Status,
+}
+
+impl<S> Decision<S> {
+    /// The decision of a law without a goal.
+    #[must_use]
+    pub fn idle() -> Self {
+        Self { action: Action::Idle, status: Status::default() }
+    }
+}
+
+/// The action until the next decision.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Action<S> {
+    /// Stand still.
+    #[default]
+    Stay,
+    /// Stand without a goal ([`Mode::Idle`](crate::robot::Mode::Idle)).
+    Idle,
+    /// Take the first of these moves, best first, that leads into a free cell.
+    Moves(Vec<Dir, 8>),
+    /// Move with a velocity.
+    Velocity {
+        /// The desired velocity without regard to collisions, m/s.
+        wish_mps: Vec3<S>,
+        /// Offset of the point that it heads straight for, metres; `None` not to swerve for others.
+        way_m: Option<Vec3<S>>,
+    },
+    /// Release control: the motors are off, or another controller steers
+    /// ([`Mode::Passive`](crate::robot::Mode::Passive)).
+    Release,
+}
+
+impl<S> Action<S> {
+    /// Returns the moves; empty for other actions.
+    #[must_use]
+    pub fn moves(&self) -> &[Dir] {
+        match self {
+            Self::Moves(moves) => moves,
+            Self::Stay | Self::Idle | Self::Velocity { .. } | Self::Release => &[],
+        }
+    }
+}
+
+/// The state of a robot relative to its goal and its formation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Status {
+    /// It is at its goal, or beside its occupied goal.
+    pub is_at_goal: bool,
+    /// The reason to stand and wait; [`Wait::GoalTaken`] beside an occupied goal.
+    pub waits_for: Option<Wait>,
+    /// No exit of the window is reachable.
+    pub is_stuck: bool,
+    /// It heads for scattered followers, and therefore ignores their stop requests.
+    pub recovers: bool,
+    /// It is too far from its place in the formation.
+    pub is_off_place: bool,
+    /// It moves although it arrived or waits: it makes way, or its waypoint moves.
+    pub makes_way: bool,
+}
+
+/// A required input of the guidance law is missing or contradicts another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct BadInput;
+
+impl core::fmt::Display for BadInput {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("an input that the guidance law needs is missing or contradicts another one")
+    }
+}
+
+impl core::error::Error for BadInput {}
