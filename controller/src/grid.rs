@@ -267,6 +267,20 @@ impl<'a> Window<'a> {
     pub fn is_passable(&self, cell: Cell) -> bool {
         self.get(cell).is_some_and(|u| u != BLOCKED)
     }
+
+    /// Returns `goal`, or the nearest passable visible cell (the smallest of equals) if it is
+    /// impassable. O(cells).
+    #[must_use]
+    pub fn reachable(&self, goal: Cell) -> Cell {
+        if self.get(goal) != Some(BLOCKED) {
+            return goal;
+        }
+        let rows = (0..self.height()).flat_map(|y| (0..self.width()).map(move |x| (x, y)));
+        rows.map(|(x, y)| self.origin() + Cell::new(x.cast_signed(), y.cast_signed()))
+            .filter(|&cell| self.is_passable(cell))
+            .min_by_key(|cell| (cell.distance_squared(goal), *cell))
+            .unwrap_or(goal)
+    }
 }
 
 /// The position of the grid in the world, for conversions between cells and metres.

@@ -7,14 +7,10 @@ use super::law::{BadInput, Decision, Law, MessageOf, OrderOf, Report, Tools, Vie
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
 use super::protocol::{AnyOrder, AnyProtocol, GridMessage, Radio};
-#[cfg(feature = "published")]
-use super::published_formation::PublishedFormation;
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
 use super::{AnySurroundings, FarMap, Parameter, Protocol};
-#[cfg(feature = "published")]
-use crate::formation::Course;
 use crate::formation::NextMove;
 use crate::geom::{Vec2, Vec3};
 use crate::neighbor::StalenessInflation;
@@ -59,10 +55,6 @@ pub enum AnyLaw<S, const CELLS: usize, const M: usize, const F: usize, const L: 
     Formation(Large<FormationInPlane<S, CELLS, M, F, L, H>>),
     RouteOnGrid(RouteGuidance<CELLS, M, L, H>),
     FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L, NextMove, H>>),
-    #[cfg(feature = "published")]
-    Published(Large<PublishedFormation<CELLS, M, F>>),
-    #[cfg(feature = "published")]
-    LooksAhead(Large<FormationGuidance<CELLS, M, F, L, Course, H>>),
 }
 
 macro_rules! each {
@@ -76,10 +68,6 @@ macro_rules! each {
             AnyLaw::Formation(law) => each!($large(law), $inside => $action),
             AnyLaw::RouteOnGrid($inside) => $action,
             AnyLaw::FormationOnGrid(law) => each!($large(law), $inside => $action),
-            #[cfg(feature = "published")]
-            AnyLaw::Published(law) => each!($large(law), $inside => $action),
-            #[cfg(feature = "published")]
-            AnyLaw::LooksAhead(law) => each!($large(law), $inside => $action),
         }
     };
     ($large:expr, $inside:ident => $action:expr) => {{
@@ -146,10 +134,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             Self::Formation(law) => decide_as(inside_mut(law), view, here, sends, workspace),
             Self::RouteOnGrid(law) => decide_as(law, view, here, sends, workspace),
             Self::FormationOnGrid(law) => decide_as(inside_mut(law), view, here, sends, workspace),
-            #[cfg(feature = "published")]
-            Self::Published(law) => decide_as(inside_mut(law), view, here, sends, workspace),
-            #[cfg(feature = "published")]
-            Self::LooksAhead(law) => decide_as(inside_mut(law), view, here, sends, workspace),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::grid_task::GridTask;
 use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
-use super::move_history::{MoveHistory, PATIENCE, avoid_crossing, on_grid, reachable_goal};
+use super::move_history::{MoveHistory, PATIENCE, avoid_crossing};
 use super::protocol::{Grid, GridMessage, GridOrder, Radio};
 use super::route_guidance::GridWorkspace;
 use super::tunable::Tunable;
@@ -35,7 +35,7 @@ const ALTERNATIVES: usize = 2;
 
 /// Moving in formation, with the visits of `M` cells and a template of `F` neighbours; alone
 /// without a template. `K` predicts the leader by its next move or its
-/// [`Course`](crate::formation::Course); `H` is a map of the terrain beyond the window.
+/// another [`Steering`]; `H` is a map of the terrain beyond the window.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationGuidance<
     const CELLS: usize,
@@ -223,8 +223,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             (self.steering.aims(&self.formation, &guide.anchor, target), &found.members)
         };
         let [far, near] = aims;
-        let place = reachable_goal(window, far);
-        let near = if near == far { place } else { reachable_goal(window, near) };
+        let place = window.reachable(far);
+        let near = if near == far { place } else { window.reachable(near) };
         let price = distances(&self.formation, cell, Some(near), members);
         if place == cell {
             return Some(price);
@@ -319,13 +319,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             radio.send(to, &GridMessage::Request(kind));
         };
         let Some(goal) = self.task.goal(input, self.template.offset) else { return Ok(Decision::idle()) };
-        let (cell, window) = on_grid(here)?;
+        let (cell, window) = here.seen()?;
         self.map.see(&window, cell, goal);
         if self.formation.closes_ranks && cell != goal + self.ranks.shift() {
             self.ranks.close(input.id, &self.template, holders(input.neighbors));
         }
         let view = &self.view(input.id, input.neighbors);
-        let target = reachable_goal(&window, goal + self.ranks.shift());
+        let target = window.reachable(goal + self.ranks.shift());
         self.router.observe(&self.route, cell, target);
 
         let mut seen = Vec::new();

@@ -4,11 +4,12 @@ use super::{GridOrder, Report, View};
 use crate::grid::Cell;
 use serde::{Deserialize, Serialize};
 
-/// The goal, and what the law shows.
+/// The goal of a law on the grid, and what the law shows.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct GridTask {
+pub struct GridTask {
     goal: Option<Goal>,
-    pub(super) shown: Report,
+    /// What the law shows.
+    pub shown: Report,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -19,10 +20,11 @@ enum Goal {
 }
 
 impl GridTask {
-    pub(super) const NEW: Self = Self { goal: None, shown: Report::NONE };
+    /// Without a goal.
+    pub const NEW: Self = Self { goal: None, shown: Report::NONE };
 
     /// Takes in a goal; `offset` is the own place beside the top leader. False for other orders.
-    pub(super) fn order(&mut self, order: &GridOrder, offset: Cell) -> bool {
+    pub fn order(&mut self, order: &GridOrder, offset: Cell) -> bool {
         let (goal, target) = match order {
             GridOrder::Goal(goal) => (Goal::Own(*goal), *goal),
             GridOrder::FormationGoal(top) => (Goal::Formation(*top), *top + offset),
@@ -33,8 +35,9 @@ impl GridTask {
         true
     }
 
-    /// The cell to go to.
-    pub(super) fn goal<S, P>(&self, view: &View<'_, S, P>, offset: Cell) -> Option<Cell> {
+    /// The cell to go to; `None` without a goal.
+    #[must_use]
+    pub fn goal<S, P>(&self, view: &View<'_, S, P>, offset: Cell) -> Option<Cell> {
         let own = self.goal.map(|goal| match goal {
             Goal::Own(goal) => goal,
             Goal::Formation(top) => top + offset,
@@ -42,7 +45,8 @@ impl GridTask {
         view.sent_to.or(own)
     }
 
-    pub(super) fn show(&mut self, goal: Cell, target: Cell) {
+    /// Shows the goal and the cell that the robot heads for.
+    pub fn show(&mut self, goal: Cell, target: Cell) {
         (self.shown.goal, self.shown.target) = (Some(goal), Some(target));
     }
 }

@@ -7,7 +7,7 @@
 //! | law | surroundings | order | command |
 //! | --- | --- | --- | --- |
 //! | [`RouteGuidance`] | [`OnGrid`] | [cell] | [move] |
-//! | [`FormationGuidance`], `PublishedFormation` | [`OnGrid`] | [cell] | [move] |
+//! | [`FormationGuidance`] | [`OnGrid`] | [cell] | [move] |
 //! | [`RouteGuidance`] in [`CellFollower`] | [`InCells`] | [cell] | [velocity] |
 //! | [`FormationInPlane`] | [`InCells`] | [cell] | [velocity] |
 //! | [`WaypointGuidance`], [`GoalFlockGuidance`] | [`InPlane`] | [waypoint] | [velocity] |
@@ -117,8 +117,6 @@ mod other_safety;
 mod parameter;
 mod perception;
 mod protocol;
-#[cfg(feature = "published")]
-mod published_formation;
 mod route_guidance;
 mod safety;
 mod setup;
@@ -141,6 +139,7 @@ pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::{FormationGuidance, FormationInPlane};
+pub use grid_task::GridTask;
 pub use guided::{Guided, Wish};
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, KinematicState, OUTBOX, Outputs, Refused};
 pub use law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
@@ -152,8 +151,6 @@ pub use protocol::{
     AnyOrder, AnyProtocol, Grid, GridMessage, GridOrder, LawMessage, LawOrder, Never, OfAnotherLaw, Outgoing, Protocol,
     Radio, WaypointOrder, Waypoints,
 };
-#[cfg(feature = "published")]
-pub use published_formation::PublishedFormation;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, SafetyInput, Unguarded};
 pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task};

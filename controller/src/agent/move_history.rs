@@ -1,7 +1,6 @@
 //! Shared by the laws on the grid: the last choice, requests to robots in the way, reachable goals.
 
-use super::OnGrid;
-use super::law::{BadInput, View};
+use super::law::View;
 use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::neighbor::Neighbor;
@@ -107,24 +106,4 @@ pub(super) fn avoid_crossing<S>(
 
 fn occupant<'a, S>(input: &View<'a, S>, cell: Cell) -> Option<&'a Neighbor<S>> {
     input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
-}
-
-/// Fails if the window is missing or does not contain the cell.
-pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadInput> {
-    let cell = here.cell.cell;
-    let window = here.window.ok_or(BadInput)?;
-    let is_in_sight = window.get(cell).is_some();
-    is_in_sight.then_some((cell, window)).ok_or(BadInput)
-}
-
-/// `goal`, or the nearest passable visible cell (the smallest of equals) if it is impassable.
-pub(super) fn reachable_goal(window: &Window<'_>, goal: Cell) -> Cell {
-    if window.get(goal) != Some(BLOCKED) {
-        return goal;
-    }
-    let rows = (0..window.height()).flat_map(|y| (0..window.width()).map(move |x| (x, y)));
-    rows.map(|(x, y)| window.origin() + Cell::new(x.cast_signed(), y.cast_signed()))
-        .filter(|&cell| window.is_passable(cell))
-        .min_by_key(|cell| (cell.distance_squared(goal), *cell))
-        .unwrap_or(goal)
 }

@@ -2,7 +2,7 @@
 
 use super::grid_task::GridTask;
 use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
-use super::move_history::{MoveHistory, avoid_crossing, on_grid, reachable_goal};
+use super::move_history::{MoveHistory, avoid_crossing};
 use super::protocol::{Grid, GridMessage, GridOrder, Radio};
 use super::tunable::Tunable as _;
 use super::{FarMap, OnGrid, Parameter};
@@ -36,6 +36,11 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
     #[must_use]
     pub const fn new() -> Self {
         Self { field: CostField::new(), land: [0; CELLS] }
+    }
+
+    /// The field, for a search.
+    pub const fn field_mut(&mut self) -> &mut CostField<CELLS> {
+        &mut self.field
     }
 
     /// The last search.
@@ -153,9 +158,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> L
     ) -> Result<Decision<S>, BadInput> {
         let Tools { rng, mut radio, workspace } = tools;
         let Some(goal) = self.task.goal(input, Cell::default()) else { return Ok(Decision::idle()) };
-        let (cell, window) = on_grid(here)?;
+        let (cell, window) = here.seen()?;
         self.map.see(&window, cell, goal);
-        let target = reachable_goal(&window, goal);
+        let target = window.reachable(goal);
         self.task.show(goal, target);
         self.router.observe(&self.params, cell, target);
         let makes_way = self.travel.take_redirection();

@@ -6,8 +6,6 @@ use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::{FormationGuidance, FormationInPlane};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
-#[cfg(feature = "published")]
-use super::published_formation::PublishedFormation;
 use super::route_guidance::RouteGuidance;
 use super::safety::Unguarded;
 use super::waypoint_guidance::WaypointGuidance;
@@ -15,10 +13,6 @@ use super::{Agent, AgentConfig, TEMPLATE, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::GoalParams;
 use crate::flock::lattice::{LatticeParams, ReferenceMotion};
-#[cfg(feature = "published")]
-use crate::formation::Course;
-#[cfg(feature = "published")]
-use crate::formation::published::PublishedParams;
 use crate::formation::{FormationParams, NextMove};
 use crate::grid::Cell;
 use crate::names::named;
@@ -128,20 +122,6 @@ pub enum GuidanceSetup {
         formation: FormationParams,
         template: Template<TEMPLATE>,
         speed_mps: Option<f32>,
-    },
-    /// The formation of the paper. Gated variants are last: builds without them decode the others.
-    #[cfg(feature = "published")]
-    Published {
-        route: RouteSetup,
-        formation: PublishedParams,
-        template: Template<TEMPLATE>,
-    },
-    /// Like `Formation` without a speed; followers use the leader's planned [`Course`].
-    #[cfg(feature = "published")]
-    LooksAhead {
-        route: RouteSetup,
-        formation: FormationParams,
-        template: Template<TEMPLATE>,
     },
 }
 
@@ -271,8 +251,6 @@ impl Setup {
     pub fn cells(&self) -> usize {
         match &self.guidance {
             GuidanceSetup::Route { route, .. } | GuidanceSetup::Formation { route, .. } => route.cells(),
-            #[cfg(feature = "published")]
-            GuidanceSetup::Published { route, .. } | GuidanceSetup::LooksAhead { route, .. } => route.cells(),
             _ => 0,
         }
     }
@@ -289,8 +267,6 @@ impl GuidanceSetup {
             Self::Boids { .. } => GuidanceKind::Boids,
             Self::Route { .. } => GuidanceKind::Route,
             Self::Formation { .. } => GuidanceKind::Formation,
-            #[cfg(feature = "published")]
-            Self::Published { .. } | Self::LooksAhead { .. } => GuidanceKind::Formation,
         }
     }
 
@@ -326,15 +302,6 @@ impl GuidanceSetup {
                     None => AnyLaw::FormationOnGrid(large(guidance)),
                 }
             }
-            #[cfg(feature = "published")]
-            Self::Published { route, formation, template } => AnyLaw::Published(large(
-                PublishedFormation::new(route.params, *formation, template.clone()).sharpness(route.sharpness),
-            )),
-            #[cfg(feature = "published")]
-            Self::LooksAhead { route, formation, template } => AnyLaw::LooksAhead(large(
-                FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map)
-                    .sharpness(route.sharpness),
-            )),
         }
     }
 }

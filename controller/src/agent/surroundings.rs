@@ -29,6 +29,19 @@ pub struct OnGrid<'a> {
     pub window: Option<Window<'a>>,
 }
 
+impl<'a> OnGrid<'a> {
+    /// Returns the own cell and the window around it.
+    ///
+    /// # Errors
+    /// [`BadInput`] if the window is missing or does not contain the cell.
+    pub fn seen(&self) -> Result<(Cell, Window<'a>), BadInput> {
+        let cell = self.cell.cell;
+        let window = self.window.ok_or(BadInput)?;
+        let is_in_sight = window.get(cell).is_some();
+        is_in_sight.then_some((cell, window)).ok_or(BadInput)
+    }
+}
+
 /// Input of guidance laws that move by velocities, in the plane or in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InPlane<'a, S> {

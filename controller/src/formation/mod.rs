@@ -5,7 +5,7 @@
 //! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s
 //! per cell, costs those of [`crate::cost`]. In the plane, places are points ([`Drive`]).
 //!
-//! The paper's own law is in `published`, behind the feature of that name. Differences to it
+//! The paper's own law is in the crate `staya-papers`. Differences to it
 //! (results: `staya experiment formation`):
 //!
 //! - **Route.** In the paper each robot weighs the route to its *own* target against the places of
@@ -25,7 +25,7 @@
 //!   not only at t = 0. It may be a farther neighbour ([`find_leader`]).
 //! - **Patience.** No robot waits forever ([`FormationParams::patience`]), and a leader does not
 //!   wait for robots that follow another leader.
-//! - **Additions.** Followers may look ahead ([`Course`]) and close gaps ([`GapClosing`]).
+//! - **Additions.** Followers may look ahead ([`Steering`]) and close gaps ([`GapClosing`]).
 //! - **Misprints.** `less` is counted once (algorithm 5), the leader is the smallest number
 //!   (algorithm 6), sums restart for each direction (algorithm 7).
 
@@ -34,15 +34,13 @@ mod lookahead;
 mod measure;
 mod neighbors;
 mod places;
-#[cfg(feature = "published")]
-pub mod published;
 mod steering;
 
 #[cfg(test)]
 mod tests;
 
 pub use gap_closing::GapClosing;
-pub use lookahead::{Course, NextMove, Steering};
+pub use lookahead::{NextMove, Steering};
 pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 pub(crate) use places::scaled;
@@ -117,7 +115,7 @@ pub struct FormationParams {
 }
 
 impl FormationParams {
-    /// Good values for followers that look ahead ([`Course`]): the leader waits from 3 cells (210
+    /// Good values for followers that look ahead ([`Steering`]): the leader waits from 3 cells (210
     /// units) on, and the gain is doubled; chosen on seed 1 of `staya experiment formation`.
     #[must_use]
     pub fn looking_ahead() -> Self {

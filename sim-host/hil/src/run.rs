@@ -6,7 +6,7 @@ use crate::summary::Summary;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
-use staya_controller::formation::published::FormationLaw;
+use staya_sim::scenario::FormationLaw;
 use staya_runner::{Options, Shadows};
 use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_with};
 use staya_sim::expected::Expected;

@@ -5,7 +5,7 @@ use anyhow::Result;
 use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::cost::Gain;
-use staya_controller::formation::published::PublishedParams;
+use staya_papers::criteria::PublishedParams;
 use staya_controller::formation::{FormationParams, NEVER};
 use staya_controller::grid::UNIT;
 use staya_controller::land::MapParams;

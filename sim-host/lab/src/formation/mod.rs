@@ -19,7 +19,7 @@ use anyhow::{Result, anyhow, ensure};
 use staya_console::options::{self, word};
 use staya_controller::agent::{RouteSetup, TEMPLATE};
 use staya_controller::formation::FormationParams;
-use staya_controller::formation::published::PublishedParams;
+use staya_papers::criteria::PublishedParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::rand::Rng;

@@ -1,5 +1,6 @@
 //! Runs a whole scenario with the guidance law that it names.
 
+use super::laws::{Papers, ScenarioLaw};
 use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
@@ -11,7 +12,7 @@ use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
-    AnyLaw, AnySafety, Guided, HALF_PLANES, LEARNED, MAP_TILES, Safety, SharedMap, TEMPLATE, VISITS, WAYPOINTS, Wait,
+    AnySafety, Guided, HALF_PLANES, Safety, SharedMap, WAYPOINTS, Wait,
 };
 use staya_controller::robot::Mode;
 use std::collections::HashMap;
@@ -136,8 +137,8 @@ pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -
     })
 }
 
-/// Law of an agent: any built-in law, which an operator may override.
-pub type LawOf = Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Option<Box<SharedMap<MAP_TILES>>>>>;
+/// Law of an agent: any law of scenario files, which an operator may override.
+pub type LawOf = Guided<f32, ScenarioLaw>;
 #[doc(hidden)]
 pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
@@ -182,12 +183,12 @@ pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (LawOf, SafetyOf) + Send
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let maps = scenario.maps;
+    let (maps, papers) = (scenario.maps, Papers::of(scenario));
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
         let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
-        (Guided::new(guidance.law(map), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        (Guided::new(papers.law(guidance, map), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     }
 }
 

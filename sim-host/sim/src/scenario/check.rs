@@ -8,7 +8,7 @@ use crate::file::has_memory;
 use crate::radio;
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
-use staya_controller::formation::published::FormationLaw;
+use super::params::FormationLaw;
 use staya_controller::robot::RobotId;
 use staya_controller::route::Replan;
 use staya_mavlink::any::max_robot;

@@ -5,7 +5,7 @@ use super::source::Source;
 use super::{PlaneSetup, ScenarioError, ScenarioFile};
 use serde::Deserialize;
 use staya_controller::agent::RouteSetup;
-use staya_controller::formation::published::FormationLaw;
+use super::params::FormationLaw;
 use staya_controller::land::MapParams;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::time::Duration;

@@ -27,7 +27,7 @@ pub use field::Field;
 pub use formation::FormationEntry;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use maps::MapsTable;
-pub use params::{FormationTable, GridTable, RouteTable};
+pub use params::{FormationLaw, FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{
     BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
@@ -55,10 +55,10 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
-use staya_controller::formation::published::PublishedParams;
 use staya_controller::land::MapParams;
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
+use staya_papers::criteria::PublishedParams;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

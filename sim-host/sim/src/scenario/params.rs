@@ -7,11 +7,12 @@ use super::{ScenarioError, ScenarioFile};
 use serde::Deserialize;
 use staya_controller::agent::{Parameter, RouteSetup};
 use staya_controller::cost::Gain;
-use staya_controller::formation::published::{FormationLaw, PublishedParams};
 use staya_controller::formation::{FormationParams, NEVER, Prediction, Recovery};
 use staya_controller::grid::{Norm, UNIT};
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
+use staya_papers::criteria::PublishedParams;
+use std::fmt;
 
 /// `[grid]`.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -46,6 +47,29 @@ pub struct RouteTable {
     /// Weighted shuffle: a move that costs this many more ticks than another is half as likely to
     /// be tried first, 0 to 4095. 0: cheapest first, without randomness.
     pub halved_per_ticks: Option<f64>,
+}
+
+/// The laws of formation keeping by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FormationLaw {
+    /// Staya's: the top leader chooses the route and waits ([`staya_controller::formation`]).
+    #[default]
+    Staya,
+    /// The paper's: each robot weighs its own route ([`PublishedParams`]).
+    Paper,
+    /// Staya's, with routes to the future positions of places ([`staya_papers::Course`]).
+    Lookahead,
+}
+
+impl fmt::Display for FormationLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Staya => "staya",
+            Self::Paper => "paper",
+            Self::Lookahead => "lookahead",
+        })
+    }
 }
 
 /// `[formation]`: keeping a formation (KUZ section 7); for `robots.formation` only.

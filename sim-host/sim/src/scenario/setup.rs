@@ -7,31 +7,21 @@ use staya_controller::agent::{GuidanceSetup, SafetySetup};
 use staya_controller::grid::Cell;
 
 impl Scenario {
-    /// Guidance law of robot `index`, with its formation template.
+    /// Guidance law of robot `index`, with its formation template. A law of a paper
+    /// ([`Scenario::published`], [`Scenario::looks_ahead`]) replaces the formation.
     #[must_use]
     pub fn guidance(&self, index: usize) -> GuidanceSetup {
-        let mut guidance = match (&self.plane, self.formation_of(index), self.published) {
-            (Some(plane), ..) => plane.group(index).guidance.clone(),
-            (None, None, _) => GuidanceSetup::Route { route: self.route, speed_mps: None },
-            (None, Some(_), Some(formation)) => {
-                GuidanceSetup::Published { route: self.route, formation, template: Default::default() }
-            }
-            (None, Some(_), None) if self.looks_ahead => GuidanceSetup::LooksAhead {
-                route: self.route,
-                formation: self.formation_params,
-                template: Default::default(),
-            },
-            (None, Some(_), None) => GuidanceSetup::Formation {
+        let mut guidance = match (&self.plane, self.formation_of(index)) {
+            (Some(plane), _) => plane.group(index).guidance.clone(),
+            (None, None) => GuidanceSetup::Route { route: self.route, speed_mps: None },
+            (None, Some(_)) => GuidanceSetup::Formation {
                 route: self.route,
                 formation: self.formation_params,
                 template: Default::default(),
                 speed_mps: None,
             },
         };
-        if let GuidanceSetup::Formation { template, .. }
-        | GuidanceSetup::Published { template, .. }
-        | GuidanceSetup::LooksAhead { template, .. } = &mut guidance
-        {
+        if let GuidanceSetup::Formation { template, .. } = &mut guidance {
             let graph = self.formation_of(index);
             let own = graph.and_then(|graph| graph.templates.get(index - graph.first));
             *template = own.cloned().unwrap_or_default();

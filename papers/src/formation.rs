@@ -2,7 +2,7 @@
 //! own shortest route against all neighbours that it finds. For comparison only: it jams.
 //!
 //! [`PublishedFormation::decide`] follows algorithm 2 line by line; its criteria are in
-//! [`crate::formation::published`]. Where the paper is ambiguous or contradicts itself:
+//! [`crate::criteria`]. Where the paper is ambiguous or contradicts itself:
 //! - t = 0 (line 4) ends when every robot of the template was found once, since packets are lost.
 //! - Lines 11 and 19 would replace the true target when repeated. The true one is kept.
 //! - Line 12 heads for the cell that `def` points at, in one of eight directions.
@@ -14,26 +14,23 @@
 //! - Line 24 shuffles again, which is another draw. Missing and surplus robots are redirected (item
 //!   6).
 
-use super::grid_task::GridTask;
-use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
-use super::move_history::{on_grid, reachable_goal};
-use super::protocol::{Grid, GridMessage, GridOrder};
-use super::route_guidance::GridWorkspace;
-use super::tunable::Tunable as _;
-use super::{OnGrid, Parameter, Wait};
-use crate::cost::{Gain, Weights};
-use crate::formation::published::{Kept, PublishedParams, smallest_below, sum_of_deviations, sums, sums_of_other};
-use crate::formation::{Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance};
-use crate::grid::{BLOCKED, Cell, Dir, Window};
-use crate::neighbor::Neighbor;
-use crate::robot::{Mode, RobotId};
-use crate::route::{CostField, RouteParams, VisitMemory};
-use crate::scalar::Scalar;
-use crate::shuffle::{Sharpness, weighted_shuffle};
-use crate::template::Template;
-use crate::time::Duration;
-use crate::wire::{RequestKind, TemplateAssembler};
+use crate::criteria::{Kept, PublishedParams, smallest_below, sum_of_deviations, sums, sums_of_other};
 use serde::{Deserialize, Serialize};
+use staya_controller::agent::{
+    Action, BadInput, Decision, Grid, GridMessage, GridOrder, GridTask, GridWorkspace, Law, OnGrid, Parameter, Report,
+    Status, Tools, View, Wait,
+};
+use staya_controller::cost::{Gain, Weights};
+use staya_controller::formation::{Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance};
+use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
+use staya_controller::neighbor::Neighbor;
+use staya_controller::robot::{Mode, RobotId};
+use staya_controller::route::{CostField, RouteParams, VisitMemory};
+use staya_controller::scalar::Scalar;
+use staya_controller::shuffle::{Sharpness, weighted_shuffle};
+use staya_controller::template::Template;
+use staya_controller::time::Duration;
+use staya_controller::wire::{RequestKind, TemplateAssembler};
 
 /// Moving in formation as published, with the visits of `M` cells and a template of `F` neighbours.
 /// Work of a decision: one search, plus one per neighbour found with [`Prediction::Reflexive`].
@@ -192,13 +189,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
     ) -> Result<Decision<S>, BadInput> {
         let Tools { rng, mut radio, workspace } = tools;
         let Some(goal) = self.task.goal(input, self.template.offset) else { return Ok(Decision::idle()) };
-        let (cell, window) = on_grid(here)?;
+        let (cell, window) = here.seen()?;
         if self.here != Some(cell) {
             self.here = Some(cell);
             self.visits.enter(cell);
         }
-        let field = &mut workspace.field;
-        let target = reachable_goal(&window, goal);
+        let field = workspace.field_mut();
+        let target = window.reachable(goal);
         let is_redirected = core::mem::take(&mut self.is_redirected);
         let mut decision = Decision::default();
         self.task.shown =
@@ -215,7 +212,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         }
         self.task.shown.leader = self.leader;
         // Lines 2, 7 and 8.
-        let heads_for = reachable_goal(&window, self.detour.unwrap_or(target));
+        let heads_for = window.reachable(self.detour.unwrap_or(target));
         let price = sums(self.formation.gain, cell, &found.members);
         let ways = if heads_for == cell {
             // Algorithm 3, line 6.

@@ -1,34 +1,16 @@
-//! Formation keeping as published: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2, 5, 6 and 7.
-//!
-//! This module holds the criteria; [`PublishedFormation`](crate::agent::PublishedFormation) applies
-//! them. Algorithm 5 is [`find_neighbors`](super::find_neighbors), `def` is [`def`](super::def).
-//! Misprints are resolved as in [`super`]; sums hold each neighbour's offset.
+//! The criteria of formation keeping as published: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms
+//! 2, 5, 6 and 7. Algorithm 5 is [`find_neighbors`](staya_controller::formation::find_neighbors).
+//! Misprints are resolved as in [`staya_controller::formation`]; sums hold each neighbour's offset.
 
-use super::{Found, Member, Prediction, deviation};
-use crate::cost::{EXCLUDED, Gain, Weights};
-use crate::grid::{Cell, Dir, UNIT};
-use crate::names::named;
-use crate::robot::RobotId;
-use crate::template::TemplateEntry;
 use serde::{Deserialize, Serialize};
-
-named! {
-    /// The available laws of formation keeping.
-    #[derive(Default)]
-    pub enum FormationLaw {
-        /// Staya's: the top leader chooses the route and waits ([`crate::formation`]).
-        #[default]
-        Staya = "staya",
-        /// The paper's: each robot weighs its own route ([`PublishedParams`]).
-        Paper = "paper",
-        /// Staya's, with routes to the future positions of places ([`Course`](super::Course)).
-        Lookahead = "lookahead",
-    }
-}
+use staya_controller::cost::{EXCLUDED, Gain, Weights};
+use staya_controller::formation::{Found, Member, Prediction, deviation};
+use staya_controller::grid::{Cell, Dir, UNIT};
+use staya_controller::robot::RobotId;
+use staya_controller::template::TemplateEntry;
 
 /// Parameters of the paper's law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PublishedParams {
     /// How far from its place a neighbour still counts as found, cells (eps of algorithm 5).
     /// According to the paper, a larger value gives a smaller error.
@@ -88,7 +70,6 @@ pub fn smallest_below(own: RobotId, members: &[Member]) -> RobotId {
 
 /// The state of a formation by its sum of deviations (algorithm 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kept {
     /// About r0 or less: lines 14 and 21.
     Well,
@@ -139,9 +120,9 @@ pub fn sums_of_other(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formation::{Seen, find_neighbors};
-    use crate::robot::Mode;
-    use crate::template::Template;
+    use staya_controller::formation::{Seen, find_neighbors};
+    use staya_controller::robot::Mode;
+    use staya_controller::template::Template;
     use std::vec::Vec;
 
     /// Figure 5: rows 1 2 3 and 4 5 6, three cells apart.

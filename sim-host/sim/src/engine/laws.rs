@@ -1,0 +1,125 @@
+//! The laws that scenario files name: Staya's, and those of papers.
+
+use super::simulate::WIDE;
+use crate::scenario::Scenario;
+use serde::{Deserialize, Serialize};
+use staya_controller::agent::{
+    AnyLaw, AnyOrder, AnyProtocol, AnySurroundings, BadInput, Decision, FormationGuidance, GridMessage, GridWorkspace,
+    GuidanceSetup, LEARNED, Law, MAP_TILES, Parameter, Radio, Report, SharedMap, TEMPLATE, Tools, VISITS, View,
+    decide_as, order_as, receive_as,
+};
+use staya_controller::robot::RobotId;
+use staya_papers::criteria::PublishedParams;
+use staya_papers::{Course, PublishedFormation};
+
+type Map = Option<Box<SharedMap<MAP_TILES>>>;
+
+/// A law of a scenario file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "each variant's type says it")]
+pub enum ScenarioLaw {
+    BuiltIn(AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Map>),
+    Published(Box<PublishedFormation<WIDE, VISITS, TEMPLATE>>),
+    LooksAhead(Box<FormationGuidance<WIDE, VISITS, TEMPLATE, LEARNED, Course, Map>>),
+}
+
+/// Which law of a paper replaces Staya's formation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Papers {
+    published: Option<PublishedParams>,
+    looks_ahead: bool,
+}
+
+impl Papers {
+    pub(super) const fn of(scenario: &Scenario) -> Self {
+        Self { published: scenario.published, looks_ahead: scenario.looks_ahead }
+    }
+
+    pub(super) fn law(&self, setup: &GuidanceSetup, map: Map) -> ScenarioLaw {
+        match (setup, self.published) {
+            (GuidanceSetup::Formation { route, template, .. }, Some(params)) => {
+                let law = PublishedFormation::new(route.params, params, template.clone());
+                ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
+            }
+            (GuidanceSetup::Formation { route, formation, template, .. }, None) if self.looks_ahead => {
+                let law =
+                    FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
+                ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
+            }
+            _ => ScenarioLaw::BuiltIn(setup.law(map)),
+        }
+    }
+}
+
+macro_rules! each {
+    ($any:expr, $law:ident => $action:expr) => {
+        match $any {
+            ScenarioLaw::BuiltIn($law) => $action,
+            ScenarioLaw::Published(law) => {
+                let $law = &mut **law;
+                $action
+            }
+            ScenarioLaw::LooksAhead(law) => {
+                let $law = &mut **law;
+                $action
+            }
+        }
+    };
+    (ref $any:expr, $law:ident => $action:expr) => {
+        match $any {
+            ScenarioLaw::BuiltIn($law) => $action,
+            ScenarioLaw::Published(law) => {
+                let $law = &**law;
+                $action
+            }
+            ScenarioLaw::LooksAhead(law) => {
+                let $law = &**law;
+                $action
+            }
+        }
+    };
+}
+
+impl Law<f32> for ScenarioLaw {
+    type Surroundings<'a> = AnySurroundings<'a, f32>;
+    type Protocol = AnyProtocol;
+    type Workspace = GridWorkspace<WIDE>;
+
+    fn decide(
+        &mut self,
+        view: &View<'_, f32>,
+        here: &AnySurroundings<'_, f32>,
+        tools: Tools<'_, f32, Self>,
+    ) -> Result<Decision<f32>, BadInput> {
+        let Tools { rng, mut radio, workspace } = tools;
+        each!(self, law => decide_as(law, view, here, (rng, &mut radio), workspace))
+    }
+
+    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+        each!(self, law => Law::<f32>::payload(law, radio));
+    }
+
+    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
+        each!(self, law => receive_as::<f32, _>(law, from, message))
+    }
+
+    fn order(&mut self, order: AnyOrder) -> bool {
+        each!(self, law => order_as::<f32, _>(law, order))
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        each!(ref self, law => Law::<f32>::needs(law, id))
+    }
+
+    fn report(&self) -> Report {
+        each!(ref self, law => Law::<f32>::report(law))
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Option<f32> {
+        each!(ref self, law => law.parameter(parameter))
+    }
+
+    fn tune(&mut self, parameter: Parameter, value: f32) -> bool {
+        each!(self, law => law.tune(parameter, value))
+    }
+}
