@@ -4,7 +4,7 @@
 //! Modules use only modules of an earlier layer:
 //!
 //! 1. Numbers, geometry, names and ids: [`names`], [`scalar`], [`geom`], [`time`], [`rand`],
-//!    [`grid`], [`cost`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`].
+//!    [`grid`], [`cost`], [`parameters`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`].
 //! 2. State of the own robot and of its neighbours: [`body`], [`neighbor`], [`template`], [`wire`].
 //! 3. Behaviours, which never import each other: [`route`], [`formation`], [`orca`], [`flock`],
 //!    [`push_out`].
@@ -56,6 +56,7 @@ pub mod neighbor;
 pub mod obstacle;
 #[cfg(feature = "orca")]
 pub mod orca;
+pub mod parameters;
 #[cfg(feature = "push_out")]
 pub mod push_out;
 pub mod rand;

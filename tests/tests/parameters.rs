@@ -1,7 +1,5 @@
 //! The parameters of a running robot: what a scenario starts with, an operator may set.
 
-use staya_controller::agent::Parameter;
-use staya_controller::names::Named as _;
 use staya_sim::engine::operated;
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::root;
@@ -11,15 +9,15 @@ fn accepts_its_own_values(scenario: &Scenario) -> usize {
     let mut swarm = operated(scenario).unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
     let mut tried = 0;
     for index in 0..scenario.robots.len().min(60) {
-        for &(_, parameter) in Parameter::NAMES {
-            let Some(value) = swarm.parameter(index, parameter) else { continue };
-            if matches!(parameter, Parameter::Radius | Parameter::Tolerance) && value == 0.0 {
+        for (row, value) in swarm.parameters(index) {
+            let name = row.name;
+            if matches!(name, "radius_m" | "tolerance_m") && value == 0.0 {
                 // Robots in cells have neither.
                 continue;
             }
-            let place = format!("{}: robot {index}: {parameter:?} = {value}", scenario.name);
-            assert!(swarm.set_parameter(index, parameter, value), "{place}");
-            assert_eq!(swarm.parameter(index, parameter), Some(value), "{place}");
+            let place = format!("{}: robot {index}: {name} = {value}", scenario.name);
+            assert_eq!(swarm.set_parameter(index, name, value), Ok(()), "{place}");
+            assert_eq!(swarm.parameter(index, name), Some(value), "{place}");
             tried += 1;
         }
     }

@@ -5,8 +5,8 @@ use crate::Number;
 use crate::choices::StayaLaw;
 use serde::{Serialize, Serializer};
 use staya_controller::agent::{
-    AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Parameter, Surroundings as _, Teamwork, ToAny,
-    Waypoint, WaypointGuidance,
+    AnySurroundings, BadInput, Decision, Guidance, GuidanceInput, Surroundings as _, Teamwork, ToAny, Waypoint,
+    WaypointGuidance,
 };
 #[cfg(feature = "flocks")]
 use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
@@ -15,6 +15,7 @@ use staya_controller::agent::{
     CELLS, CellFollower, FormationGuidance, FormationInPlane, GridWorkspace, RouteGuidance, TEMPLATE,
 };
 use staya_controller::grid::Cell;
+use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::TemplateAssignment;
@@ -183,11 +184,7 @@ impl Guidance<Number> for Law {
         each!(self, law => law.assign_waypoint(index, waypoint))
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<Number> {
-        each!(self, law => law.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: Number) -> bool {
-        each!(self, law => law.tune(parameter, value))
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        each!(self, law => Guidance::<Number>::parameters(law, visit));
     }
 }

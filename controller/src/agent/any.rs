@@ -11,13 +11,14 @@ use super::published_formation::PublishedFormation;
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{AnySurroundings, Parameter, Surroundings, Waypoint};
+use super::{AnySurroundings, Surroundings, Waypoint};
 #[cfg(feature = "published")]
 use crate::formation::Course;
 use crate::geom::{Vec2, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{self, HalfPlane, HalfSpaces, MovingBall};
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -37,6 +38,10 @@ pub(in crate::agent) const fn large<G>(law: G) -> Large<G> {
 #[cfg(feature = "host")]
 pub(in crate::agent) fn large<G>(law: G) -> Large<G> {
     Large::new(law)
+}
+
+const fn inside<G>(law: &mut Large<G>) -> &mut G {
+    law
 }
 
 /// Any guidance law, on the grid, in the plane or in space.
@@ -162,12 +167,21 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         each!(self, law => law.assign_waypoint(index, waypoint))
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        each!(self, law => law.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        each!(self, law => law.tune(parameter, value))
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        match self {
+            Self::Waypoint(law) => law.parameters(visit),
+            Self::Lattice(law) => law.parameters(visit),
+            Self::GoalFlock(law) => law.parameters(visit),
+            Self::Boids(law) => law.parameters(visit),
+            Self::Route(law) => law.parameters(visit),
+            Self::Formation(law) => law.parameters(visit),
+            Self::RouteOnGrid(law) => Guidance::<S>::parameters(law, visit),
+            Self::FormationOnGrid(law) => Guidance::<S>::parameters(inside(law), visit),
+            #[cfg(feature = "published")]
+            Self::Published(law) => Guidance::<S>::parameters(inside(law), visit),
+            #[cfg(feature = "published")]
+            Self::LooksAhead(law) => Guidance::<S>::parameters(inside(law), visit),
+        }
     }
 }
 
@@ -234,21 +248,12 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         }
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         match self {
-            Self::Unguarded(safety) => safety.parameter(parameter),
-            Self::Orca(safety) => safety.parameter(parameter),
-            Self::Fly(safety) => safety.parameter(parameter),
-            Self::PushOut(safety) => safety.parameter(parameter),
-        }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        match self {
-            Self::Unguarded(safety) => safety.tune(parameter, value),
-            Self::Orca(safety) => safety.tune(parameter, value),
-            Self::Fly(safety) => safety.tune(parameter, value),
-            Self::PushOut(safety) => safety.tune(parameter, value),
+            Self::Unguarded(_) => {}
+            Self::Orca(safety) => safety.parameters(visit),
+            Self::Fly(safety) => safety.parameters(visit),
+            Self::PushOut(safety) => safety.parameters(visit),
         }
     }
 }

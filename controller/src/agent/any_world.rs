@@ -1,9 +1,10 @@
 //! Adapts a law of the plane to surroundings of any kind.
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
-use super::{AnySurroundings, InPlane, Parameter, Surroundings, Waypoint};
+use super::{AnySurroundings, InPlane, Surroundings, Waypoint};
 use crate::grid::Cell;
 use crate::land::LandPatch;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -61,11 +62,7 @@ where
         self.0.payload(now)
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.0.parameter(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.0.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.0.parameters(visit);
     }
 }

@@ -1,9 +1,10 @@
 //! Runs a guidance law of the grid on a body that moves in the plane.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Teamwork};
-use super::{CellState, InCells, OnGrid, Parameter};
+use super::{CellState, InCells, OnGrid};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
+use crate::parameters::{Parameters, SPEED};
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -25,6 +26,10 @@ pub struct CellFollower<S, G> {
     law: G,
     speed_mps: S,
     last: Option<Last<S>>,
+}
+
+crate::parameters! {
+    impl[S: Scalar, G] CellFollower<S, G> { SPEED => speed_mps }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -92,24 +97,16 @@ where
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
         let Self { law, speed_mps, last } = self;
-        follow(*speed_mps, last, input, here, &mut |grid| law.decide(input, &grid, rng, workspace))
+        follow(speed_mps.max(S::from_milli(1)), last, input, here, &mut |grid| law.decide(input, &grid, rng, workspace))
     }
 
     fn payload(&mut self, now: Instant) -> Self::Payload {
         self.law.payload(now)
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        if parameter == Parameter::Speed { Some(self.speed_mps) } else { self.law.parameter(parameter) }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        if parameter == Parameter::Speed {
-            // The law cannot decide at speed 0.
-            self.speed_mps = value.max(S::from_milli(1));
-            return true;
-        }
-        self.law.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(self);
+        self.law.parameters(visit);
     }
 }
 

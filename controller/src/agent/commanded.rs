@@ -2,11 +2,12 @@
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, pass_on};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{Parameter, Wait, Waypoint, WrongTask};
+use super::{Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
 use crate::grid::Cell;
 use crate::land::LandPatch;
 use crate::neighbor::Tracker;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -203,11 +204,8 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
         self.inside.payload(now)
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.inside.parameter(parameter).or_else(|| self.straight.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.inside.tune(parameter, value) | self.straight.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.inside.parameters(visit);
+        self.straight.parameters(visit);
     }
 }

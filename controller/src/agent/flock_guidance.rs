@@ -1,16 +1,24 @@
 //! The flocks as guidance laws.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints};
-use super::tunable::Tunable as _;
-use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
+use super::{InPlane, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, ReferenceMotion, acceleration};
 use crate::geom::{Position, Vec2, Vec3};
+use crate::parameters::{Parameters, SPEED, TOLERANCE};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
+
+crate::parameters! {
+    impl[S: Scalar] GoalFlockGuidance<S> { TOLERANCE => arrival_m }
+}
+
+crate::parameters! {
+    impl[S: Scalar] BoidsGuidance<S> { SPEED => speed_mps }
+}
 
 /// Goals that a robot of a goal flock can store.
 pub const GOALS: usize = WAYPOINTS;
@@ -83,12 +91,8 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
         true
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.params.get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
     }
 }
 
@@ -180,16 +184,9 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
         true
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        if parameter == Parameter::Tolerance { Some(self.arrival_m) } else { self.params.get(parameter) }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        if parameter == Parameter::Tolerance {
-            self.arrival_m = value;
-            return true;
-        }
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
+        visit(self);
     }
 }
 
@@ -244,15 +241,8 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
         true
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        if parameter == Parameter::Speed { Some(self.speed_mps) } else { self.params.get(parameter) }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        if parameter == Parameter::Speed {
-            self.speed_mps = value;
-            return true;
-        }
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
+        visit(self);
     }
 }

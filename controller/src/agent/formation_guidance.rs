@@ -3,8 +3,7 @@
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{MoveHistory, PATIENCE, avoid_crossing, on_grid, reachable_goal};
 use super::route_guidance::GridWorkspace;
-use super::tunable::Tunable;
-use super::{OnGrid, Parameter, Wait};
+use super::{OnGrid, Wait};
 use crate::cost::Weights;
 use crate::formation::{
     Anchor, Footprint, FormationParams, Found, GapClosing, GraphDistance, Member, NextMove, PaceControl, Recovery,
@@ -13,6 +12,7 @@ use crate::formation::{
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::neighbor::Neighbor;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::route::{RouteParams, Router};
@@ -419,11 +419,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         false
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.route.get(parameter).or_else(|| self.formation.get(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        Tunable::<S>::tune(&mut self.route, parameter, value) || self.formation.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.route);
+        visit(&mut self.formation);
     }
 }

@@ -1,11 +1,12 @@
 //! The interface between the agent and its guidance law.
 
-use super::{KinematicState, Parameter, Surroundings, Wait, Waypoint};
+use super::{KinematicState, Surroundings, Wait, Waypoint};
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::land::{FarLand, LandPatch};
 use crate::neighbor::{Ages, Nearby, Neighbor, Tracker};
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -131,15 +132,8 @@ pub trait Guidance<S: Scalar>: Teamwork {
         Self::Payload::default()
     }
 
-    /// Returns the value of a parameter, or `None` if the law does not have it.
-    fn parameter(&self, _parameter: Parameter) -> Option<S> {
-        None
-    }
-
-    /// Changes a parameter to a value within [`Parameter::range`]. Returns whether it was accepted.
-    fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
-        false
-    }
+    /// Calls `visit` with each of its tables of parameters.
+    fn parameters(&mut self, _visit: &mut dyn FnMut(&mut dyn Parameters)) {}
 }
 
 /// Messages between robots that travel together, in addition to beacons; all are optional.

@@ -1,11 +1,12 @@
 //! Shares a map of the terrain with other robots and plans with it.
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
-use super::{Parameter, Surroundings, Waypoint};
+use super::{Surroundings, Waypoint};
 use crate::grid::Cell;
 use crate::land::{FarLand, LandMap, LandPatch, MapParams};
 use crate::list::SparseVec;
 use crate::neighbor::Tracker;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -176,11 +177,7 @@ impl<S: Scalar, G: Guidance<S>, const T: usize> Guidance<S> for MapSharing<G, T>
         self.inside.payload(now)
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.inside.parameter(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.inside.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.inside.parameters(visit);
     }
 }

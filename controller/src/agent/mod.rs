@@ -126,7 +126,6 @@ mod state;
 mod step;
 mod surroundings;
 mod task;
-mod tunable;
 mod wait;
 mod waypoint;
 mod waypoint_guidance;
@@ -151,7 +150,7 @@ pub use map_sharing::MapSharing;
 pub use neighbor_tracking::NeighborTracking;
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
-pub use parameter::Parameter;
+pub use parameter::parameters;
 #[cfg(feature = "published")]
 pub use published_formation::PublishedFormation;
 pub use route_guidance::{GridWorkspace, RouteGuidance};

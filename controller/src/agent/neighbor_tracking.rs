@@ -1,12 +1,13 @@
 //! Adds sensor detections of other robots to a guidance law.
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
-use super::{Agent, KinematicState, Outputs, Parameter, Safety, Waypoint};
+use super::{Agent, KinematicState, Outputs, Safety, Waypoint};
 use crate::geom::Position;
 use crate::grid::Cell;
 use crate::land::LandPatch;
 use crate::list::{self, SparseVec};
 use crate::neighbor::{Sighted, Sighting, TrackParams, Tracker};
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -135,11 +136,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for NeighborTracking<S, G> {
         self.inside.payload(now)
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.inside.parameter(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.inside.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.inside.parameters(visit);
     }
 }

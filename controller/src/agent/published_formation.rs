@@ -17,14 +17,14 @@
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{on_grid, reachable_goal};
 use super::route_guidance::GridWorkspace;
-use super::tunable::Tunable as _;
-use super::{OnGrid, Parameter, Wait};
+use super::{OnGrid, Wait};
 use crate::cost::{Gain, Weights};
 use crate::formation::published::{Kept, PublishedParams, smallest_below, sum_of_deviations, sums, sums_of_other};
 use crate::formation::{Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance};
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::list;
 use crate::neighbor::Neighbor;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::route::{CostField, RouteParams, VisitMemory};
@@ -293,11 +293,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         false
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.route.get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.route.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.route);
     }
 }

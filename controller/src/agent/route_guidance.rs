@@ -1,12 +1,12 @@
 //! Routing of a single robot to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
+use super::OnGrid;
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{MoveHistory, avoid_crossing, on_grid, reachable_goal};
-use super::tunable::Tunable as _;
-use super::{OnGrid, Parameter};
 use crate::cost::{Gain, Weights};
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::route::{CostField, Replan, RouteParams, Router};
 use crate::scalar::Scalar;
@@ -158,11 +158,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
         false
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.params.get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
     }
 }

@@ -5,11 +5,12 @@ use crate::agent::cell_follower::CellFollower;
 use crate::agent::goal_occupancy::{Claim, GoalOccupancy};
 use crate::agent::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use crate::agent::route_guidance::GridWorkspace;
-use crate::agent::{InCells, Parameter, Wait};
+use crate::agent::{InCells, Wait};
 use crate::formation::{Drive, behind, is_straight, scaled};
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, Window};
 use crate::neighbor::Neighbor;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
@@ -289,11 +290,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         Ok(decision)
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.cells.parameter(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.cells.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.cells.parameters(visit);
     }
 }

@@ -1,7 +1,9 @@
 //! Tests that wrappers forward all functions of [`Teamwork`] to the law inside.
 
 use super::*;
+use crate::flock::boids::BoidsParams;
 use crate::land::{LandPatch, PATCH_TILES};
+use crate::parameters::Parameters;
 
 #[derive(Default)]
 struct Listener {
@@ -129,20 +131,19 @@ impl Guidance<f32> for Answers {
         self.0
     }
 
-    fn parameter(&self, _: Parameter) -> Option<f32> {
-        self.0.then_some(0.5)
-    }
-
-    fn tune(&mut self, _: Parameter, _: f32) -> bool {
-        self.0
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        if self.0 {
+            visit(&mut BoidsParams::paper(1.0_f32));
+        }
     }
 }
 
 fn passes_answers_on<L: Guidance<f32>>(mut law: L, answer: bool) {
     assert_eq!([law.goes_to_cells(), law.goes_by_velocity(), law.has_own_goal()], [answer; 3]);
     assert_eq!(law.assign_waypoint(0, &super::plane::place(0, 0)), answer);
-    let parameter = Parameter::Horizon;
-    assert_eq!((law.parameter(parameter), law.tune(parameter, 0.5)), (answer.then_some(0.5), answer));
+    let mut is_visited = false;
+    law.parameters(&mut |table| is_visited |= table.index("crowded_m").is_some());
+    assert_eq!(is_visited, answer);
 }
 
 #[test]

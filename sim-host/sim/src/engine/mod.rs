@@ -311,7 +311,10 @@ where
         }
         // Only laws without a task refuse it; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(number, self.tick));
-        intervene::retune(&self.tuned, number, |parameter, value| agent.set_parameter(parameter, value));
+        intervene::retune(&self.tuned, number, |name, value| {
+            // A value that was refused once is refused again.
+            let _ = agent.set_parameter(name, value);
+        });
         self.computer(Some(agent), boot)
     }
 
