@@ -1,8 +1,16 @@
 //! The parameters of a running robot: what a scenario starts with, an operator may set.
 
+use staya_controller::agent::parameters;
+use staya_controller::flock::boids::BoidsParams;
+use staya_controller::flock::goal::GoalParams;
+use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::formation::FormationParams;
+use staya_controller::orca::AvoidParams;
+use staya_controller::parameters::{Parameter, Parameters};
+use staya_controller::route::RouteParams;
 use staya_sim::engine::operated;
 use staya_sim::scenario::{Overrides, Scenario};
-use staya_tests::root;
+use staya_tests::{golden, root};
 use std::fs;
 
 fn accepts_its_own_values(scenario: &Scenario) -> usize {
@@ -66,4 +74,25 @@ fn an_operator_can_set_the_ends_of_a_files_ranges() {
     ] {
         of(cells, rest);
     }
+}
+
+/// The list that the pages refer to.
+#[test]
+fn golden_list_of_parameters() {
+    let complete: [&dyn Parameters; 3] =
+        [&AvoidParams::<f32>::default(), &RouteParams::default(), &FormationParams::default()];
+    // Their lengths and speeds depend on the robots.
+    let gains: [&dyn Parameters; 3] =
+        [&GoalParams::new(1.0_f32, 1.0), &LatticeParams::new(1.0_f32), &BoidsParams::paper(1.0_f32)];
+    let mut list = String::from("name            MAVLink         unit      range          default  description\n");
+    for Parameter { name, mavlink, unit, range: [least, greatest], what } in parameters() {
+        let of = |table: &&dyn Parameters| table.get(table.index(name)?);
+        let default =
+            complete.iter().find_map(of).or_else(|| gains.iter().find_map(of).filter(|_| !unit.contains('m')));
+        let default = default.map_or_else(String::new, |value| format!("{value:.3}"));
+        let default = default.trim_end_matches('0').trim_end_matches('.');
+        let range = format!("{least} to {greatest}");
+        list += &format!("{name:<15} {mavlink:<15} {unit:<9} {range:<14} {default:<8} {what}\n");
+    }
+    golden("parameters", &list, &[]);
 }
