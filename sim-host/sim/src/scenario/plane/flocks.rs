@@ -175,16 +175,15 @@ pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result
         return Ok(None);
     };
     let mut params = BoidsSetup::PAPER;
-    let BoidsSetup { crowded_m, closest_m, max_turn, max_turn_away } = &mut params;
-    let fields = [
-        (Some(given.crowded_m), crowded_m),
-        (Some(given.closest_m), closest_m),
-        (given.max_turn, max_turn),
-        (given.max_turn_away, max_turn_away),
-    ];
-    for (row, (value, param)) in BoidsParams::<f32>::TABLE.iter().zip(fields) {
+    for (name, value, param) in [
+        ("crowded_m", Some(given.crowded_m), &mut params.crowded_m),
+        ("closest_m", Some(given.closest_m), &mut params.closest_m),
+        ("max_turn", given.max_turn, &mut params.max_turn),
+        ("max_turn_away", given.max_turn_away, &mut params.max_turn_away),
+    ] {
         if let Some(value) = value {
-            spec.within(source, &format!("boids.{}", row.name), value, range(row), unit(row))?;
+            let row = row(BoidsParams::<f32>::TABLE, name);
+            spec.within(source, &format!("boids.{name}"), value, range(row), unit(row))?;
             *param = value as f32;
         }
     }
