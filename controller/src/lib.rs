@@ -4,8 +4,9 @@
 //! Modules use only modules of an earlier layer:
 //!
 //! 1. Numbers, geometry, names and ids: [`names`], [`scalar`], [`geom`], [`time`], [`rand`],
-//!    [`grid`], [`cost`], [`parameters`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`].
-//! 2. State of the own robot and of its neighbours: [`body`], [`neighbor`], [`template`], [`wire`].
+//!    [`grid`], [`cost`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`].
+//! 2. State of the own robot and of its neighbours, parameters: [`body`], [`neighbor`],
+//!    [`mod@parameters`], [`template`], [`wire`].
 //! 3. Behaviours, which never import each other: [`route`], [`formation`], [`orca`], [`flock`],
 //!    [`push_out`].
 //! 4. Composition: [`supervisor`], [`agent`].

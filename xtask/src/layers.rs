@@ -8,24 +8,10 @@ use std::path::Path;
 /// [`APART`] says not.
 const LAYERS: [&[&str]; 4] = [
     &[
-        "names",
-        "scalar",
-        "digest",
-        "geom",
-        "time",
-        "rand",
-        "grid",
-        "cost",
-        "parameters",
-        "shuffle",
-        "list",
-        "fixint",
-        "obstacle",
-        "land",
-        "robot",
-        "auth",
+        "names", "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle",
+        "land", "robot", "auth",
     ],
-    &["body", "neighbor", "template", "wire"],
+    &["body", "neighbor", "parameters", "template", "wire"],
     &["route", "formation", "orca", "flock", "push_out"],
     &["supervisor", "agent"],
 ];

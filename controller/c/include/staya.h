@@ -1730,8 +1730,8 @@ StayaStatus staya_parameter(struct StayaAgent *agent, uint32_t index, struct Sta
 StayaStatus staya_get_parameter(struct StayaAgent *agent, const char *name, float *value);
 
 /**
- * Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and no
- * change, if the robot lacks it, or the value is out of range or contradicts other parameters.
+ * Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and
+ * no change, if the robot lacks it, or the value is out of range or contradicts other parameters.
  */
 StayaStatus staya_set_parameter(struct StayaAgent *agent, const char *name, float value);
 

@@ -90,8 +90,8 @@ pub unsafe extern "C" fn staya_get_parameter(
     answer(ask())
 }
 
-/// Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and no
-/// change, if the robot lacks it, or the value is out of range or contradicts other parameters.
+/// Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and
+/// no change, if the robot lacks it, or the value is out of range or contradicts other parameters.
 ///
 /// # Safety
 /// See the header's introduction.

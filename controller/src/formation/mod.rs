@@ -2,7 +2,7 @@
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2 and 5 to 7; section 6 for the
 //! measures. All functions are pure; a robot's state is [`PaceControl`] and its
-//! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s
+//! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`]s
 //! per cell, costs those of [`crate::cost`]. In the plane, places are points ([`Drive`]).
 //!
 //! The paper's own law is in `published`, behind the feature of that name. Differences to it
@@ -95,10 +95,10 @@ pub struct FormationParams {
     /// Price of being off the own place, ticks per cell. With 0 all robots take the shortest route;
     /// large values push robots straight over bad land.
     pub gain: Gain,
-    /// Lag of a robot at which the top leader waits, [`UNIT`](crate::grid::UNIT)s (r0). A smaller
+    /// Lag of a robot at which the top leader waits, [`UNIT`]s (r0). A smaller
     /// value keeps the formation tighter and costs time; with [`NEVER`] the leader does not wait.
     pub halt_lag: u16,
-    /// Lag at which the leader continues, [`UNIT`](crate::grid::UNIT)s; at most `halt_lag`.
+    /// Lag at which the leader continues, [`UNIT`]s; at most `halt_lag`.
     pub resume_lag: u16,
     /// How far ahead of the top leader the others aim, cells: its move and the delay of its beacon.
     pub lead: u8,
