@@ -5,7 +5,8 @@
 //!
 //! 1. Numbers, geometry, names and ids: [`names`], [`scalar`], [`geom`], [`time`], [`rand`],
 //!    [`grid`], [`cost`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`].
-//! 2. State of the own robot and of its neighbours: [`body`], [`neighbor`], [`template`], [`wire`].
+//! 2. State of the own robot and of its neighbours, parameters: [`body`], [`neighbor`],
+//!    [`mod@parameters`], [`template`], [`wire`].
 //! 3. Behaviours, which never import each other: [`route`], [`formation`], [`orca`], [`flock`],
 //!    [`push_out`].
 //! 4. Composition: [`supervisor`], [`agent`].
@@ -56,6 +57,7 @@ pub mod neighbor;
 pub mod obstacle;
 #[cfg(feature = "orca")]
 pub mod orca;
+pub mod parameters;
 #[cfg(feature = "push_out")]
 pub mod push_out;
 pub mod rand;

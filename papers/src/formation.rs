@@ -17,13 +17,16 @@
 use crate::criteria::{Kept, PublishedParams, smallest_below, sum_of_deviations, sums, sums_of_other};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Decision, Grid, GridMessage, GridOrder, GridTask, GridWorkspace, Law, OnGrid, Parameter, Report,
-    Status, Tools, View, Wait,
+    Action, BadInput, Decision, Grid, GridMessage, GridOrder, GridTask, GridWorkspace, Law, OnGrid, Report, Status,
+    Tools, View, Wait,
 };
 use staya_controller::cost::{Gain, Weights};
-use staya_controller::formation::{Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance};
+use staya_controller::formation::{
+    Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance,
+};
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
 use staya_controller::neighbor::Neighbor;
+use staya_controller::parameters::Parameters;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::{CostField, RouteParams, VisitMemory};
 use staya_controller::scalar::Scalar;
@@ -283,11 +286,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         self.task.shown
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.route.get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.route.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.route);
     }
 }

@@ -1,19 +1,29 @@
 //! Tests of KUZ algorithm 2: a column of three on flat terrain, robot 1 in front.
 
-use super::*;
-use crate::formation::published::PublishedParams;
-use crate::grid::UNIT;
+use crate::PublishedFormation;
+use crate::criteria::PublishedParams;
+use staya_controller::agent::*;
+use staya_controller::grid::{Cell, Dir, UNIT, Window};
+use staya_controller::robot::{Mode, RobotId};
+use staya_controller::route::RouteParams;
+use staya_controller::template::Template;
+use staya_controller::time::{Duration, Instant};
+use staya_controller::wire::{Beacon, Header, Message, Postcard, Request, RequestKind, decode, encode, frames};
+use std::vec;
+use std::vec::Vec;
 
 type Law = PublishedFormation<CELLS, VISITS, TEMPLATE>;
 type Published = Agent<f32, Law, NEIGHBORS>;
+
+const TICK: Duration = Duration::from_millis(1000);
 
 /// Lost above four cells in total, kept again within one.
 fn agent(id: u32) -> Published {
     let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 1).unwrap();
     let params = PublishedParams { halt: 4 * UNIT as u16, resume: UNIT as u16, ..PublishedParams::default() };
-    let mut agent =
-        Published::new(&config(id), Law::new(RouteParams::default(), params, template), Unguarded, Postcard);
+    let config = AgentConfig { seed: 1, ..AgentConfig::new(RobotId(id), 0.0, TICK) };
+    let mut agent = Published::new(&config, Law::new(RouteParams::default(), params, template), Unguarded, Postcard);
     agent.order(GridOrder::Goal(Cell::new(100 - 3 * (id as i16 - 1), 50)));
     agent
 }
@@ -21,7 +31,14 @@ fn agent(id: u32) -> Published {
 /// `off` cells east of its place.
 fn at(id: u32, off: i16, leader: u32) -> Beacon {
     let x = 50 - 3 * (id as i16 - 1) + off;
-    Beacon { leader: RobotId(leader), target: Cell::new(90, 50), heading: Dir::East, ..beacon_at(x, 50) }
+    Beacon {
+        cell: Cell::new(x, 50),
+        mode: Mode::Cruise,
+        leader: RobotId(leader),
+        target: Cell::new(90, 50),
+        heading: Dir::East,
+        ..Beacon::default()
+    }
 }
 
 struct Told {
@@ -31,12 +48,22 @@ struct Told {
 }
 
 fn step(agent: &mut Published, n: u16, id: u32, off: i16, heard: &[(u32, Message)]) -> Told {
-    let numbered = (10 * n..).zip(heard);
-    let inbox: Vec<u8> =
-        numbered.flat_map(|(n, (sender, message))| bytes(*sender, 0, n, core::slice::from_ref(message))).collect();
+    let mut inbox = heapless::Vec::<u8, 512>::new();
+    for (sequence, (sender, message)) in (10 * n..).zip(heard) {
+        encode(Header { boot: 0, sender: RobotId(*sender), sequence }, message, &mut inbox).unwrap();
+    }
     let here = at(id, off, 0).cell;
-    let out = agent.step(&inputs(&FLAT, here, &inbox), tick(n.into()), &mut workspace());
-    let asks = sent(&out).into_iter().filter_map(|frame| match frame.message {
+    let inputs = Inputs {
+        state: KinematicState::default(),
+        surroundings: OnGrid {
+            cell: CellState { cell: here, busy: Duration::ZERO },
+            window: Window::new(&[1; 121], here - Cell::new(5, 5), 11, 11),
+        },
+        inbox: &inbox,
+    };
+    let now = Instant::from_micros(0) + TICK.saturating_mul(n.into());
+    let out = agent.step(&inputs, now, &mut GridWorkspace::new());
+    let asks = frames(&out.outbox).filter_map(|frame| match decode(frame).unwrap().message {
         Message::Request(request) => Some((request.to.0, request.kind)),
         _ => None,
     });

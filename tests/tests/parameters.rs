@@ -1,25 +1,31 @@
 //! The parameters of a running robot: what a scenario starts with, an operator may set.
 
-use staya_controller::agent::Parameter;
-use staya_controller::names::Named as _;
+use staya_controller::agent::parameters;
+use staya_controller::flock::boids::BoidsParams;
+use staya_controller::flock::goal::GoalParams;
+use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::formation::FormationParams;
+use staya_controller::orca::AvoidParams;
+use staya_controller::parameters::{Parameter, Parameters};
+use staya_controller::route::RouteParams;
 use staya_sim::engine::operated;
 use staya_sim::scenario::{Overrides, Scenario};
-use staya_tests::root;
+use staya_tests::{golden, root};
 use std::fs;
 
 fn accepts_its_own_values(scenario: &Scenario) -> usize {
     let mut swarm = operated(scenario).unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
     let mut tried = 0;
     for index in 0..scenario.robots.len().min(60) {
-        for &(_, parameter) in Parameter::NAMES {
-            let Some(value) = swarm.parameter(index, parameter) else { continue };
-            if matches!(parameter, Parameter::Radius | Parameter::Tolerance) && value == 0.0 {
+        for (row, value) in swarm.parameters(index) {
+            let name = row.name;
+            if matches!(name, "radius_m" | "tolerance_m") && value == 0.0 {
                 // Robots in cells have neither.
                 continue;
             }
-            let place = format!("{}: robot {index}: {parameter:?} = {value}", scenario.name);
-            assert!(swarm.set_parameter(index, parameter, value), "{place}");
-            assert_eq!(swarm.parameter(index, parameter), Some(value), "{place}");
+            let place = format!("{}: robot {index}: {name} = {value}", scenario.name);
+            assert_eq!(swarm.set_parameter(index, name, value), Ok(()), "{place}");
+            assert_eq!(swarm.parameter(index, name), Some(value), "{place}");
             tried += 1;
         }
     }
@@ -68,4 +74,25 @@ fn an_operator_can_set_the_ends_of_a_files_ranges() {
     ] {
         of(cells, rest);
     }
+}
+
+/// The list that the pages refer to.
+#[test]
+fn golden_list_of_parameters() {
+    let complete: [&dyn Parameters; 3] =
+        [&AvoidParams::<f32>::default(), &RouteParams::default(), &FormationParams::default()];
+    // Their lengths and speeds depend on the robots.
+    let gains: [&dyn Parameters; 3] =
+        [&GoalParams::new(1.0_f32, 1.0), &LatticeParams::new(1.0_f32), &BoidsParams::paper(1.0_f32)];
+    let mut list = String::from("name            MAVLink         unit      range          default  description\n");
+    for Parameter { name, mavlink, unit, range: [least, greatest], what } in parameters() {
+        let of = |table: &&dyn Parameters| table.get(table.index(name)?);
+        let default =
+            complete.iter().find_map(of).or_else(|| gains.iter().find_map(of).filter(|_| !unit.contains('m')));
+        let default = default.map_or_else(String::new, |value| format!("{value:.3}"));
+        let default = default.trim_end_matches('0').trim_end_matches('.');
+        let range = format!("{least} to {greatest}");
+        list += &format!("{name:<15} {mavlink:<15} {unit:<9} {range:<14} {default:<8} {what}\n");
+    }
+    golden("parameters", &list, &[]);
 }

@@ -11,7 +11,7 @@ const LAYERS: [&[&str]; 4] = [
         "names", "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle",
         "land", "robot", "auth",
     ],
-    &["body", "neighbor", "template", "wire"],
+    &["body", "neighbor", "parameters", "template", "wire"],
     &["route", "formation", "orca", "flock", "push_out"],
     &["supervisor", "agent"],
 ];

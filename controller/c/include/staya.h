@@ -624,188 +624,6 @@ typedef uint8_t StayaPushOutModel;
 #endif // __cplusplus
 
 /**
- * A parameter that `staya_set_parameter` can change while the robot runs. `staya_parameter_name`,
- * `staya_parameter_unit` and `staya_parameter_range` describe it.
- */
-enum StayaParameter
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : uint32_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
-    /**
-     * Radius that others keep clear of; not less than the body's, m.
-     */
-    STAYA_PARAMETER_RADIUS = 0,
-    /**
-     * Time between two beacons, s.
-     */
-    STAYA_PARAMETER_BEACON_PERIOD = 1,
-    /**
-     * Preferred speed, m/s.
-     */
-    STAYA_PARAMETER_SPEED = 2,
-    /**
-     * Distance within which the goal counts as reached, m.
-     */
-    STAYA_PARAMETER_TOLERANCE = 3,
-    /**
-     * Time ahead without a collision with a robot, s.
-     */
-    STAYA_PARAMETER_HORIZON = 4,
-    /**
-     * Time ahead without a collision with an obstacle, s.
-     */
-    STAYA_PARAMETER_WALL_HORIZON = 5,
-    /**
-     * Own share of a correction.
-     */
-    STAYA_PARAMETER_SHARE = 6,
-    /**
-     * Distance kept in addition to the radii, m.
-     */
-    STAYA_PARAMETER_MARGIN = 7,
-    /**
-     * How far to turn to the right while a robot is in the way, rad.
-     */
-    STAYA_PARAMETER_LEAN = 8,
-    /**
-     * How long a gap is left to robots whose turn it is, radii.
-     */
-    STAYA_PARAMETER_PATIENCE_RADII = 9,
-    /**
-     * Least distance of two robots' centres, m.
-     */
-    STAYA_PARAMETER_MIN_DISTANCE = 10,
-    /**
-     * Distance up to which neighbours count, m.
-     */
-    STAYA_PARAMETER_NEIGHBORHOOD = 11,
-    /**
-     * Pull of the goal (K1).
-     */
-    STAYA_PARAMETER_GOAL_GAIN = 12,
-    /**
-     * Pull of the middle of the neighbours (K2).
-     */
-    STAYA_PARAMETER_CENTER_GAIN = 13,
-    /**
-     * Push of neighbours that are too near (K3).
-     */
-    STAYA_PARAMETER_REPULSION_GAIN = 14,
-    /**
-     * Distance of neighbours in the lattice (d), m.
-     */
-    STAYA_PARAMETER_SPACING = 15,
-    /**
-     * Range of interaction over spacing.
-     */
-    STAYA_PARAMETER_RANGE_RATIO = 16,
-    /**
-     * Distance from obstacles over spacing.
-     */
-    STAYA_PARAMETER_OBSTACLE_RATIO = 17,
-    /**
-     * Bound of the attraction (a).
-     */
-    STAYA_PARAMETER_ATTRACTION = 18,
-    /**
-     * Bound of the repulsion (b), not less than a.
-     */
-    STAYA_PARAMETER_REPULSION = 19,
-    /**
-     * Gain between robots, on positions, 1/s^2.
-     */
-    STAYA_PARAMETER_ALPHA_POSITION = 20,
-    /**
-     * Gain between robots, on velocities, 1/s.
-     */
-    STAYA_PARAMETER_ALPHA_VELOCITY = 21,
-    /**
-     * Gain of obstacles, on positions, 1/s^2.
-     */
-    STAYA_PARAMETER_BETA_POSITION = 22,
-    /**
-     * Gain of obstacles, on velocities, 1/s.
-     */
-    STAYA_PARAMETER_BETA_VELOCITY = 23,
-    /**
-     * Gain of the reference, on positions, 1/s^2.
-     */
-    STAYA_PARAMETER_GAMMA_POSITION = 24,
-    /**
-     * Gain of the reference, on velocities, 1/s.
-     */
-    STAYA_PARAMETER_GAMMA_VELOCITY = 25,
-    /**
-     * Distance below which a boid turns away, m.
-     */
-    STAYA_PARAMETER_CROWDED = 26,
-    /**
-     * Distance up to which a neighbour counts, m.
-     */
-    STAYA_PARAMETER_CLOSEST = 27,
-    /**
-     * Largest turn towards the others in a step, rad.
-     */
-    STAYA_PARAMETER_MAX_TURN = 28,
-    /**
-     * Turn away from a neighbour that is too near in a step, rad.
-     */
-    STAYA_PARAMETER_MAX_TURN_AWAY = 29,
-    /**
-     * Weight of travel time.
-     */
-    STAYA_PARAMETER_TIME_GAIN = 30,
-    /**
-     * Additional cost of a cell with another robot, ticks.
-     */
-    STAYA_PARAMETER_OTHERS_GAIN = 31,
-    /**
-     * Additional cost of a cell for each earlier visit, ticks.
-     */
-    STAYA_PARAMETER_VISITS_GAIN = 32,
-    /**
-     * Price of a cell between the window and the target, ticks.
-     */
-    STAYA_PARAMETER_WAY_GAIN = 33,
-    /**
-     * Distance from its place up to which a robot is found, cells.
-     */
-    STAYA_PARAMETER_EPS = 34,
-    /**
-     * Price of a cell off the own place, ticks.
-     */
-    STAYA_PARAMETER_PLACE_GAIN = 35,
-    /**
-     * How far a robot may fall behind before the leader waits, cells.
-     */
-    STAYA_PARAMETER_HALT_LAG = 36,
-    /**
-     * How near it must be before the leader continues, cells.
-     */
-    STAYA_PARAMETER_RESUME_LAG = 37,
-    /**
-     * How far ahead of the leader the others aim, cells.
-     */
-    STAYA_PARAMETER_LEAD = 38,
-    /**
-     * Share of the others' land in the leader's price, /16.
-     */
-    STAYA_PARAMETER_FOOTPRINT = 39,
-    /**
-     * How long robots wait before each continues alone, decisions.
-     */
-    STAYA_PARAMETER_PATIENCE = 40,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum StayaParameter StayaParameter;
-#else
-typedef uint32_t StayaParameter;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
-
-/**
  * The controller of one robot. Its contents are private to the library.
  */
 typedef struct StayaAgent StayaAgent;
@@ -1709,6 +1527,36 @@ typedef struct StayaReference {
 } StayaReference;
 
 /**
+ * A parameter that `staya_set_parameter` can change while the robot runs. Texts end with a zero.
+ */
+typedef struct StayaParameter {
+    /**
+     * The name, such as "horizon_s".
+     */
+    char name[20];
+    /**
+     * The unit; empty for a plain number.
+     */
+    char unit[20];
+    /**
+     * A description in a few words.
+     */
+    char text[64];
+    /**
+     * The least value.
+     */
+    float least;
+    /**
+     * The greatest value.
+     */
+    float greatest;
+    /**
+     * The present value.
+     */
+    float value;
+} StayaParameter;
+
+/**
  * Two neighbouring places of a formation, by their indices.
  */
 typedef struct StayaEdge {
@@ -1872,30 +1720,20 @@ StayaStatus staya_push_out_velocity(const struct StayaPushOut *params,
                                     float velocity_mps[3]);
 
 /**
- * The name of parameter 0, 1, 2 and so on, such as "horizon_s"; null beyond the last one.
+ * Writes parameter 0, 1, 2 and so on of an agent; `STAYA_STATUS_UNKNOWN` beyond the last one.
  */
-const char *staya_parameter_name(uint32_t parameter);
+StayaStatus staya_parameter(struct StayaAgent *agent, uint32_t index, struct StayaParameter *parameter);
 
 /**
- * The unit of a parameter, empty for a plain number; null if the number does not exist.
+ * Returns the present value of a parameter; `STAYA_STATUS_PARAMETER` if the robot lacks it.
  */
-const char *staya_parameter_unit(uint32_t parameter);
+StayaStatus staya_get_parameter(struct StayaAgent *agent, const char *name, float *value);
 
 /**
- * Returns the least and the greatest value of a parameter.
+ * Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and
+ * no change, if the robot lacks it, or the value is out of range or contradicts other parameters.
  */
-StayaStatus staya_parameter_range(uint32_t parameter, float *least, float *greatest);
-
-/**
- * Returns the present value of a StayaParameter; `STAYA_STATUS_PARAMETER` if the robot lacks it.
- */
-StayaStatus staya_get_parameter(const struct StayaAgent *agent, uint32_t parameter, float *value);
-
-/**
- * Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER`, and no
- * change, if the robot lacks it, or the value is out of range or contradicts other parameters.
- */
-StayaStatus staya_set_parameter(struct StayaAgent *agent, uint32_t parameter, float value);
+StayaStatus staya_set_parameter(struct StayaAgent *agent, const char *name, float value);
 
 /**
  * Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon

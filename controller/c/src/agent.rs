@@ -107,10 +107,6 @@ impl StayaAgent {
         }
     }
 
-    pub(crate) const fn inside(&self) -> &AnyAgent {
-        &self.agent
-    }
-
     pub(crate) const fn inside_mut(&mut self) -> &mut AnyAgent {
         &mut self.agent
     }

@@ -5,8 +5,8 @@ use crate::Number;
 use crate::choices::StayaLaw;
 use serde::{Serialize, Serializer};
 use staya_controller::agent::{
-    AnyOrder, AnyProtocol, AnySurroundings, BadInput, Decision, GridMessage, Law as AgentLaw, Parameter, Radio, Report,
-    Tools, View, WaypointGuidance, decide_as, order_as, receive_as,
+    AnyOrder, AnyProtocol, AnySurroundings, BadInput, Decision, GridMessage, Law as AgentLaw, Radio, Report, Tools,
+    View, WaypointGuidance, decide_as, order_as, receive_as,
 };
 #[cfg(feature = "flocks")]
 use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
@@ -14,6 +14,7 @@ use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance}
 use staya_controller::agent::{
     CELLS, CellFollower, FormationGuidance, FormationInPlane, GridWorkspace, RouteGuidance, TEMPLATE,
 };
+use staya_controller::parameters::Parameters;
 use staya_controller::robot::RobotId;
 
 #[cfg(feature = "grid")]
@@ -154,11 +155,7 @@ impl AgentLaw<Number> for Law {
         each!(self, law => AgentLaw::<Number>::report(law))
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<Number> {
-        each!(self, law => law.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: Number) -> bool {
-        each!(self, law => law.tune(parameter, value))
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        each!(self, law => AgentLaw::<Number>::parameters(law, visit));
     }
 }

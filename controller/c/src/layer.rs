@@ -7,12 +7,13 @@ use serde::{Serialize, Serializer};
 use staya_controller::agent::FlySafety;
 #[cfg(feature = "push-out")]
 use staya_controller::agent::PushOutSafety;
-use staya_controller::agent::{OrcaSafety, Parameter, Safety, SafetyInput, Unguarded};
+use staya_controller::agent::{OrcaSafety, Safety, SafetyInput, Unguarded};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::neighbor::StalenessInflation;
 #[cfg(feature = "table")]
 use staya_controller::orca::VoxelTable2k;
 use staya_controller::orca::{HalfPlane, HalfSpaces, MovingBall, Params, half_plane};
+use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
 
 /// The source of half-planes.
@@ -92,11 +93,7 @@ impl Safety<Number> for Layer {
         each!(self, layer => Safety::<Number>::waits_for_turn(layer))
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<Number> {
-        each!(self, layer => layer.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: Number) -> bool {
-        each!(self, layer => layer.tune(parameter, value))
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        each!(self, layer => Safety::<Number>::parameters(layer, visit));
     }
 }

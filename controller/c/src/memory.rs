@@ -2,7 +2,7 @@
 //! possible checks.
 
 use crate::status::{Checked, StayaStatus};
-use core::ffi::c_void;
+use core::ffi::{CStr, c_char, c_void};
 use core::mem::MaybeUninit;
 
 /// Types for which any bytes are a valid value, so that memory written by C may be read: integers,
@@ -20,7 +20,7 @@ macro_rules! plain {
 }
 pub(crate) use plain;
 
-plain!(u8, u32, i32, f32, u64, usize);
+plain!(i8, u8, u32, i32, f32, u64, usize);
 
 // SAFETY: any bytes are a valid raw pointer, including null; it is not dereferenced.
 unsafe impl<T> Plain for *mut T {}
@@ -77,6 +77,17 @@ pub(crate) unsafe fn row<'a, T: Plain>(first: *const T, count: usize) -> Checked
     // SAFETY: neither null nor misaligned, and within the limits of memory; the rest is the
     // caller's contract.
     Ok(unsafe { core::slice::from_raw_parts(first, count) })
+}
+
+/// Reads a text; one that is not UTF-8 is empty.
+///
+/// # Safety
+/// If the pointer is not null, it points to bytes that end with a zero and are not modified during
+/// the call.
+pub(crate) unsafe fn text<'a>(text: *const c_char) -> Checked<&'a str> {
+    check(text)?;
+    // SAFETY: not null, and it ends with a zero by the caller's contract.
+    Ok(unsafe { CStr::from_ptr(text) }.to_str().unwrap_or_default())
 }
 
 /// Writes a whole result, overwriting any previous bytes.

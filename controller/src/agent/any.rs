@@ -10,11 +10,12 @@ use super::protocol::{AnyOrder, AnyProtocol, GridMessage, Radio};
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{AnySurroundings, FarMap, Parameter, Protocol};
+use super::{AnySurroundings, FarMap, Protocol};
 use crate::formation::NextMove;
 use crate::geom::{Vec2, Vec3};
 use crate::neighbor::StalenessInflation;
 use crate::orca::{self, HalfPlane, HalfSpaces, MovingBall};
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -157,12 +158,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         each!(self, law(inside) => Law::<S>::report(law))
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        each!(self, law(inside) => law.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        each!(self, law(inside_mut) => law.tune(parameter, value))
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        each!(self, law(inside_mut) => Law::<S>::parameters(law, visit));
     }
 }
 
@@ -229,21 +226,12 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         }
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         match self {
-            Self::Unguarded(safety) => safety.parameter(parameter),
-            Self::Orca(safety) => safety.parameter(parameter),
-            Self::Fly(safety) => safety.parameter(parameter),
-            Self::PushOut(safety) => safety.parameter(parameter),
-        }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        match self {
-            Self::Unguarded(safety) => safety.tune(parameter, value),
-            Self::Orca(safety) => safety.tune(parameter, value),
-            Self::Fly(safety) => safety.tune(parameter, value),
-            Self::PushOut(safety) => safety.tune(parameter, value),
+            Self::Unguarded(_) => {}
+            Self::Orca(safety) => safety.parameters(visit),
+            Self::Fly(safety) => safety.parameters(visit),
+            Self::PushOut(safety) => safety.parameters(visit),
         }
     }
 }

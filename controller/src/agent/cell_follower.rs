@@ -2,9 +2,10 @@
 
 use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Tools, View};
 use super::protocol::{LawMessage as _, Radio};
-use super::{CellState, InCells, OnGrid, Parameter};
+use super::{CellState, InCells, OnGrid};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
+use crate::parameters::{Parameters, SPEED};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
@@ -24,6 +25,10 @@ pub struct CellFollower<S, G> {
     law: G,
     speed_mps: S,
     last: Option<Last<S>>,
+}
+
+crate::parameters! {
+    impl[S: Scalar, G] CellFollower<S, G> { SPEED => speed_mps }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -73,7 +78,7 @@ where
         let Self { law, speed_mps, last } = self;
         let Tools { rng, mut radio, workspace } = tools;
         let has_goal = law.report().goal.or(view.sent_to).is_some();
-        follow((*speed_mps, has_goal), last, view, here, &mut |grid| {
+        follow((speed_mps.max(S::from_milli(1)), has_goal), last, view, here, &mut |grid| {
             let tools = Tools { rng, radio: radio.of(), workspace };
             let decision = law.decide(view, &grid, tools)?;
             Ok((decision, law.report().target))
@@ -106,17 +111,9 @@ where
         Report { target: self.last.as_ref().map_or(shown.target, |last| last.target), ..shown }
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        if parameter == Parameter::Speed { Some(self.speed_mps) } else { self.law.parameter(parameter) }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        if parameter == Parameter::Speed {
-            // The law cannot decide at speed 0.
-            self.speed_mps = value.max(S::from_milli(1));
-            return true;
-        }
-        self.law.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(self);
+        self.law.parameters(visit);
     }
 }
 

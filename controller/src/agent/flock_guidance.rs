@@ -2,15 +2,23 @@
 
 use super::law::{Action, BadInput, Decision, Law, Status, Tools, View};
 use super::protocol::{WaypointOrder, Waypoints};
-use super::tunable::Tunable as _;
-use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
+use super::{InPlane, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, ReferenceMotion, acceleration};
 use crate::geom::{Position, Vec2, Vec3};
+use crate::parameters::{Parameters, SPEED, TOLERANCE};
 use crate::scalar::Scalar;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
+
+crate::parameters! {
+    impl[S: Scalar] GoalFlockGuidance<S> { TOLERANCE => arrival_m }
+}
+
+crate::parameters! {
+    impl[S: Scalar] BoidsGuidance<S> { SPEED => speed_mps }
+}
 
 /// Goals that a robot of a goal flock can store.
 pub const GOALS: usize = WAYPOINTS;
@@ -75,12 +83,8 @@ impl<S: Scalar> Law<S> for LatticeGuidance<S> {
         index == 0
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.params.get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
     }
 }
 
@@ -164,16 +168,9 @@ impl<S: Scalar> Law<S> for GoalFlockGuidance<S> {
         is_taken
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        if parameter == Parameter::Tolerance { Some(self.arrival_m) } else { self.params.get(parameter) }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        if parameter == Parameter::Tolerance {
-            self.arrival_m = value;
-            return true;
-        }
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
+        visit(self);
     }
 }
 
@@ -220,15 +217,8 @@ impl<S: Scalar> Law<S> for BoidsGuidance<S> {
         })
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        if parameter == Parameter::Speed { Some(self.speed_mps) } else { self.params.get(parameter) }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        if parameter == Parameter::Speed {
-            self.speed_mps = value;
-            return true;
-        }
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
+        visit(self);
     }
 }

@@ -5,8 +5,7 @@ use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{MoveHistory, PATIENCE, avoid_crossing};
 use super::protocol::{Grid, GridMessage, GridOrder, Radio};
 use super::route_guidance::GridWorkspace;
-use super::tunable::Tunable;
-use super::{FarMap, OnGrid, Parameter, Wait};
+use super::{FarMap, OnGrid, Wait};
 use crate::cost::Weights;
 use crate::formation::{
     Anchor, Footprint, FormationParams, Found, GapClosing, GraphDistance, Member, NextMove, PaceControl, Recovery,
@@ -15,6 +14,7 @@ use crate::formation::{
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
 use crate::neighbor::Neighbor;
+use crate::parameters::Parameters;
 use crate::robot::{Mode, RobotId};
 use crate::route::{RouteParams, Router};
 use crate::scalar::Scalar;
@@ -441,11 +441,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.task.shown
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.route.get(parameter).or_else(|| self.formation.get(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        Tunable::<S>::tune(&mut self.route, parameter, value) || self.formation.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.route);
+        visit(&mut self.formation);
     }
 }

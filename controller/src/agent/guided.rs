@@ -3,9 +3,10 @@
 use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
 use super::protocol::{LawOrder as _, Radio};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{Parameter, Surroundings, Wait, Waypoint, WrongTask};
+use super::{Surroundings, Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
 use crate::grid::Cell;
+use crate::parameters::Parameters;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
@@ -188,11 +189,8 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
         }
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.inside.parameter(parameter).or_else(|| self.straight.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.inside.tune(parameter, value) | self.straight.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.inside.parameters(visit);
+        self.straight.parameters(visit);
     }
 }

@@ -1,11 +1,12 @@
 //! The interface between the agent and its law, which chooses where the robot goes.
 
 use super::protocol::{Protocol, Radio};
-use super::{AnySurroundings, KinematicState, Parameter, Surroundings, Wait};
+use super::{AnySurroundings, KinematicState, Surroundings, Wait};
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::neighbor::{Ages, Nearby, Neighbor};
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -127,15 +128,8 @@ pub trait Law<S: Scalar>: Sized {
         Report::default()
     }
 
-    /// Returns the value of a parameter, or `None` if the law does not have it.
-    fn parameter(&self, _parameter: Parameter) -> Option<S> {
-        None
-    }
-
-    /// Changes a parameter to a value within [`Parameter::range`]. Returns whether it was accepted.
-    fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
-        false
-    }
+    /// Calls `visit` with each of its tables of parameters.
+    fn parameters(&mut self, _visit: &mut dyn FnMut(&mut dyn Parameters)) {}
 }
 
 /// What a law knows at a decision besides its surroundings; `P` is its payload.

@@ -125,7 +125,6 @@ mod state;
 mod step;
 mod surroundings;
 mod task;
-mod tunable;
 mod wait;
 mod waypoint;
 mod waypoint_guidance;
@@ -145,7 +144,7 @@ pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, Kinem
 pub use law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
-pub use parameter::Parameter;
+pub use parameter::parameters;
 pub use perception::{Perception, RadioOnly};
 pub use protocol::{
     AnyOrder, AnyProtocol, Grid, GridMessage, GridOrder, LawMessage, LawOrder, Never, OfAnotherLaw, Outgoing, Protocol,

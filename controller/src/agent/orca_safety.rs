@@ -1,11 +1,10 @@
 //! Optimal reciprocal collision avoidance as a safety layer.
 
-use super::Parameter;
 use super::safety::{Safety, SafetyInput};
-use super::tunable::Tunable as _;
 use crate::geom::Vec3;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{Analytic, AvoidParams, Avoider, Dimension, HalfSpaces, InSpace};
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
@@ -75,11 +74,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K,
         self.avoider.waits_for_turn()
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.avoider.params().get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.avoider.params_mut().tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(self.avoider.params_mut());
     }
 }

@@ -1,9 +1,8 @@
 //! Push-out as a safety layer.
 
-use super::Parameter;
 use super::safety::{Safety, SafetyInput};
-use super::tunable::Tunable as _;
 use crate::geom::Vec3;
+use crate::parameters::Parameters;
 use crate::push_out::{PushOutParams, push_out};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
@@ -29,11 +28,7 @@ impl<S: Scalar> Safety<S> for PushOutSafety<S> {
         push_out(&self.params, &input.body, input.wish_mps, input.nearby, input.obstacles)
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.params.get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
     }
 }

@@ -4,11 +4,11 @@ use super::grid_task::GridTask;
 use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{MoveHistory, avoid_crossing};
 use super::protocol::{Grid, GridMessage, GridOrder, Radio};
-use super::tunable::Tunable as _;
-use super::{FarMap, OnGrid, Parameter};
+use super::{FarMap, OnGrid};
 use crate::cost::{Gain, Weights};
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::route::{CostField, Replan, RouteParams, Router};
@@ -201,11 +201,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> L
         self.task.shown
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.params.get(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.params.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(&mut self.params);
     }
 }

@@ -1,10 +1,10 @@
 //! The last layer before the body: turns the desired velocity into a safe one.
 
-use super::Parameter;
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::neighbor::{Nearby, StalenessInflation};
 use crate::obstacle::Obstacle;
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
@@ -40,15 +40,8 @@ pub trait Safety<S: Scalar> {
         false
     }
 
-    /// Returns the value of a parameter, or `None` if the layer does not have it.
-    fn parameter(&self, _parameter: Parameter) -> Option<S> {
-        None
-    }
-
-    /// Changes a parameter to a value within [`Parameter::range`]. Returns whether it was accepted.
-    fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
-        false
-    }
+    /// Calls `visit` with each of its tables of parameters.
+    fn parameters(&mut self, _visit: &mut dyn FnMut(&mut dyn Parameters)) {}
 }
 
 /// No safety layer, for robots that move cell by cell and as a baseline for comparisons.

@@ -405,8 +405,6 @@ mod nonsense;
 mod nonsense_in_plane;
 mod payload;
 mod plane;
-#[cfg(feature = "published")]
-mod published;
 mod sealed;
 mod setup;
 mod sighted;

@@ -4,11 +4,16 @@ use super::goal_occupancy::{Claim, GoalOccupancy};
 use super::law::{Action, BadInput, Decision, Law, Status, Tools, View};
 use super::make_way::MakeWay;
 use super::protocol::{WaypointOrder, Waypoints};
-use super::{InPlane, Parameter, WAYPOINTS, Wait, Waypoint};
+use super::{InPlane, WAYPOINTS, Wait, Waypoint};
 use crate::geom::{Vec2, Vec3};
+use crate::parameters::{Parameters, SPEED, TOLERANCE};
 use crate::scalar::Scalar;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
+
+crate::parameters! {
+    impl[S: Scalar] WaypointGuidance<S> { SPEED => speed_mps, TOLERANCE => tolerance_m }
+}
 
 /// Within this distance, in own radii, an intermediate waypoint is passed, even if it is occupied.
 const PASSED_RADII: i32 = 3;
@@ -179,20 +184,7 @@ impl<S: Scalar> Law<S> for WaypointGuidance<S> {
         }
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        match parameter {
-            Parameter::Speed => Some(self.speed_mps),
-            Parameter::Tolerance => Some(self.tolerance_m),
-            _ => None,
-        }
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        match parameter {
-            Parameter::Speed => self.speed_mps = value,
-            Parameter::Tolerance => self.tolerance_m = value,
-            _ => return false,
-        }
-        true
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(self);
     }
 }

@@ -18,6 +18,7 @@
 
 use crate::geom::Vec2;
 use crate::neighbor::{Nearby, tie};
+use crate::parameters::{Parameter, Parameters, Value as _, row};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
@@ -97,11 +98,13 @@ impl<S: Scalar> BoidsParams<S> {
         }
     }
 
-    /// The values given to [`BoidsParams::new`].
-    #[must_use]
-    pub const fn values(&self) -> [S; 4] {
-        self.values
-    }
+    /// Parameters that may change while a robot runs.
+    pub const TABLE: &'static [Parameter] = &[
+        row("crowded_m", "BOID_CROWDED_M", "m", [0.0, 1000.0], "nearer than this a boid turns away"),
+        row("closest_m", "BOID_CLOSEST_M", "m", [0.0, 10_000.0], "largest distance of a neighbour that counts"),
+        row("max_turn", "BOID_TURN", "rad", [0.0, 3.15], "largest turn towards the others in a step"),
+        row("max_turn_away", "BOID_TURN_AWAY", "rad", [0.0, 3.15], "largest turn away from a too near boid in a step"),
+    ];
 
     /// The paper's values, at a scale of `unit_m` metres: 30, 150, 0.05, 0.02.
     #[must_use]
@@ -174,6 +177,25 @@ impl<S: Scalar> BoidsParams<S> {
             side > S::ZERO || (side == S::ZERO && heading.dot(place) > S::ZERO)
         };
         if is_left { self.turn_away.right(heading) } else { self.turn_away.left(heading) }
+    }
+}
+
+impl<S: Scalar> Parameters for BoidsParams<S> {
+    fn table(&self) -> &'static [Parameter] {
+        Self::TABLE
+    }
+
+    fn get(&self, index: usize) -> Option<f32> {
+        self.values.get(index).map(|value| value.number())
+    }
+
+    fn store(&mut self, index: usize, value: f32) -> bool {
+        if let Some(slot) = self.values.get_mut(index) {
+            *slot = S::nearest(value);
+        }
+        let [crowded_m, closest_m, max_turn, max_turn_away] = self.values;
+        *self = Self::new(crowded_m, closest_m, max_turn, max_turn_away);
+        index < self.values.len()
     }
 }
 

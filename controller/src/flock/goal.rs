@@ -14,6 +14,7 @@
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
 use crate::neighbor::{Nearby, tie};
+use crate::parameters::{MIN_DISTANCE, SPEED, row};
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
@@ -77,6 +78,18 @@ impl<S: Scalar> GoalParams<S> {
             && self.neighborhood_m.is_finite()
             && self.speed_mps > S::ZERO
             && self.speed_mps.is_finite()
+    }
+}
+
+crate::parameters! {
+    impl[S: Scalar] GoalParams<S>, where is_sound {
+        SPEED => speed_mps,
+        MIN_DISTANCE => min_distance_m,
+        row("neighborhood_m", "GOAL_NBH_M", "m", [0.002, 10_000.0], "largest distance of a neighbour that counts")
+            => neighborhood_m,
+        row("k1", "GOAL_K1", "", [-1000.0, 1000.0], "pull of the goal (K1)") => goal_gain,
+        row("k2", "GOAL_K2", "", [-1000.0, 1000.0], "pull of the middle of the neighbours (K2)") => center_gain,
+        row("k3", "GOAL_K3", "", [-1000.0, 1000.0], "push of neighbours that are too near (K3)") => repulsion_gain,
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2 and 5 to 7; section 6 for the
 //! measures. All functions are pure; a robot's state is [`PaceControl`] and its
-//! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s
+//! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`]s
 //! per cell, costs those of [`crate::cost`]. In the plane, places are points ([`Drive`]).
 //!
 //! The paper's own law is in the crate `staya-papers`. Differences to it
@@ -48,7 +48,9 @@ pub use places::{Drive, behind, is_straight};
 pub use steering::{Anchor, Footprint, PaceControl, aim, blended, def, deviation, distances, lag, should_stay};
 
 use crate::cost::Gain;
+use crate::grid::UNIT;
 use crate::names::named;
+use crate::parameters::row;
 use serde::{Deserialize, Serialize};
 
 named! {
@@ -91,10 +93,10 @@ pub struct FormationParams {
     /// Price of being off the own place, ticks per cell. With 0 all robots take the shortest route;
     /// large values push robots straight over bad land.
     pub gain: Gain,
-    /// Lag of a robot at which the top leader waits, [`UNIT`](crate::grid::UNIT)s (r0). A smaller
+    /// Lag of a robot at which the top leader waits, [`UNIT`]s (r0). A smaller
     /// value keeps the formation tighter and costs time; with [`NEVER`] the leader does not wait.
     pub halt_lag: u16,
-    /// Lag at which the leader continues, [`UNIT`](crate::grid::UNIT)s; at most `halt_lag`.
+    /// Lag at which the leader continues, [`UNIT`]s; at most `halt_lag`.
     pub resume_lag: u16,
     /// How far ahead of the top leader the others aim, cells: its move and the delay of its beacon.
     pub lead: u8,
@@ -120,6 +122,27 @@ impl FormationParams {
     #[must_use]
     pub fn looking_ahead() -> Self {
         Self { gain: Gain::from_sixteenths(32), halt_lag: 210, resume_lag: 210, ..Self::default() }
+    }
+
+    const fn is_sound(&self) -> bool {
+        self.resume_lag <= self.halt_lag
+    }
+}
+
+crate::parameters! {
+    impl[] FormationParams, where is_sound {
+        row("eps_cells", "FORM_EPS", "cells", [0.0, 255.0], "largest distance from a place that still counts as there")
+            => eps,
+        row("place_gain", "FORM_GAIN", "ticks", [0.0, 4095.0], "price of a cell off the own place") => gain,
+        row("halt_cells", "FORM_HALT", "cells", [0.0, 937.0], "lag of a robot at which the leader waits")
+            => halt_lag / UNIT as f32,
+        row("resume_cells", "FORM_RESUME", "cells", [0.0, 937.0], "lag at which the waiting leader continues")
+            => resume_lag / UNIT as f32,
+        row("lead_cells", "FORM_LEAD", "cells", [0.0, 255.0], "how far ahead of the leader the others aim") => lead,
+        row("footprint", "FORM_FOOTPRINT", "/16", [0.0, 16.0], "share of the others' land in the leader's price")
+            => footprint,
+        row("patience", "FORM_PATIENCE", "decisions", [0.0, 30_000.0], "how long to wait before each robot continues alone")
+            => patience,
     }
 }
 

@@ -1,3 +1,4 @@
+use crate::parameters::row;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +50,21 @@ impl<S: Scalar> AvoidParams<S> {
             margin_m: cast(self.margin_m),
             deadlock: self.deadlock.cast(),
         }
+    }
+}
+
+crate::parameters! {
+    impl[S: Scalar] AvoidParams<S> {
+        row("horizon_s", "ORCA_HORIZON_S", "s", [0.01, 60.0], "time ahead without a collision with a robot")
+            => horizon_s,
+        row("wall_horizon_s", "ORCA_WALL_S", "s", [0.01, 60.0], "time ahead without a collision with an obstacle")
+            => wall_horizon_s,
+        row("share", "ORCA_SHARE", "", [0.0, 1.0], "own share of a correction") => share,
+        row("margin_m", "ORCA_MARGIN_M", "m", [0.0, 10.0], "distance kept on top of the radii") => margin_m,
+        row("lean_rad", "ORCA_LEAN_RAD", "rad", [0.0, 1.5], "how far to turn right when a robot is in the way")
+            => deadlock.lean_rad,
+        row("patience_radii", "ORCA_PATIENCE_R", "radii", [0.0, 100.0], "how long to wait for the robots whose turn it is")
+            => deadlock.patience_radii,
     }
 }
 

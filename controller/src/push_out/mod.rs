@@ -28,6 +28,7 @@ use crate::geom::Vec3;
 use crate::names::named;
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
+use crate::parameters::MIN_DISTANCE;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
 use zone::{Path, Side, Zone};
@@ -83,6 +84,10 @@ impl<S: Scalar> PushOutParams<S> {
     pub fn new(min_distance_m: S) -> Self {
         Self { model: Model::Radial, evasion: Evasion::Multiple, min_distance_m }
     }
+}
+
+crate::parameters! {
+    impl[S: Scalar] PushOutParams<S> { MIN_DISTANCE => min_distance_m }
 }
 
 /// How deep a step may lead into a zone, millimetres: the precision of positions.

@@ -31,6 +31,7 @@ pub use visits::VisitMemory;
 use crate::cost::{EXCLUDED, Gain, TICK, Weights};
 use crate::grid::{Cell, Dir, Norm, Window};
 use crate::names::named;
+use crate::parameters::row;
 use serde::{Deserialize, Serialize};
 
 named! {
@@ -87,6 +88,15 @@ impl Default for RouteParams {
             a2: Gain::from_int(3),
             a3: Gain::from_int(3),
         }
+    }
+}
+
+crate::parameters! {
+    impl[] RouteParams {
+        row("a0", "ROUTE_A0", "", [0.0, 4095.0], "weight of travel time") => a0,
+        row("a1", "ROUTE_A1", "ticks", [0.0, 4095.0], "extra cost of a cell with another robot") => a1,
+        row("a2", "ROUTE_A2", "ticks", [0.0, 4095.0], "extra cost of a cell for each earlier visit") => a2,
+        row("a3", "ROUTE_A3", "ticks", [0.0, 4095.0], "price of a cell between the window and the target") => a3,
     }
 }
 

@@ -3,7 +3,7 @@ use crate::agent::*;
 use crate::alone::{StayaAvoider, staya_orca_defaults, staya_orca_init, staya_orca_velocity};
 use crate::choices::{StayaLaw, StayaSafety, StayaWire};
 use crate::io::StayaObstacle;
-use crate::parameter::{staya_get_parameter, staya_parameter_name, staya_parameter_range, staya_set_parameter};
+use crate::parameter::{StayaParameter, staya_get_parameter, staya_parameter, staya_set_parameter};
 use crate::setup::*;
 use crate::status::{StayaStatus, staya_status_name, staya_status_text};
 use core::ffi::CStr;
@@ -35,9 +35,10 @@ fn null_is_refused_by_every_function() {
             staya_neighbors(agent, null_mut(), 1, &mut 0),
             staya_digest(agent, null_mut()),
             staya_move(null_mut(), [0.0f32; 3].as_ptr()),
-            staya_get_parameter(agent, 0, null_mut()),
-            staya_set_parameter(null_mut(), 0, 1.0),
-            staya_parameter_range(0, null_mut(), &mut 0.0),
+            staya_get_parameter(agent, c"speed_mps".as_ptr(), null_mut()),
+            staya_set_parameter(null_mut(), c"speed_mps".as_ptr(), 1.0),
+            staya_set_parameter(agent, null(), 1.0),
+            staya_parameter(agent, 0, null_mut()),
             staya_lattice_defaults(null_mut(), 1.0),
             staya_lattice_soften(null_mut(), 0.1, 10.0),
             staya_formation_from_graph(null_mut(), null(), 0, null(), 0, 0, 1),
@@ -47,7 +48,7 @@ fn null_is_refused_by_every_function() {
     };
     for (index, answer) in answers.into_iter().enumerate() {
         // An empty graph does not have a place 0, which is checked first.
-        let wanted = if index == 19 { StayaStatus::Shape } else { StayaStatus::Null };
+        let wanted = if index == 20 { StayaStatus::Shape } else { StayaStatus::Null };
         assert_eq!(answer, wanted, "number {index}");
     }
 }
@@ -156,27 +157,31 @@ fn invalid_inputs_change_nothing() {
 }
 
 #[test]
-fn parameters_match_those_of_the_controller() {
-    use staya_controller::agent::Parameter;
-    use staya_controller::names::Named as _;
+fn parameters_are_listed_and_set_by_name() {
     let mut memory = Memory::new();
     let agent = memory.agent(&setup(1)).unwrap();
-    // SAFETY: names end with a zero, and there is an agent.
+    let mut listed = Vec::new();
+    // SAFETY: there is an agent, and texts end with a zero.
     unsafe {
-        for (number, (name, parameter)) in (0u32..).zip(Parameter::NAMES) {
-            assert_eq!(CStr::from_ptr(staya_parameter_name(number)).to_str(), Ok(*name));
-            let [mut least, mut greatest] = [0.0; 2];
-            assert_eq!(staya_parameter_range(number, &mut least, &mut greatest), StayaStatus::Ok);
-            assert_eq!([least, greatest], parameter.range());
+        let mut row = MaybeUninit::<StayaParameter>::uninit();
+        while staya_parameter(agent, listed.len() as u32, row.as_mut_ptr()) == StayaStatus::Ok {
+            let StayaParameter { name, unit, text, least, greatest, value } = row.assume_init();
+            let [name, unit, text] =
+                [&name[..], &unit, &text].map(|text| CStr::from_ptr(text.as_ptr()).to_str().unwrap());
+            assert!(unit.len() <= 5 && text.len() > 5 && least <= value && value <= greatest, "{name}");
+            listed.push(name.to_owned());
         }
-        let end = Parameter::NAMES.len() as u32;
-        assert!(staya_parameter_name(end).is_null());
-        assert_eq!(staya_set_parameter(agent, end, 1.0), StayaStatus::Unknown);
-        let (speed, spacing, mut value) = (2, 15, 0.0);
+        let end = listed.len() as u32;
+        assert_eq!(staya_parameter(agent, end, row.as_mut_ptr()), StayaStatus::Unknown);
+        assert_eq!(staya_parameter(agent, u32::MAX, row.as_mut_ptr()), StayaStatus::Unknown);
+        assert_eq!(listed[..5], ["radius_m", "beacon_period_s", "speed_mps", "tolerance_m", "horizon_s"]);
+        let (speed, mut value) = (c"speed_mps".as_ptr(), 0.0);
         assert_eq!(staya_set_parameter(agent, speed, 0.75), StayaStatus::Ok);
         assert_eq!((staya_get_parameter(agent, speed, &mut value), value), (StayaStatus::Ok, 0.75));
         assert_eq!(staya_set_parameter(agent, speed, f32::NAN), StayaStatus::Parameter);
-        assert_eq!(staya_set_parameter(agent, spacing, 1.0), StayaStatus::Parameter);
+        for other in [c"spacing_m", c"\xff"] {
+            assert_eq!(staya_set_parameter(agent, other.as_ptr(), 1.0), StayaStatus::Parameter);
+        }
     }
 }
 

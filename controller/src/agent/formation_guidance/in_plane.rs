@@ -6,11 +6,12 @@ use crate::agent::goal_occupancy::{Claim, GoalOccupancy};
 use crate::agent::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use crate::agent::protocol::{Grid, GridMessage, GridOrder, Radio};
 use crate::agent::route_guidance::GridWorkspace;
-use crate::agent::{FarMap, InCells, Parameter, Wait};
+use crate::agent::{FarMap, InCells, Wait};
 use crate::formation::{Drive, NextMove, behind, is_straight, scaled};
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, Window};
 use crate::neighbor::Neighbor;
+use crate::parameters::Parameters;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::template::{Template, TemplateEntry};
@@ -282,11 +283,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.cells.report()
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        self.cells.parameter(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        self.cells.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.cells.parameters(visit);
     }
 }

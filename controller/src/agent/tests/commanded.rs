@@ -3,7 +3,7 @@
 use super::plane::{RADIUS_MM, Robot, STEP, body_at, in_plane, length, orca, place, step_number, waypoint};
 use super::*;
 use crate::geom::Position;
-use crate::names::Named as _;
+use crate::parameters::{Parameter, Rejected};
 use crate::scalar::Q16;
 
 type Operated<S> = Robot<S, Guided<S, WaypointGuidance<S>>, OrcaSafety<S, 16>>;
@@ -207,29 +207,29 @@ fn the_passive_mode_is_left_through_idle() {
 fn parameters_keep_their_values_and_reject_values_out_of_range() {
     let mut robot = robot::<f32>([0.0; 2]);
     let mut known = 0;
-    for &(_, parameter) in Parameter::NAMES {
-        let Some(before) = robot.agent.parameter(parameter) else {
-            assert!(!robot.agent.set_parameter(parameter, parameter.range()[0]), "{parameter:?}");
+    for &Parameter { name, range, .. } in parameters() {
+        let [least, greatest] = range;
+        let Some(before) = robot.agent.parameter(name) else {
+            assert_eq!(robot.agent.set_parameter(name, least), Err(Rejected::Unknown), "{name}");
             continue;
         };
         known += 1;
-        let [least, greatest] = parameter.range();
-        assert!((least..=greatest).contains(&before), "{parameter:?}");
+        assert!((least..=greatest).contains(&before), "{name}");
         for bad in [least - 1.0, greatest + 1.0, f32::NAN, f32::INFINITY] {
-            assert!(!robot.agent.set_parameter(parameter, bad), "{parameter:?}");
-            assert_eq!(robot.agent.parameter(parameter), Some(before));
+            assert_eq!(robot.agent.set_parameter(name, bad), Err(Rejected::OutOfRange(range)), "{name}");
+            assert_eq!(robot.agent.parameter(name), Some(before));
         }
         for good in [least, greatest, 0.5] {
-            assert!(robot.agent.set_parameter(parameter, good), "{parameter:?}");
-            let after = robot.agent.parameter(parameter).expect("still");
-            assert!((after - good).abs() <= 1e-6 * good.max(1.0), "{parameter:?} {after}");
+            assert_eq!(robot.agent.set_parameter(name, good), Ok(()), "{name}");
+            let after = robot.agent.parameter(name).expect("still");
+            assert!((after - good).abs() <= 1e-6 * good.max(1.0), "{name} {after}");
         }
     }
     assert_eq!(known, 10);
     let mut other = route_agent(1);
-    assert_eq!(other.parameter(Parameter::Speed), None);
-    assert!(!other.set_parameter(Parameter::Speed, 1.0));
-    assert!(other.set_parameter(Parameter::BeaconPeriod, 2.0));
+    assert_eq!(other.parameter("speed_mps"), None);
+    assert!(other.set_parameter("speed_mps", 1.0).is_err());
+    assert!(other.set_parameter("beacon_period_s", 2.0).is_ok());
 }
 
 #[test]
@@ -238,8 +238,8 @@ fn a_new_speed_and_beacon_period_apply_from_the_next_step() {
     robot.agent.order(WaypointOrder::first(place(9000, 0)));
     let _ = robot.step(step_number(0), &[]);
     assert_eq!(robot.velocity_mps, [1.0, 0.0]);
-    assert!(robot.agent.set_parameter(Parameter::Speed, 0.25));
-    assert!(robot.agent.set_parameter(Parameter::BeaconPeriod, 1.0));
+    assert!(robot.agent.set_parameter("speed_mps", 0.25).is_ok());
+    assert!(robot.agent.set_parameter("beacon_period_s", 1.0).is_ok());
     let mut beacons = 0;
     for n in 1..=20 {
         let out = robot.step(step_number(n), &[]);

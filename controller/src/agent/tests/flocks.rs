@@ -5,6 +5,7 @@ use super::*;
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Stage};
 use crate::flock::lattice::{Gain, LatticeParams};
+use crate::parameters::Parameter;
 use core::ops::Range;
 
 fn run<G>(robots: &mut [Robot<f32, G, Unguarded>], steps: Range<i32>)
@@ -170,14 +171,16 @@ fn each_flock_reports_the_parameters_that_it_was_given() {
     /// Numbers of known and of accepted parameters.
     fn keeps(mut law: impl Law<f32>) -> [usize; 2] {
         let mut counts = [0; 2];
-        for &(name, parameter) in <Parameter as crate::names::Named>::NAMES {
-            let before = law.parameter(parameter);
-            let is_accepted = law.tune(parameter, 0.75);
-            assert_eq!(law.parameter(parameter), if is_accepted { Some(0.75) } else { before }, "{name}");
-            assert!(before.is_some_and(|value| value != 0.0 && value != 0.75) || !is_accepted, "{name}: {before:?}");
-            counts[0] += usize::from(before.is_some());
-            counts[1] += usize::from(is_accepted);
-        }
+        law.parameters(&mut |table| {
+            for (index, Parameter { name, .. }) in table.table().iter().enumerate() {
+                let before = table.get(index);
+                let is_accepted = table.set(index, 0.75).is_ok();
+                assert_eq!(table.get(index), if is_accepted { Some(0.75) } else { before }, "{name}");
+                assert!(before.is_some_and(|value| value != 0.0 && value != 0.75), "{name}: {before:?}");
+                counts[0] += 1;
+                counts[1] += usize::from(is_accepted);
+            }
+        });
         counts
     }
     let boids = BoidsGuidance::new(BoidsParams::new(0.3, 30.0, 0.05, 0.02), 0.5);

@@ -315,8 +315,9 @@ proptest! {
         distances.sort_by(f64::total_cmp);
         prop_assume!(distances.iter().all(|d| (d - 150.0).abs() > 0.01 && (d - 30.0).abs() > 0.01));
         prop_assume!(distances.windows(2).all(|d| d[1] - d[0] > 0.01));
-        let wobble = [-1e-3, 1e-3].map(|by| by_angles(heading + by, &others));
-        prop_assume!(difference(wobble[0], wobble[1]) < 0.01);
+        // The error of `Fast32` decides which way to turn towards a middle right behind.
+        let wobble = [-2e-2, 2e-2].map(|by| by_angles(heading + by, &others));
+        prop_assume!(difference(wobble[0], wobble[1]) < 0.06);
         let exact = paper().turn(OWN, heading, &others);
         prop_assert!(difference(turned::<f32>(heading, &others), exact) < 1e-4);
         prop_assert!(difference(turned::<Q16>(heading, &others), exact) < 5e-3);

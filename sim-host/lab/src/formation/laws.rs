@@ -5,11 +5,11 @@ use anyhow::Result;
 use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::cost::Gain;
-use staya_papers::criteria::PublishedParams;
 use staya_controller::formation::{FormationParams, NEVER};
 use staya_controller::grid::UNIT;
 use staya_controller::land::MapParams;
 use staya_controller::shuffle::Sharpness;
+use staya_papers::criteria::PublishedParams;
 use staya_sim::scenario::Scenario;
 
 /// A law by which robots keep their formation.

@@ -13,7 +13,7 @@ use super::model::FlightMode;
 use super::params::Meaning;
 use super::vehicle::{Action, Out, Vehicle};
 use crate::geo::Global;
-use staya_controller::agent::Parameter;
+use staya_controller::parameters::SPEED;
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
@@ -275,13 +275,13 @@ impl Vehicle {
     }
 
     pub(super) fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
-        let speed = Meaning::Controller(Parameter::Speed);
+        let speed = Meaning::Controller(SPEED.name);
         if self.parameters.get(speed).is_none() {
             return Err(MAV_RESULT_UNSUPPORTED);
         }
         let set = self.parameters.set_meaning(speed, speed_mps);
         set.map_err(|_| MAV_RESULT_DENIED)?;
-        out.actions.push(Action::Set(Parameter::Speed, speed_mps));
+        out.actions.push(Action::Set(SPEED.name, speed_mps));
         Ok(())
     }
 

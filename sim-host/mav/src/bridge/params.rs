@@ -1,6 +1,5 @@
 use super::model::VehicleModel;
-use staya_controller::agent::Parameter;
-use staya_controller::names::Named as _;
+use staya_controller::parameters::{Parameter, RADIUS, SPEED, TOLERANCE};
 use staya_mavlink::constants::MAV_PARAM_TYPE_REAL32;
 use staya_mavlink::dialect::PARAM_VALUE_DATA;
 
@@ -10,8 +9,8 @@ const SETPOINT_TIMEOUT_S: f32 = 3.0;
 /// The setting behind a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
-    /// A setting of the controller.
-    Controller(Parameter),
+    /// The parameter of the controller with this name.
+    Controller(&'static str),
     /// Timeout of velocity setpoints, simulated seconds.
     SetpointTimeout,
 }
@@ -41,77 +40,20 @@ pub enum NotSet {
     OutOf([f32; 2]),
 }
 
-/// At most 16 characters, by the protocol.
-const fn name(parameter: Parameter) -> &'static str {
-    match parameter {
-        Parameter::Radius => "RADIUS_M",
-        Parameter::BeaconPeriod => "BEACON_S",
-        Parameter::Speed => "SPEED_MPS",
-        Parameter::Tolerance => "TOLERANCE_M",
-        Parameter::Horizon => "ORCA_HORIZON_S",
-        Parameter::WallHorizon => "ORCA_WALL_S",
-        Parameter::Share => "ORCA_SHARE",
-        Parameter::Margin => "ORCA_MARGIN_M",
-        Parameter::Lean => "ORCA_LEAN_RAD",
-        Parameter::PatienceRadii => "ORCA_PATIENCE_R",
-        Parameter::MinDistance => "MIN_DIST_M",
-        Parameter::Neighborhood => "GOAL_NBH_M",
-        Parameter::GoalGain => "GOAL_K1",
-        Parameter::CenterGain => "GOAL_K2",
-        Parameter::RepulsionGain => "GOAL_K3",
-        Parameter::Spacing => "LAT_SPACING_M",
-        Parameter::RangeRatio => "LAT_RANGE",
-        Parameter::ObstacleRatio => "LAT_OBSTACLE",
-        Parameter::Attraction => "LAT_A",
-        Parameter::Repulsion => "LAT_B",
-        Parameter::AlphaPosition => "LAT_C1_ALPHA",
-        Parameter::AlphaVelocity => "LAT_C2_ALPHA",
-        Parameter::BetaPosition => "LAT_C1_BETA",
-        Parameter::BetaVelocity => "LAT_C2_BETA",
-        Parameter::GammaPosition => "LAT_C1_GAMMA",
-        Parameter::GammaVelocity => "LAT_C2_GAMMA",
-        Parameter::Crowded => "BOID_CROWDED_M",
-        Parameter::Closest => "BOID_CLOSEST_M",
-        Parameter::MaxTurn => "BOID_TURN",
-        Parameter::MaxTurnAway => "BOID_TURN_AWAY",
-        Parameter::TimeGain => "ROUTE_A0",
-        Parameter::OthersGain => "ROUTE_A1",
-        Parameter::VisitsGain => "ROUTE_A2",
-        Parameter::WayGain => "ROUTE_A3",
-        Parameter::Eps => "FORM_EPS",
-        Parameter::PlaceGain => "FORM_GAIN",
-        Parameter::HaltLag => "FORM_HALT",
-        Parameter::ResumeLag => "FORM_RESUME",
-        Parameter::Lead => "FORM_LEAD",
-        Parameter::Footprint => "FORM_FOOTPRINT",
-        Parameter::Patience => "FORM_PATIENCE",
-    }
-}
-
 impl Parameters {
-    /// Creates the parameters that a robot has; `value` is `None` for a setting that it lacks.
+    /// Creates the parameters of a robot from those of its controller and their values.
     #[must_use]
-    pub fn new(model: &VehicleModel, value: impl Fn(Parameter) -> Option<f32>) -> Self {
-        let own = Parameter::NAMES.iter().filter_map(|&(_, parameter)| {
-            let on_grid = model.grid.is_some();
-            let of_bodies = matches!(parameter, Parameter::Radius | Parameter::Speed | Parameter::Tolerance);
-            if on_grid && of_bodies {
-                return None;
+    pub fn new(model: &VehicleModel, values: &[(&'static Parameter, f32)]) -> Self {
+        let of_bodies = [RADIUS, SPEED, TOLERANCE].map(|row| row.name);
+        let own = values.iter().filter(|(row, _)| model.grid.is_none() || !of_bodies.contains(&row.name));
+        let own = own.map(|&(&Parameter { name, mavlink, range: [mut least, mut greatest], .. }, value)| {
+            // A radius below the real one would cause collisions.
+            if name == RADIUS.name {
+                least = model.radius_m;
+            } else if name == SPEED.name {
+                greatest = model.max_speed_mps;
             }
-            let [mut least, mut greatest] = parameter.range();
-            match parameter {
-                // A radius below the real one would cause collisions.
-                Parameter::Radius => least = model.radius_m,
-                Parameter::Speed => greatest = model.max_speed_mps,
-                _ => {}
-            }
-            let value = value(parameter)?;
-            Some(Entry {
-                name: name(parameter),
-                meaning: Meaning::Controller(parameter),
-                value,
-                range: [least, greatest],
-            })
+            Entry { name: mavlink, meaning: Meaning::Controller(name), value, range: [least, greatest] }
         });
         let timeout = model.grid.is_none().then_some(Entry {
             name: "SETPOINT_S",
@@ -211,7 +153,7 @@ impl Parameters {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{model, on_grid};
+    use super::super::testing::{greatest, model, on_grid};
     use super::*;
 
     fn padded(name: &str) -> [u8; 16] {
@@ -221,16 +163,15 @@ mod tests {
     }
 
     fn all() -> Parameters {
-        Parameters::new(&model(), |parameter| Some(parameter.range()[1]))
+        Parameters::new(&model(), &greatest())
     }
 
     #[test]
     fn parameter_names_fit_and_find_their_index() {
         let parameters = all();
-        assert_eq!(parameters.count(), Parameter::NAMES.len() + 1);
+        assert_eq!(parameters.count(), greatest().len() + 1);
         for index in 0..parameters.count() {
             let name = parameters.entries[index].name;
-            assert!(name.len() <= 16);
             assert_eq!(parameters.find(&padded(name)), Some(index), "{name}");
             let told = parameters.message(index).expect("it is there");
             assert_eq!((*told.param_id, usize::from(told.param_index)), (padded(name), index));
@@ -268,17 +209,17 @@ mod tests {
             assert_eq!(parameters.set(speed, bad), Err(NotSet::OutOf([0.0, limit])));
             assert_eq!(parameters, before);
         }
-        let meaning = Meaning::Controller(Parameter::Speed);
+        let meaning = Meaning::Controller(SPEED.name);
         assert_eq!(parameters.set(speed, limit), Ok(meaning));
         assert_eq!(parameters.get(meaning), Some(limit));
-        let radius = Meaning::Controller(Parameter::Radius);
+        let radius = Meaning::Controller(RADIUS.name);
         assert!(parameters.set_meaning(radius, model().radius_m * 0.9).is_err());
         assert_eq!(parameters.set(99, 1.0), Err(NotSet::Unknown));
     }
 
     #[test]
     fn a_grid_robot_has_no_body_parameters() {
-        let parameters = Parameters::new(&on_grid(), |_| Some(1.0));
+        let parameters = Parameters::new(&on_grid(), &greatest());
         let is_there = |name| parameters.find(&padded(name)).is_some();
         assert!(is_there("BEACON_S") && is_there("ROUTE_A3"));
         assert!(!is_there("SPEED_MPS") && !is_there("RADIUS_M") && !is_there("SETPOINT_S"));

@@ -121,7 +121,7 @@ impl Swarm {
             let vehicle = Vehicle::new(
                 number as u8,
                 Arc::clone(&model),
-                Parameters::new(&model, |parameter| engine.parameter(index, parameter)),
+                Parameters::new(&model, &engine.parameters(index)),
                 Streams::new(options.position_hz, index as f64 / count as f64),
                 sample,
                 options.starts_armed,
@@ -335,8 +335,7 @@ impl Swarm {
             let sample = Sample::new(time_us, &observation);
             if observation.is_up && observation.boot != self.boots[index] {
                 self.boots[index] = observation.boot;
-                let engine = &self.engine;
-                let parameters = Parameters::new(&self.model, |parameter| engine.parameter(index, parameter));
+                let parameters = Parameters::new(&self.model, &self.engine.parameters(index));
                 self.vehicles[index].restart(parameters, sample, &mut self.out);
             }
             let events = self.engine.events(index);
@@ -355,16 +354,16 @@ impl Swarm {
                 Action::Wish(wish) => {
                     let _ = self.engine.command(index, wish);
                 }
-                Action::Set(parameter, value) => {
-                    if !self.engine.set_parameter(index, parameter, value) {
-                        refused.push(parameter);
+                Action::Set(name, value) => {
+                    if self.engine.set_parameter(index, name, value).is_err() {
+                        refused.push(name);
                     }
                 }
             }
         }
-        for parameter in refused {
-            let value = self.engine.parameter(index, parameter);
-            self.vehicles[index].set_back(parameter, value, &mut self.out);
+        for name in refused {
+            let value = self.engine.parameter(index, name);
+            self.vehicles[index].set_back(name, value, &mut self.out);
         }
         for result in self.out.results.drain(..) {
             *self.commands.entry(name(result)).or_default() += 1;

@@ -3,8 +3,9 @@ use super::params::Parameters;
 use super::streams::Streams;
 use super::vehicle::{Out, Vehicle};
 use crate::geo::{Global, Origin};
-use staya_controller::agent::{Parameter, Wish};
+use staya_controller::agent::{Wish, parameters};
 use staya_controller::grid::{BLOCKED, Cell};
+use staya_controller::parameters::Parameter;
 use staya_controller::robot::Mode;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
@@ -50,6 +51,10 @@ pub(super) fn sample() -> Sample {
     }
 }
 
+pub(super) fn greatest() -> Vec<(&'static Parameter, f32)> {
+    parameters().map(|row| (row, row.range[1])).collect()
+}
+
 pub(super) struct Bench {
     pub(super) vehicle: Vehicle,
     pub(super) sample: Sample,
@@ -58,14 +63,15 @@ pub(super) struct Bench {
 
 impl Bench {
     pub(super) fn new(model: VehicleModel) -> Self {
-        let values = |parameter: Parameter| {
-            Some(match parameter {
-                Parameter::Speed => 1.0,
-                Parameter::Tolerance => 0.05,
-                _ => parameter.range()[1],
-            })
-        };
-        let parameters = Parameters::new(&model, values);
+        let mut values = greatest();
+        for (row, value) in &mut values {
+            match row.name {
+                "speed_mps" => *value = 1.0,
+                "tolerance_m" => *value = 0.05,
+                _ => {}
+            }
+        }
+        let parameters = Parameters::new(&model, &values);
         let streams = Streams::new(10.0, 0.0);
         let sample = sample();
         Self {

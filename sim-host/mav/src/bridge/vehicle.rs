@@ -10,8 +10,9 @@ use super::ordered::Ordered;
 use super::params::{Meaning, Parameters};
 use super::streams::Streams;
 use crate::geo::FAR_M;
-use staya_controller::agent::{Event, Parameter, Waypoint, Wish};
+use staya_controller::agent::{Event, Waypoint, Wish};
 use staya_controller::geom::Position;
+use staya_controller::parameters::TOLERANCE;
 use staya_controller::robot::Mode;
 use staya_controller::wire::{Header, Message};
 use staya_mavlink::constants::*;
@@ -31,8 +32,8 @@ pub enum Action {
     Wish(Wish<f32>),
     /// Delivers a message as if it had arrived by radio.
     Tell(Header, Message),
-    /// Sets a parameter.
-    Set(Parameter, f32),
+    /// Sets the parameter with this name.
+    Set(&'static str, f32),
 }
 
 /// The output of one call.
@@ -365,7 +366,7 @@ impl Vehicle {
     }
 
     pub(super) fn tolerance_m(&self) -> f32 {
-        let tolerance = Meaning::Controller(Parameter::Tolerance);
+        let tolerance = Meaning::Controller(TOLERANCE.name);
         self.parameters.get(tolerance).unwrap_or(0.0)
     }
 

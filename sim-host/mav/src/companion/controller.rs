@@ -2,10 +2,11 @@
 
 use staya_controller::agent::{
     Agent, AgentConfig, AnyLaw, AnySafety, Command, GridWorkspace, Guided, HALF_PLANES, LEARNED, NEIGHBORS, Outputs,
-    Parameter, TEMPLATE, VISITS, Wait, Wish,
+    TEMPLATE, VISITS, Wait, Wish,
 };
 use staya_controller::agent::{GuidanceKind, SafetyKind, SafetySetup};
 use staya_controller::geom::{Position, Vec3};
+use staya_controller::parameters::RADIUS;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{self, Instant};
 use staya_controller::wire::Wire;
@@ -143,9 +144,9 @@ impl<W: Wire> Controller<W> {
         if *self.agent.law().wish() != wish {
             let _ = self.agent.law_mut().command(wish);
         }
-        let [least, greatest] = Parameter::Radius.range();
+        let [least, greatest] = RADIUS.range;
         let radius_m = (self.radius_m + body.error_m) as f32;
-        let _ = self.agent.set_parameter(Parameter::Radius, radius_m.clamp(least, greatest));
+        let _ = self.agent.set_parameter(RADIUS.name, radius_m.clamp(least, greatest));
         // The agent's clock wraps; steps are much closer to each other.
         let now = Instant::from_micros(now.as_micros() as u32);
         self.stepped = Some((now, inputs.state.position, position_m));

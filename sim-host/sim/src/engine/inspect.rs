@@ -3,12 +3,12 @@
 use super::simulate::SafetyOf;
 use super::witness::Asked;
 use super::{Engine, Ground, HostLaw, Tick};
-use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Guided, Inputs, Law, Parameter};
+use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Guided, Inputs, Law};
 use staya_controller::cost::TICK;
 use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
-use staya_controller::names::Named as _;
 use staya_controller::neighbor::Neighbor;
+use staya_controller::parameters::{Parameter, Parameters};
 use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
 
@@ -93,7 +93,7 @@ pub struct Inspection {
     /// Safety decision; only for robots controlled by velocity.
     pub choice: Option<Choice>,
     /// Parameters of the robot.
-    pub parameters: Vec<(Parameter, f32)>,
+    pub parameters: Vec<(&'static Parameter, f32)>,
     /// Bytes sent since the last start.
     pub sent_bytes: u64,
     /// Bytes received since the last start.
@@ -172,18 +172,28 @@ where
             max_speed_mps: asked.body.max_speed_mps,
             permitted: permitted(agent.safety().inside(), asked),
         });
-        let parameters = Parameter::NAMES.iter();
         Inspection {
             known: known(agent.neighbors(), own, own_m, now).collect(),
             land,
             choice,
-            parameters: parameters
-                .filter_map(|&(_, parameter)| Some((parameter, agent.parameter(parameter)?)))
-                .collect(),
+            parameters: listed(|visit| agent.parameters(visit)),
             sent_bytes: computer.sent_bytes,
             heard_bytes: computer.heard_bytes,
         }
     }
+}
+
+/// Parameters and their values in the tables that `each` visits; the first of equal names.
+pub(super) fn listed(each: impl FnOnce(&mut dyn FnMut(&mut dyn Parameters))) -> Vec<(&'static Parameter, f32)> {
+    let mut rows: Vec<(&Parameter, f32)> = Vec::new();
+    each(&mut |table| {
+        for (index, row) in table.table().iter().enumerate() {
+            if rows.iter().all(|(other, _)| other.name != row.name) {
+                rows.extend(table.get(index).map(|value| (row, value)));
+            }
+        }
+    });
+    rows
 }
 
 fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Permitted> {

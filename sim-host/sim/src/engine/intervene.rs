@@ -5,7 +5,7 @@ use crate::scenario::{Fault, Intervention};
 use crate::world::Refusal;
 use crate::world::plane::Shape;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Parameter, Safety};
+use staya_controller::agent::Safety;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 
@@ -33,10 +33,10 @@ pub enum Change<'a> {
     Land(&'a [(Cell, u8)]),
 }
 
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Tuned {
     robot: Option<usize>,
-    parameter: Parameter,
+    name: String,
     value: f32,
 }
 
@@ -76,7 +76,7 @@ where
         let number = what.robot().and_then(|id| self.number_of(RobotId(id)));
         match what {
             Intervention::Goal { place_m, .. } => self.set_goals(number, *place_m),
-            Intervention::Parameter { name, value, .. } => self.tune(number, *name, *value),
+            Intervention::Parameter { name, value, .. } => self.tune(number, name, *value),
             Intervention::Down { robot, for_s } => {
                 let ticks = for_s.map_or(f64::INFINITY, |for_s| libm::ceil(for_s * 1e6 / f64::from(self.tick_us)));
                 let to_tick = self.tick.saturating_add(ticks as u32);
@@ -149,19 +149,19 @@ where
         Err(Refusal::new("kind", "these robots have no goal", "give them another guidance law"))
     }
 
-    fn tune(&mut self, robot: Option<usize>, parameter: Parameter, value: f32) -> Result<(), Refusal> {
-        let tuned = Tuned { robot, parameter, value };
+    fn tune(&mut self, robot: Option<usize>, name: &str, value: f32) -> Result<(), Refusal> {
+        let tuned = Tuned { robot, name: name.to_owned(), value };
         let mut is_known = false;
         for (&number, computer) in self.here.iter().zip(&mut self.computers) {
             if robot.is_none_or(|robot| robot == number as usize)
                 && let Some(agent) = &mut computer.agent
             {
-                is_known |= agent.set_parameter(parameter, value);
+                is_known |= agent.set_parameter(name, value).is_ok();
             }
         }
         // A robot of another rank may have the parameter.
         if !is_known && self.here.len() == self.robots.len() {
-            let what = format!("none of these robots has the parameter {parameter}");
+            let what = format!("none of these robots has the parameter {name}");
             return Err(Refusal::new("name", what, "give one that its guidance law or its safety layer has"));
         }
         self.tuned.push(tuned);
@@ -178,8 +178,8 @@ where
     }
 }
 
-pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(Parameter, f32) -> bool) {
-    for Tuned { parameter, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
-        set(*parameter, *value);
+pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(&str, f32)) {
+    for Tuned { name, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
+        set(name, *value);
     }
 }

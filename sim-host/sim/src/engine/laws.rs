@@ -5,9 +5,10 @@ use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     AnyLaw, AnyOrder, AnyProtocol, AnySurroundings, BadInput, Decision, FormationGuidance, GridMessage, GridWorkspace,
-    GuidanceSetup, LEARNED, Law, MAP_TILES, Parameter, Radio, Report, SharedMap, TEMPLATE, Tools, VISITS, View,
-    decide_as, order_as, receive_as,
+    GuidanceSetup, LEARNED, Law, MAP_TILES, Radio, Report, SharedMap, TEMPLATE, Tools, VISITS, View, decide_as,
+    order_as, receive_as,
 };
+use staya_controller::parameters::Parameters;
 use staya_controller::robot::RobotId;
 use staya_papers::criteria::PublishedParams;
 use staya_papers::{Course, PublishedFormation};
@@ -42,8 +43,7 @@ impl Papers {
                 ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
             }
             (GuidanceSetup::Formation { route, formation, template, .. }, None) if self.looks_ahead => {
-                let law =
-                    FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
+                let law = FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
                 ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
             }
             _ => ScenarioLaw::BuiltIn(setup.law(map)),
@@ -115,11 +115,7 @@ impl Law<f32> for ScenarioLaw {
         each!(ref self, law => Law::<f32>::report(law))
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<f32> {
-        each!(ref self, law => law.parameter(parameter))
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: f32) -> bool {
-        each!(self, law => law.tune(parameter, value))
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        each!(self, law => Law::<f32>::parameters(law, visit));
     }
 }

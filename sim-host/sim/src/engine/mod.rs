@@ -35,9 +35,9 @@ use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
 pub use ground::{Ground, HostLaw, StateWords};
-pub use laws::ScenarioLaw;
 pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, known};
 pub use intervene::Change;
+pub use laws::ScenarioLaw;
 pub use operator::{Observation, Operated, operated};
 pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own, simulate_own_with};
 pub use plane::{PlaneGround, Sensor};
@@ -319,7 +319,10 @@ where
         }
         // Only laws without a task refuse it; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(number, self.tick));
-        intervene::retune(&self.tuned, number, |parameter, value| agent.set_parameter(parameter, value));
+        intervene::retune(&self.tuned, number, |name, value| {
+            // A value that was refused once is refused again.
+            let _ = agent.set_parameter(name, value);
+        });
         self.computer(Some(agent), boot)
     }
 

@@ -1,5 +1,6 @@
 //! Runs that an operator observes and controls.
 
+use super::inspect::listed;
 use super::simulate::{AnyEngine, SafetyOf};
 use super::{Engine, Ground, HostLaw, Inspection, Moment, Outcome, Status};
 use crate::radio::{self, HostWire, Reception};
@@ -8,8 +9,9 @@ use crate::scenario::{Intervention, Scenario};
 use crate::terrain::Terrain;
 use crate::world::plane::{Disc, Solid};
 use crate::world::{Misplaced, Refusal};
-use staya_controller::agent::{Event, Guided, Law, Parameter, Wish};
+use staya_controller::agent::{Event, Guided, Law, Wish};
 use staya_controller::auth::Master;
+use staya_controller::parameters::{Parameter, Rejected};
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message, OperatorWire, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
@@ -51,11 +53,19 @@ pub trait Operated: Send {
     /// radio; lost while the computer is down. Replaces the sequence number of `header`.
     fn tell(&mut self, index: usize, header: Header, message: &Message);
 
-    /// Value of a parameter; `None` if the robot does not have it or is down.
-    fn parameter(&self, index: usize, parameter: Parameter) -> Option<f32>;
+    /// Parameters of a robot and their values; empty if it is down.
+    fn parameters(&mut self, index: usize) -> Vec<(&'static Parameter, f32)>;
 
-    /// Sets a parameter and returns whether the robot has it and accepts the value.
-    fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool;
+    /// Value of a parameter; `None` if the robot does not have it or is down.
+    fn parameter(&mut self, index: usize, name: &str) -> Option<f32> {
+        self.parameters(index).into_iter().find(|(row, _)| row.name == name).map(|(_, value)| value)
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// The robot is down, does not have the parameter, or does not accept the value.
+    fn set_parameter(&mut self, index: usize, name: &str, value: f32) -> Result<(), Rejected>;
 
     /// Results of the run so far.
     fn outcome(&self) -> Outcome;
@@ -187,15 +197,16 @@ where
         }
     }
 
-    fn parameter(&self, index: usize, parameter: Parameter) -> Option<f32> {
-        let agent = self.engine.computers[index].agent.as_ref();
-        agent.filter(|_| self.engine.is_up(index))?.parameter(parameter)
-    }
-
-    fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool {
+    fn parameters(&mut self, index: usize) -> Vec<(&'static Parameter, f32)> {
         let is_up = self.engine.is_up(index);
         let agent = self.engine.computers[index].agent.as_mut().filter(|_| is_up);
-        agent.is_some_and(|agent| agent.set_parameter(parameter, value))
+        agent.map_or_else(Vec::new, |agent| listed(|visit| agent.parameters(visit)))
+    }
+
+    fn set_parameter(&mut self, index: usize, name: &str, value: f32) -> Result<(), Rejected> {
+        let is_up = self.engine.is_up(index);
+        let agent = self.engine.computers[index].agent.as_mut().filter(|_| is_up);
+        agent.ok_or(Rejected::Unknown)?.set_parameter(name, value)
     }
 
     fn outcome(&self) -> Outcome {

@@ -11,9 +11,7 @@ use crate::scenario::Scenario;
 use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
-use staya_controller::agent::{
-    AnySafety, Guided, HALF_PLANES, Safety, SharedMap, WAYPOINTS, Wait,
-};
+use staya_controller::agent::{AnySafety, Guided, HALF_PLANES, Safety, SharedMap, WAYPOINTS, Wait};
 use staya_controller::robot::Mode;
 use std::collections::HashMap;
 use std::ops::ControlFlow;

@@ -1,11 +1,12 @@
 //! A safety layer wrapper that records its inputs.
 
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Parameter, Safety, SafetyInput};
+use staya_controller::agent::{Safety, SafetyInput};
 use staya_controller::body::Body;
 use staya_controller::geom::Vec3;
 use staya_controller::neighbor::{Nearby, StalenessInflation};
 use staya_controller::obstacle::Obstacle;
+use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
 
 #[derive(Clone, Debug)]
@@ -67,11 +68,7 @@ impl<A: Safety<f32>> Safety<f32> for Witness<A> {
         self.inside.waits_for_turn()
     }
 
-    fn parameter(&self, parameter: Parameter) -> Option<f32> {
-        self.inside.parameter(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: f32) -> bool {
-        self.inside.tune(parameter, value)
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.inside.parameters(visit);
     }
 }

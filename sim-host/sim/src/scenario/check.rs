@@ -1,6 +1,7 @@
 //! Checks that involve more than one field.
 
 use super::intervention::tick;
+use super::params::FormationLaw;
 use super::ranges::{micros, short, within};
 use super::source::Source;
 use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
@@ -8,7 +9,6 @@ use crate::file::has_memory;
 use crate::radio;
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
-use super::params::FormationLaw;
 use staya_controller::robot::RobotId;
 use staya_controller::route::Replan;
 use staya_mavlink::any::max_robot;

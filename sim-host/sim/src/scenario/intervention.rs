@@ -7,9 +7,11 @@ use super::source::{ScenarioError, Source};
 use super::{Robot, Scenario, ScenarioFile};
 use crate::world::Refusal;
 use crate::world::plane::{FAR_M, Shape};
+use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::Parameter;
+use staya_controller::agent::parameters;
 use staya_controller::robot::RobotId;
+use std::sync::LazyLock;
 
 /// One change to a running simulation. Robots are named by id; places are world metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,8 +36,9 @@ pub enum Intervention {
     Parameter {
         /// Id of the robot; `None`: all.
         robot: Option<u32>,
-        /// The parameter.
-        name: Parameter,
+        /// Name of the parameter.
+        #[serde(deserialize_with = "parameter")]
+        name: String,
         /// New value.
         value: f32,
     },
@@ -78,6 +81,12 @@ pub enum Intervention {
         /// Ticks to cross the cell; 0: a wall.
         class: u8,
     },
+}
+
+fn parameter<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| parameters().map(|row| row.name).collect());
+    let name = String::deserialize(deserializer)?;
+    if NAMES.contains(&name.as_str()) { Ok(name) } else { Err(D::Error::unknown_variant(&name, &NAMES)) }
 }
 
 /// `[[intervention]]`.
@@ -123,7 +132,8 @@ impl Intervention {
                 }
             }
             Self::Parameter { name, value, .. } => {
-                let [least, greatest] = name.range();
+                let known = parameters().find(|row| row.name == name);
+                let [least, greatest] = known.map_or([f32::MIN, f32::MAX], |row| row.range);
                 if !(least..=greatest).contains(value) {
                     let what = format!("{} is out of range", short((*value).into()));
                     return Err(Refusal::new("value", what, format!("give {least} to {greatest}")));
@@ -235,7 +245,7 @@ mod tests {
         let wrong = [
             Intervention::Goal { robot: Some(2), place_m: [0.0; 3] },
             Intervention::Goal { robot: Some(3), place_m: [f64::NAN, 0.0, 0.0] },
-            Intervention::Parameter { robot: None, name: Parameter::Share, value: 2.0 },
+            Intervention::Parameter { robot: None, name: "share".into(), value: 2.0 },
             Intervention::Down { robot: 3, for_s: Some(-1.0) },
             Intervention::Radio { loss: Some(1.5), range_m: None },
             Intervention::Radio { loss: None, range_m: Some(f64::NAN) },

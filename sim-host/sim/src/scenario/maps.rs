@@ -1,11 +1,11 @@
 //! `[maps]`: exchange of terrain maps between robots.
 
+use super::params::FormationLaw;
 use super::ranges::within;
 use super::source::Source;
 use super::{PlaneSetup, ScenarioError, ScenarioFile};
 use serde::Deserialize;
 use staya_controller::agent::RouteSetup;
-use super::params::FormationLaw;
 use staya_controller::land::MapParams;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::time::Duration;

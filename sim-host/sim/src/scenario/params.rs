@@ -1,14 +1,15 @@
 //! `[route]` and `[formation]`: route planning and formation keeping. The defaults are the
 //! controller's; a test compares them with the list in scenarios/README.md.
 
-use super::ranges::{range, within};
+use super::ranges::{range, row, set, within};
 use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use serde::Deserialize;
-use staya_controller::agent::{Parameter, RouteSetup};
+use staya_controller::agent::RouteSetup;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{FormationParams, NEVER, Prediction, Recovery};
 use staya_controller::grid::{Norm, UNIT};
+use staya_controller::parameters::Value as _;
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_papers::criteria::PublishedParams;
@@ -112,11 +113,6 @@ pub(super) fn sight(file: &ScenarioFile) -> u8 {
 
 pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteSetup, ScenarioError> {
     let (table, grid) = (&file.route, &file.grid);
-    let usual = RouteParams::default();
-    let gain = |name: &str, value: Option<f64>, usual: Gain, most: f64| match value {
-        None => Ok(usual),
-        Some(value) => gain(source, &format!("route.{name}"), value, most),
-    };
     let mut radius = sight(file);
     if !(1..=MAX_RADIUS).contains(&radius) {
         return Err(source.error(
@@ -130,18 +126,15 @@ pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteS
         within(source, "scouting.radius", wide.into(), radius.into(), MAX_RADIUS.into(), "cells")?;
         radius = wide;
     }
-    let params = RouteParams {
-        radius,
-        exit: table.exit.unwrap_or(usual.exit),
-        norm: grid.norm,
-        corner_cutting: grid.corner_cutting,
-        a0: gain("a0", table.a0, usual.a0, range(Parameter::TimeGain)[1])?,
-        a1: gain("a1", table.a1, usual.a1, range(Parameter::OthersGain)[1])?,
-        a2: gain("a2", table.a2, usual.a2, range(Parameter::VisitsGain)[1])?,
-        a3: gain("a3", table.a3, usual.a3, range(Parameter::WayGain)[1])?,
-    };
-    let halving = gain("halved_per_ticks", table.halved_per_ticks, Gain::ZERO, 4095.0)?;
-    let sharpness = match halving {
+    let (norm, corner_cutting) = (grid.norm, grid.corner_cutting);
+    let mut params = RouteParams { radius, norm, corner_cutting, ..RouteParams::default() };
+    params.exit = table.exit.unwrap_or(params.exit);
+    for (name, value) in [("a0", table.a0), ("a1", table.a1), ("a2", table.a2), ("a3", table.a3)] {
+        set(source, &format!("route.{name}"), value, &mut params, name)?;
+    }
+    let halving = table.halved_per_ticks.unwrap_or_default();
+    within(source, "route.halved_per_ticks", halving, 0.0, 4095.0, "")?;
+    let sharpness = match Gain::nearest(halving as f32) {
         Gain::ZERO => Sharpness::Greedy,
         halving => Sharpness::HalvedPer(halving),
     };
@@ -152,11 +145,9 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
     let mut params = if looks_ahead(table) { FormationParams::looking_ahead() } else { FormationParams::default() };
     params.eps = table.eps.unwrap_or(params.eps);
     params.lead = table.lead.unwrap_or(params.lead);
-    if let Some(value) = table.gain {
-        params.gain = gain(source, "formation.gain", value, range(Parameter::PlaceGain)[1])?;
-    }
+    set(source, "formation.gain", table.gain, &mut params, "place_gain")?;
     if let Some(cells) = table.halt_cells {
-        within(source, "formation.halt_cells", cells, 0.0, range(Parameter::HaltLag)[1], "cells")?;
+        within(source, "formation.halt_cells", cells, 0.0, most("halt_cells"), "cells")?;
         params.halt_lag = units(cells);
         params.resume_lag = params.resume_lag.min(params.halt_lag);
     }
@@ -188,14 +179,15 @@ pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<O
     }
     let mut params = PublishedParams::default();
     params.eps = table.eps.unwrap_or(params.eps);
-    if let Some(value) = table.gain {
-        params.gain = gain(source, "formation.gain", value, range(Parameter::PlaceGain)[1])?;
+    if let Some(gain) = table.gain {
+        within(source, "formation.gain", gain, 0.0, most("place_gain"), "ticks")?;
+        params.gain = Gain::nearest(gain as f32);
     }
     for (field, value, param) in
         [("halt_cells", table.halt_cells, &mut params.halt), ("resume_cells", table.resume_cells, &mut params.resume)]
     {
         if let Some(cells) = value {
-            within(source, &format!("formation.{field}"), cells, 0.0, range(Parameter::HaltLag)[1], "cells")?;
+            within(source, &format!("formation.{field}"), cells, 0.0, most("halt_cells"), "cells")?;
             *param = units(cells);
         }
     }
@@ -205,9 +197,8 @@ pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<O
     Ok(Some(params))
 }
 
-fn gain(source: &Source<'_>, field: &str, value: f64, most: f64) -> Result<Gain, ScenarioError> {
-    within(source, field, value, 0.0, most, "")?;
-    Ok(Gain::from_sixteenths(libm::round(value * 16.0) as u16))
+fn most(name: &str) -> f64 {
+    range(row(FormationParams::TABLE, name))[1]
 }
 
 fn units(cells: f64) -> u16 {

@@ -4,11 +4,11 @@ mod readme;
 use super::*;
 use proptest::prelude::*;
 use staya_controller::cost::Gain;
-use staya_papers::criteria::PublishedParams;
 use staya_controller::formation::{FormationParams, NEVER};
 use staya_controller::grid::Cell;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
+use staya_papers::criteria::PublishedParams;
 use std::fs;
 
 const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@..\n....\n";

@@ -7,8 +7,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use staya_controller::agent::{Event, Parameter};
-use staya_controller::names::Named as _;
+use staya_controller::agent::Event;
 use staya_controller::robot::RobotId;
 use staya_sim::engine::{Choice, Inspection, Permitted, SeenLand};
 use staya_sim::radio::Reception;
@@ -122,25 +121,26 @@ pub(super) fn event(event: &Event) -> String {
 }
 
 impl Session {
-    pub(super) fn scene(&self) -> String {
+    pub(super) fn scene(&mut self) -> String {
         let origin_m = self.framer.origin_m();
-        let parameters = Parameter::NAMES.iter().filter_map(|&(name, parameter)| {
-            let value = (0..self.scenario.robots.len()).find_map(|index| self.engine.parameter(index, parameter))?;
-            let [least, greatest] = parameter.range();
-            Some(scene::Parameter {
-                name: name.to_owned(),
-                unit: parameter.unit().to_owned(),
-                least: least.into(),
-                greatest: greatest.into(),
-                value: Some(value.into()),
-                what: parameter.what().to_owned(),
-            })
-        });
+        let mut parameters: Vec<scene::Parameter> = Vec::new();
+        for (row, value) in (0..self.scenario.robots.len()).flat_map(|index| self.engine.parameters(index)) {
+            if parameters.iter().all(|known| known.name != row.name) {
+                parameters.push(scene::Parameter {
+                    name: row.name.to_owned(),
+                    unit: row.unit.to_owned(),
+                    least: row.range[0].into(),
+                    greatest: row.range[1].into(),
+                    value: Some(value.into()),
+                    what: row.what.to_owned(),
+                });
+            }
+        }
         let is_in_space = scene::is_in_space(&self.scenario);
         let scene = Scene {
             land: self.engine.terrain().map(|land| scene::land(land, origin_m)),
             solids: scene::solids(self.engine.solids(), is_in_space, origin_m),
-            parameters: parameters.collect(),
+            parameters,
             radio: self.radio(),
             ..Scene::new(&self.scenario, Mode::Live)
         };
@@ -224,7 +224,7 @@ impl Session {
                 "age_s": known.age_s, "error_m": error_m,
             })
         });
-        let parameters = parameters.iter().map(|(parameter, value)| (parameter.name().to_owned(), json!(value)));
+        let parameters = parameters.iter().map(|(parameter, value)| (parameter.name.to_owned(), json!(value)));
         let events = self.events.get(&index).into_iter().flatten();
         let status = observation.status;
         json!({

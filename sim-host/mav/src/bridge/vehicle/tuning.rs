@@ -1,6 +1,5 @@
 use super::super::params::{Meaning, NotSet};
 use super::{Action, Kind, Out, Vehicle};
-use staya_controller::agent::Parameter;
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 
@@ -18,8 +17,8 @@ impl Vehicle {
         let told = self.parameters.message(index);
         out.messages.extend(told.map(MavMessage::PARAM_VALUE));
         match set {
-            Ok(Meaning::Controller(parameter)) => {
-                out.actions.push(Action::Set(parameter, wanted.param_value));
+            Ok(Meaning::Controller(name)) => {
+                out.actions.push(Action::Set(name, wanted.param_value));
             }
             Ok(Meaning::SetpointTimeout) => {}
             Err(NotSet::OutOf([least, greatest])) => {
@@ -33,13 +32,13 @@ impl Vehicle {
     }
 
     /// Reports the value in use after the controller refused a value that conflicts with another.
-    pub(in super::super) fn set_back(&mut self, parameter: Parameter, value: Option<f32>, out: &mut Out) {
-        let meaning = Meaning::Controller(parameter);
+    pub(in super::super) fn set_back(&mut self, name: &'static str, value: Option<f32>, out: &mut Out) {
+        let meaning = Meaning::Controller(name);
         let Some(index) = value.and_then(|value| self.parameters.set_back(meaning, value)) else {
             return;
         };
         out.messages.extend(self.parameters.message(index).map(MavMessage::PARAM_VALUE));
-        let text = format!("{} conflicts with other parameters", parameter.name());
+        let text = format!("{name} conflicts with other parameters");
         self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
     }
 }

@@ -1,7 +1,6 @@
 use super::*;
 use crate::scenario::{Intervention, with_interventions};
 use crate::world::plane::Shape;
-use staya_controller::agent::Parameter;
 
 const ON_GRID: &str = "name = \"t\"\nticks = 200\ntick_s = 0.5\n[radio]\nrange_m = 12\nloss = 0.2\n[terrain]\ncell_m = 2\n\
      uniform = { width = 20, height = 20, classes = 3 }\n[robots]\n\
@@ -49,7 +48,7 @@ fn interventions_by_hand_equal_those_of_a_scenario() {
     let on_grid = [
         (3, goal(Some(1), 31.0, 35.0)),
         (5, Intervention::Cell { cell: [10, 10], class: 0 }),
-        (5, Intervention::Parameter { robot: None, name: Parameter::WayGain, value: 2.5 }),
+        (5, Intervention::Parameter { robot: None, name: "a3".into(), value: 2.5 }),
         (9, Intervention::Radio { loss: Some(0.9), range_m: Some(40.0) }),
         (11, Intervention::Down { robot: 2, for_s: Some(4.0) }),
         (12, goal(Some(2), 1.0, 1.0)),
@@ -57,7 +56,7 @@ fn interventions_by_hand_equal_those_of_a_scenario() {
     let in_plane = [
         (7, Intervention::Solid { solid: Shape::Segment { from_m: [3.0, -1.0], to_m: [3.0, 1.0] } }),
         (20, Intervention::Move { index: 0, by_m: [-1.0, -1.0] }),
-        (20, Intervention::Parameter { robot: Some(2), name: Parameter::Speed, value: 0.5 }),
+        (20, Intervention::Parameter { robot: Some(2), name: "speed_mps".into(), value: 0.5 }),
         (33, Intervention::Down { robot: 3, for_s: Some(1.0) }),
         (40, goal(None, 5.0, 3.0)),
         (90, Intervention::Radio { loss: Some(0.5), range_m: None }),
@@ -90,14 +89,14 @@ fn a_formation_with_a_new_goal_keeps_its_shape() {
 #[test]
 fn a_restarted_robot_keeps_its_changed_goal_and_parameters() {
     let mut swarm = operated(&parse(IN_PLANE)).expect("they can be placed");
-    swarm.intervene(&Intervention::Parameter { robot: Some(3), name: Parameter::Speed, value: 0.25 }).expect("known");
+    swarm.intervene(&Intervention::Parameter { robot: Some(3), name: "speed_mps".into(), value: 0.25 }).expect("known");
     swarm.intervene(&Intervention::Down { robot: 3, for_s: Some(0.5) }).expect("known");
     swarm.intervene(&goal(Some(3), 4.0, -2.0)).expect("known");
     for _ in 0..20 {
         swarm.advance();
     }
     assert_eq!(swarm.observation(2).boot, 1);
-    assert_eq!(swarm.parameter(2, Parameter::Speed), Some(0.25));
+    assert_eq!(swarm.parameter(2, "speed_mps"), Some(0.25));
     assert_eq!(swarm.goal_m(2), Some([4.0, -2.0, 0.0]));
     for _ in 0..800 {
         swarm.advance();
@@ -114,12 +113,12 @@ fn interventions_without_effect_are_refused() {
         (ON_GRID, Intervention::Remove { index: 0 }),
         (ON_GRID, Intervention::Cell { cell: [3, 3], class: 0 }),
         (ON_GRID, Intervention::Cell { cell: [20, 3], class: 0 }),
-        (ON_GRID, Intervention::Parameter { robot: None, name: Parameter::Horizon, value: 1.0 }),
+        (ON_GRID, Intervention::Parameter { robot: None, name: "horizon_s".into(), value: 1.0 }),
         (ON_GRID, Intervention::Waypoint { goal: 0, place_m: [1.0; 3] }),
         (IN_PLANE, Intervention::Cell { cell: [3, 3], class: 0 }),
         (IN_PLANE, Intervention::Move { index: 1, by_m: [1.0, 0.0] }),
         (IN_PLANE, Intervention::Waypoint { goal: 1, place_m: [1.0; 3] }),
-        (IN_FORMATION, Intervention::Parameter { robot: None, name: Parameter::ResumeLag, value: 5.0 }),
+        (IN_FORMATION, Intervention::Parameter { robot: None, name: "resume_cells".into(), value: 5.0 }),
     ];
     for (text, what) in wrong {
         let scenario = parse(text);

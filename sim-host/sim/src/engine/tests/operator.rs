@@ -1,5 +1,5 @@
 use super::*;
-use staya_controller::agent::{Parameter, Waypoint, Wish};
+use staya_controller::agent::{Waypoint, Wish};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::wire::{GoalAssignment, Header, Message};
 
@@ -65,17 +65,17 @@ fn a_down_robot_ignores_commands_and_restarts_with_the_scenarios_task() {
     let mut swarm = operated(&discs()).expect("they can be placed");
     let east = Wish::Velocity { velocity_mps: Vec3::new(1.0, 0.0, 0.0), valid: Duration::from_millis(60_000) };
     assert!(swarm.command(2, east));
-    assert!(swarm.set_parameter(2, Parameter::Speed, 0.5));
+    assert_eq!(swarm.set_parameter(2, "speed_mps", 0.5), Ok(()));
     run(&mut *swarm, 22);
     let before = swarm.observation(2);
     assert!(!before.is_up && before.motion.velocity_mps == [0.0; 3]);
-    assert!(!swarm.set_parameter(2, Parameter::Speed, 0.5));
-    assert_eq!(swarm.parameter(2, Parameter::Speed), None);
+    assert!(swarm.set_parameter(2, "speed_mps", 0.5).is_err());
+    assert_eq!(swarm.parameter(2, "speed_mps"), None);
     assert!(!swarm.command(2, east), "there is no such robot");
     run(&mut *swarm, 15);
     let after = swarm.observation(2);
     assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);
-    assert_eq!(swarm.parameter(2, Parameter::Speed), Some(1.0));
+    assert_eq!(swarm.parameter(2, "speed_mps"), Some(1.0));
     assert!(after.motion.velocity_mps[1] < -0.5, "{:?}", after.motion);
 }
 

@@ -1,13 +1,15 @@
 //! `[plane.lattice]`, `[plane.goal_flock]` and `[plane.boids]`.
 
-use super::super::ranges::range;
+use super::super::ranges::{range, row, unit};
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
 use super::spec::Spec;
 use crate::radio::RadioParams;
-use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup, Parameter};
+use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
+use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
+use staya_controller::parameters::{MIN_DISTANCE, Parameters as _, TOLERANCE};
 
 /// Ratio of the alpha gain to the goal gain in algorithm 2: see `LatticeParams::gamma`.
 const GAMMA_OF_TWO: f32 = 50.0;
@@ -69,8 +71,9 @@ pub(super) fn lattice(
     let Some(given) = given else {
         return Ok(None);
     };
-    spec.within(source, "lattice.spacing_m", given.spacing_m, range(Parameter::Spacing), "metres")?;
-    let mut params = LatticeParams::new(given.spacing_m as f32);
+    let mut params = LatticeParams::<f32>::new(1.0);
+    let fields = [("spacing_m", Some(given.spacing_m)), ("obstacle_ratio", given.obstacle_ratio)];
+    spec.set(source, "lattice", &mut params, &fields)?;
     params.algorithm = match given.algorithm {
         Some(1) => Algorithm::One,
         Some(2) => Algorithm::Two,
@@ -95,19 +98,17 @@ pub(super) fn lattice(
         let (delay_s, rate_hz) = file.radio.news(file.tick_s);
         params = params.stable_for(delay_s as f32, rate_hz as f32);
     }
-    for (field, gain, parameter, param) in [
-        ("c_alpha", given.c_alpha, Parameter::AlphaPosition, &mut params.alpha),
-        ("c_beta", given.c_beta, Parameter::BetaPosition, &mut params.beta),
-        ("c_gamma", given.c_gamma, Parameter::GammaPosition, &mut params.gamma),
+    let table = params.table();
+    for (field, gain, name, param) in [
+        ("lattice.c_alpha", given.c_alpha, "c1_alpha", &mut params.alpha),
+        ("lattice.c_beta", given.c_beta, "c1_beta", &mut params.beta),
+        ("lattice.c_gamma", given.c_gamma, "c1_gamma", &mut params.gamma),
     ] {
         if let Some(gain) = gain {
-            spec.within(source, &format!("lattice.{field}"), gain, range(parameter), "1/s^2")?;
+            let row = row(table, name);
+            spec.within(source, field, gain, range(row), unit(row))?;
             *param = Gain::critical(gain as f32);
         }
-    }
-    if let Some(ratio) = given.obstacle_ratio {
-        spec.within(source, "lattice.obstacle_ratio", ratio, range(Parameter::ObstacleRatio), "spacings")?;
-        params.obstacle_ratio = ratio as f32;
     }
     let motion = match (given.goal_moves, given.goal_rest_m) {
         (Some(false), None) => ReferenceMotion::Static,
@@ -155,23 +156,16 @@ pub(super) fn goal_flock(
         return Ok(None);
     };
     let least = given.min_distance_m;
-    spec.within(source, "goal_flock.min_distance_m", least, range(Parameter::MinDistance), "metres")?;
+    spec.within(source, "goal_flock.min_distance_m", least, range(&MIN_DISTANCE), "metres")?;
     let seen = given.neighborhood_m.unwrap_or(4.0 * least);
-    spec.within(source, "goal_flock.neighborhood_m", seen, [2.0 * least, range(Parameter::Neighborhood)[1]], "metres")?;
+    let [_, most] = range(row(GoalParams::<f32>::TABLE, "neighborhood_m"));
+    spec.within(source, "goal_flock.neighborhood_m", seen, [2.0 * least, most], "metres")?;
     let arrival_m = given.arrival_m.unwrap_or(seen);
-    spec.within(source, "goal_flock.arrival_m", arrival_m, range(Parameter::Tolerance), "metres")?;
+    spec.within(source, "goal_flock.arrival_m", arrival_m, range(&TOLERANCE), "metres")?;
     let mut params = GoalParams::new(least as f32, cruise_mps as f32);
     params.neighborhood_m = seen as f32;
-    for (field, gain, parameter, param) in [
-        ("k1", given.k1, Parameter::GoalGain, &mut params.goal_gain),
-        ("k2", given.k2, Parameter::CenterGain, &mut params.center_gain),
-        ("k3", given.k3, Parameter::RepulsionGain, &mut params.repulsion_gain),
-    ] {
-        if let Some(gain) = gain {
-            spec.within(source, &format!("goal_flock.{field}"), gain, range(parameter), "")?;
-            *param = gain as f32;
-        }
-    }
+    let gains = [("k1", given.k1), ("k2", given.k2), ("k3", given.k3)];
+    spec.set(source, "goal_flock", &mut params, &gains)?;
     Ok(Some(GuidanceSetup::GoalFlock { params, arrival_m: arrival_m as f32, seed }))
 }
 
@@ -180,13 +174,18 @@ pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result
     let Some(given) = given else {
         return Ok(None);
     };
-    spec.within(source, "boids.crowded_m", given.crowded_m, range(Parameter::Crowded), "metres")?;
-    spec.within(source, "boids.closest_m", given.closest_m, range(Parameter::Closest), "metres")?;
-    let max_turn = given.max_turn.unwrap_or(0.05);
-    let max_turn_away = given.max_turn_away.unwrap_or(0.02);
-    spec.within(source, "boids.max_turn", max_turn, range(Parameter::MaxTurn), "radians")?;
-    spec.within(source, "boids.max_turn_away", max_turn_away, range(Parameter::MaxTurnAway), "radians")?;
-    let [crowded, closest, turn, away] = [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
-    let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away };
+    let mut params = BoidsSetup::PAPER;
+    for (name, value, param) in [
+        ("crowded_m", Some(given.crowded_m), &mut params.crowded_m),
+        ("closest_m", Some(given.closest_m), &mut params.closest_m),
+        ("max_turn", given.max_turn, &mut params.max_turn),
+        ("max_turn_away", given.max_turn_away, &mut params.max_turn_away),
+    ] {
+        if let Some(value) = value {
+            let row = row(BoidsParams::<f32>::TABLE, name);
+            spec.within(source, &format!("boids.{name}"), value, range(row), unit(row))?;
+            *param = value as f32;
+        }
+    }
     Ok(Some(GuidanceSetup::Boids { params, speed_mps: cruise_mps as f32 }))
 }

@@ -6,11 +6,10 @@ use super::super::{ScenarioError, ScenarioFile, params};
 use super::spec::Spec;
 use super::{checks, flocks};
 use crate::world::plane::Abilities;
-use staya_controller::agent::{
-    AnyHalfPlanes, ContactLossPolicy, GuidanceKind, GuidanceSetup, Parameter, SafetyKind, SafetySetup,
-};
+use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
+use staya_controller::parameters::{MIN_DISTANCE, RADIUS, TOLERANCE};
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::template::Template;
 use staya_controller::time::Duration;
@@ -121,7 +120,7 @@ const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32>
 impl Spec {
     pub fn build(&self, source: &Source<'_>, file: &ScenarioFile) -> Result<RobotGroup, ScenarioError> {
         let far = checks::FAR_M;
-        self.within(source, "radius_m", self.radius_m, range(Parameter::Radius), "metres")?;
+        self.within(source, "radius_m", self.radius_m, range(&RADIUS), "metres")?;
         self.within(source, "max_speed_mps", self.max_speed_mps, [0.001, 32.0], "m/s")?;
         self.within(source, "sight_m", self.sight_m, [0.0, far], "metres")?;
         self.within(source, "lag_s", self.lag_s, [0.0, 10.0], "seconds")?;
@@ -134,7 +133,7 @@ impl Spec {
         let slowest_mps = 0.001_f64.min(self.max_speed_mps);
         self.within(source, "cruise_mps", cruise_mps, [slowest_mps, self.max_speed_mps], "m/s")?;
         let tolerance_m = self.tolerance_m.unwrap_or(self.radius_m / 10.0);
-        self.within(source, "tolerance_m", tolerance_m, range(Parameter::Tolerance), "metres")?;
+        self.within(source, "tolerance_m", tolerance_m, range(&TOLERANCE), "metres")?;
         let abilities = Abilities {
             max_speed_mps: self.max_speed_mps,
             max_acceleration_mps2: self.max_acceleration_mps2,
@@ -219,17 +218,13 @@ impl Spec {
             let remedy = format!("give {} seconds or more, or leave it out", short(brake_s));
             return Err(source.error(&self.field(source, "orca.horizon_s"), what, remedy));
         }
-        for (field, value, parameter, unit, param) in [
-            ("horizon_s", table.horizon_s, Parameter::Horizon, "seconds", &mut params.horizon_s),
-            ("wall_horizon_s", table.wall_horizon_s, Parameter::WallHorizon, "seconds", &mut params.wall_horizon_s),
-            ("share", table.share, Parameter::Share, "", &mut params.share),
-            ("margin_m", table.margin_m, Parameter::Margin, "metres", &mut params.margin_m),
-        ] {
-            if let Some(value) = value {
-                self.within(source, &format!("orca.{field}"), value, range(parameter), unit)?;
-                *param = value as f32;
-            }
-        }
+        let fields = [
+            ("horizon_s", table.horizon_s),
+            ("wall_horizon_s", table.wall_horizon_s),
+            ("share", table.share),
+            ("margin_m", table.margin_m),
+        ];
+        self.set(source, "orca", &mut params, &fields)?;
         Ok(params)
     }
 
@@ -266,7 +261,7 @@ impl Spec {
             let remedy = "give \"radial\", or safety \"orca\"";
             return Err(source.error(&self.field(source, "push_out.model"), what, remedy));
         }
-        self.within(source, "push_out.min_distance_m", given.min_distance_m, range(Parameter::MinDistance), "metres")?;
+        self.within(source, "push_out.min_distance_m", given.min_distance_m, range(&MIN_DISTANCE), "metres")?;
         Ok(PushOutParams {
             model: given.model,
             evasion: if given.single { Evasion::Single } else { Evasion::Multiple },

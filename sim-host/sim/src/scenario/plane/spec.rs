@@ -1,12 +1,13 @@
 //! Fields of a group of robots before they are checked.
 
-use super::super::ScenarioError;
 use super::super::source::Source;
+use super::super::{ScenarioError, ranges};
 use super::table::{
     BoidsTable, GoalFlockTable, GroupTable, LatticeTable, OrcaTable, PlaneRobotEntry, PlaneTable, PushOutTable,
 };
 use super::within;
 use staya_controller::agent::{GuidanceKind, SafetyKind};
+use staya_controller::parameters::Parameters;
 
 #[derive(Clone, Debug)]
 pub(super) struct Spec {
@@ -121,5 +122,19 @@ impl Spec {
         unit: &str,
     ) -> Result<(), ScenarioError> {
         within(source, &self.field(source, name), value, range[0], range[1], unit)
+    }
+
+    /// Checks the fields of `table` against the parameters with the same names and stores them.
+    pub fn set(
+        &self,
+        source: &Source<'_>,
+        table: &str,
+        params: &mut dyn Parameters,
+        fields: &[(&str, Option<f64>)],
+    ) -> Result<(), ScenarioError> {
+        for (name, value) in fields {
+            ranges::set(source, &self.field(source, &format!("{table}.{name}")), *value, params, name)?;
+        }
+        Ok(())
     }
 }

@@ -134,7 +134,7 @@ fn a_parameter_is_set_within_limits_and_always_reported() {
     };
     let out = bench.give(param_set("SPEED_MPS", 0.5));
     assert_eq!(told(out), 0.5);
-    assert_eq!(out.actions, [Action::Set(Parameter::Speed, 0.5)]);
+    assert_eq!(out.actions, [Action::Set("speed_mps", 0.5)]);
     for bad in [2.1, -0.1, NAN] {
         let out = bench.give(param_set("SPEED_MPS", bad));
         assert_eq!(told(out), 0.5, "unchanged");
