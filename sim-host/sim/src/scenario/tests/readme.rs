@@ -1,9 +1,11 @@
 //! Compares scenarios/README.md with the code.
 
 use super::*;
+use staya_controller::agent::parameters;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{FormationParams, Prediction, Recovery};
 use staya_controller::grid::UNIT;
+use staya_controller::orca::AvoidParams;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
 
@@ -52,13 +54,27 @@ fn every_scenario_is_in_the_list_of_the_readme() {
     assert!(scenarios > 12, "only {scenarios} were found");
 }
 
+fn row_of(field: &str) -> &'static str {
+    let readme = include_str!("../../../../../scenarios/README.md");
+    let row = readme.lines().find(|line| line.starts_with(&format!("| `{field}`")));
+    row.unwrap_or_else(|| panic!("no row of {field}"))
+}
+
+#[test]
+fn the_ranges_in_the_readme_are_those_of_the_parameters() {
+    for (field, name) in
+        [("radius_m", "radius_m"), ("horizon_s", "horizon_s"), ("share", "share"), ("a0", "a0"), ("gain", "place_gain")]
+    {
+        let parameter = parameters().find(|row| row.name == name).expect("a parameter");
+        let [least, greatest] = parameter.range;
+        assert!(row_of(field).contains(&format!("{least} to {greatest}")), "{field}");
+    }
+}
+
 #[test]
 fn the_defaults_in_the_readme_match_the_controller() {
-    let readme = include_str!("../../../../../scenarios/README.md");
     let last_column = |field: &str| {
-        let row = readme.lines().find(|line| line.starts_with(&format!("| `{field}`")));
-        let row = row.unwrap_or_else(|| panic!("no row of {field}"));
-        let column = row.trim_end_matches(" |").rsplit(" | ").next();
+        let column = row_of(field).trim_end_matches(" |").rsplit(" | ").next();
         column.expect("a column").replace('`', "")
     };
     let number = |gain: Gain| f64::from(gain.sixteenths()) / 16.0;
@@ -77,6 +93,9 @@ fn the_defaults_in_the_readme_match_the_controller() {
     assert_eq!(last_column("lead"), formation.lead.to_string());
     let footprint = f64::from(formation.footprint) / 16.0;
     assert_eq!(last_column("footprint"), footprint.to_string());
+    let orca = AvoidParams::<f32>::default();
+    assert_eq!(last_column("horizon_s"), format!("{}, {}", orca.horizon_s, orca.wall_horizon_s));
+    assert_eq!((last_column("share"), last_column("margin_m")), (orca.share.to_string(), orca.margin_m.to_string()));
     assert_eq!((formation.prediction, formation.recovery), (Prediction::Constant, Recovery::Wait));
     assert_eq!((last_column("prediction"), last_column("recovery")), ("\"constant\"".into(), "\"wait\"".into()));
 }
