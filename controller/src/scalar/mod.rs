@@ -12,6 +12,8 @@ mod fast;
 mod fixed;
 mod float;
 pub(crate) mod integer;
+#[cfg(any(test, all(target_arch = "arm", target_abi = "eabihf")))]
+mod root;
 #[cfg(all(test, feature = "micromath"))]
 mod tests;
 
