@@ -54,9 +54,8 @@ pub fn wall<S: Scalar>(
 }
 
 fn nearest_on_segment<S: Scalar>(at: Vec2<S>, a: Vec2<S>, b: Vec2<S>) -> Vec2<S> {
-    let along = b - a;
-    let length = along.norm();
-    match along.normalized() {
+    let (unit, length) = (b - a).unit_and_norm();
+    match unit {
         Some(unit) => a + unit * (at - a).dot(unit).clamp(S::ZERO, length),
         None => a,
     }

@@ -119,6 +119,25 @@ macro_rules! impl_scalar {
                     [x * scale, y * scale, z * scale]
                 })
             }
+
+            #[inline(never)]
+            fn unit_in_plane(components: [Self; 2]) -> [Self; 2] {
+                Self::unit_and_norm(components).0
+            }
+
+            #[inline]
+            fn unit_and_norm([x, y]: [Self; 2]) -> ([Self; 2], Self) {
+                const NORMAL: core::ops::RangeInclusive<$float> = $float::MIN_POSITIVE..=$float::MAX;
+                let squared = x * x + y * y;
+                let norm = $sqrt(squared);
+                let unit = if NORMAL.contains(&squared) {
+                    let scale = 1.0 / norm;
+                    [x * scale, y * scale]
+                } else {
+                    [0.0; 2]
+                };
+                (unit, norm)
+            }
         }
     };
 }

@@ -157,6 +157,18 @@ pub trait Scalar:
     #[must_use]
     fn unit(components: [Self; 3]) -> Option<[Self; 3]>;
 
+    /// [`Scalar::unit`] in the plane; zeros instead of `None`.
+    #[must_use]
+    fn unit_in_plane([x, y]: [Self; 2]) -> [Self; 2] {
+        Self::unit([x, y, Self::ZERO]).map_or([Self::ZERO; 2], |[x, y, _]| [x, y])
+    }
+
+    /// [`Scalar::unit_in_plane`] and [`Scalar::norm`] of one vector, with one root.
+    #[must_use]
+    fn unit_and_norm([x, y]: [Self; 2]) -> ([Self; 2], Self) {
+        (Self::unit_in_plane([x, y]), Self::norm([x, y, Self::ZERO]))
+    }
+
     /// The magnitude.
     #[must_use]
     fn abs(self) -> Self {

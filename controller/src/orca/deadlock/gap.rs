@@ -1,6 +1,6 @@
 //! Finds narrow places between walls, which robots must share.
 
-use super::detour::{crosses, distance, is_hidden, nearest, rest, walls};
+use super::detour::{Corners, crosses, distance, is_hidden, nearest, walls};
 use crate::geom::Vec2;
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
@@ -114,6 +114,7 @@ impl<S: Scalar> Gap<S> {
 pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, wanted: &Wanted<S>) -> Option<Gap<S>> {
     let is_blocked = is_hidden(obstacles, target);
     let mut best: Option<(S, Gap<S>)> = None;
+    let mut corners = None;
     for_each_gap(obstacles, target, wanted, &mut |gap| {
         // Two ends of walls are a gap only if both are seen: a solid may lie between them.
         let side = gap.ahead.perp() * gap.half;
@@ -122,7 +123,8 @@ pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, 
         if is_behind || [side, -side].into_iter().any(|side| is_hidden(obstacles, gap.middle + side)) {
             return;
         }
-        let detour = gap.middle.norm() + rest(obstacles, gap.middle, target, wanted.radius_m);
+        let corners = corners.get_or_insert_with(|| Corners::new(obstacles, wanted.radius_m));
+        let detour = gap.middle.norm() + corners.rest(gap.middle, target);
         if best.is_none_or(|(least, _)| detour < least) {
             best = Some((detour, gap));
         }
