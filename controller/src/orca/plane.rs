@@ -157,21 +157,23 @@ fn best_on_line<S: Scalar>(
     }
     let half_chord = ((speed - distance) * (speed + distance)).sqrt();
     let (mut low, mut high) = (-half_chord, half_chord);
+    let steep = S::EPSILON * S::from_i32(64);
     for other in before {
         let slope = direction.dot(other.normal);
         let gap = other.penetration(foot);
-        let is_crossed = slope.abs() > S::EPSILON * S::from_i32(64);
-        let Some(t) = gap.checked_div(slope).filter(|_| is_crossed) else {
-            // Parallel. Rounding between copies of one half-plane must not exclude the border.
-            if gap > rounding(speed, other) {
-                return None;
+        let rises = slope > steep;
+        if (rises || slope < -steep)
+            && let Some(t) = gap.checked_div(slope)
+        {
+            if rises {
+                low = if t > low { t } else { low };
+            } else {
+                high = if t < high { t } else { high };
             }
-            continue;
-        };
-        // Values are selected: a branch predictor cannot know which side a plane cuts off.
-        let rises = slope > S::ZERO;
-        low = if rises & (t > low) { t } else { low };
-        high = if !rises & (t < high) { t } else { high };
+        } else if gap > rounding(speed, other) {
+            // Parallel. Rounding between copies of one half-plane must not exclude the border.
+            return None;
+        }
     }
     if low > high {
         return None;

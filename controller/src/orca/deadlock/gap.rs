@@ -104,7 +104,8 @@ impl<S: Scalar> Gap<S> {
         let joined = Self { middle, depth: (high - low) * S::HALF, ..self };
         // The ends of a corridor that this one crosses.
         let own = joined.place(Vec2::ZERO);
-        if own.x == S::ZERO && own.y.abs() > self.half { self } else { joined }
+        let is_crossing = own.x == S::ZERO && own.y.abs() > self.half;
+        if is_crossing || !other.is_clear(obstacles) { self } else { joined }
     }
 }
 
@@ -120,7 +121,10 @@ pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, 
         let side = gap.ahead.perp() * gap.half;
         // Behind a gap but before a wall, the robot need not have come through the gap.
         let is_behind = gap.is_passed(wanted) || is_blocked && gap.place(Vec2::ZERO).x > S::ZERO;
-        if is_behind || [side, -side].into_iter().any(|side| is_hidden(obstacles, gap.middle + side)) {
+        if is_behind || !gap.is_clear(obstacles) {
+            return;
+        }
+        if [side, -side].into_iter().any(|side| is_hidden(obstacles, gap.middle + side)) {
             return;
         }
         let corners = corners.get_or_insert_with(|| Corners::new(obstacles, wanted.radius_m));
@@ -157,9 +161,7 @@ fn for_each_gap<S: Scalar>(
                 if !(width >= wanted.least_m && width <= wanted.most_m) {
                     continue;
                 }
-                if let Some(gap) = Gap::between(a, b, target)
-                    && gap.is_clear(obstacles)
-                {
+                if let Some(gap) = Gap::between(a, b, target) {
                     visit(gap);
                 }
             }
