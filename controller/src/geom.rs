@@ -63,6 +63,7 @@ pub trait Vector:
     fn dot(self, other: Self) -> Self::Scalar;
     fn norm(self) -> Self::Scalar;
     fn normalized(self) -> Option<Self>;
+    fn unit_and_norm(self) -> (Option<Self>, Self::Scalar);
     fn clamp_norm(self, max: Self::Scalar) -> Self;
     fn is_finite(self) -> bool;
 }
@@ -140,6 +141,11 @@ macro_rules! impl_vector {
             #[inline]
             fn normalized(self) -> Option<Self> {
                 self.normalized()
+            }
+
+            #[inline]
+            fn unit_and_norm(self) -> (Option<Self>, S) {
+                self.unit_and_norm()
             }
 
             #[inline]
@@ -255,6 +261,12 @@ impl<S: Scalar> Vec3<S> {
     #[must_use]
     pub fn normalized(self) -> Option<Self> {
         S::unit(self.padded()).map(|[x, y, z]| Self { x, y, z })
+    }
+
+    /// [`Self::normalized`] and [`Self::norm`].
+    #[must_use]
+    pub fn unit_and_norm(self) -> (Option<Self>, S) {
+        (self.normalized(), self.norm())
     }
 
     /// Converts to another scalar type.

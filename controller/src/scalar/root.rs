@@ -32,11 +32,11 @@ pub(super) fn sqrtf(x: f32) -> f32 {
 #[cold]
 #[inline(never)]
 fn special(x: f32) -> f32 {
-    if x == 0.0 || x == f32::INFINITY {
-        x
-    } else if x > 0.0 {
+    if x > 0.0 && x < f32::MIN_POSITIVE {
         // 2^24 and 2^-12.
         sqrtf(x * 16_777_216.0) * (1.0 / 4_096.0)
+    } else if x >= 0.0 {
+        x
     } else {
         f32::NAN
     }
