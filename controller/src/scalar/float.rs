@@ -3,10 +3,10 @@
 use super::{Scalar, sealed};
 use libm::sqrt;
 
-#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
-use libm::sqrtf;
 #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
 use super::root::sqrtf;
+#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+use libm::sqrtf;
 
 macro_rules! impl_scalar {
     ($float:ident, $nan_bits:expr, $floor:ident, $round:ident, $sqrt:ident, $sincos:ident, $atan2:ident, $exp:ident, $log:ident) => {

@@ -13,6 +13,7 @@ staya_firmware::faults_are_printed!();
 
 #[cfg(target_os = "none")]
 mod program {
+    use staya_firmware::runtime;
     #[cfg(part = "stm32f405")]
     use {
         heapless::Vec,
@@ -24,7 +25,6 @@ mod program {
         staya_controller::time::Instant,
         staya_controller::wire::Wire,
     };
-    use staya_firmware::runtime;
 
     #[cfg(part = "stm32f405")]
     const PURPOSE: u32 = u32::from_be_bytes(*b"srch");
