@@ -63,6 +63,7 @@ pub trait Vector:
     fn dot(self, other: Self) -> Self::Scalar;
     fn norm(self) -> Self::Scalar;
     fn normalized(self) -> Option<Self>;
+    fn unit_and_norm(self) -> (Option<Self>, Self::Scalar);
     fn clamp_norm(self, max: Self::Scalar) -> Self;
     fn is_finite(self) -> bool;
 }
@@ -103,13 +104,6 @@ macro_rules! impl_vector {
                 S::length_key(self.padded())
             }
 
-            /// The vector of length 1 with the same direction, if one exists ([`Scalar::unit`]).
-            #[must_use]
-            pub fn normalized(self) -> Option<Self> {
-                let [x, y, z] = S::unit(self.padded())?;
-                Some(Vec3::new(x, y, z).into())
-            }
-
             /// The vector, shortened to `max` if it is longer. Zero if a component is not finite or
             /// `max` is not positive, so that an invalid command causes no motion.
             #[must_use]
@@ -147,6 +141,11 @@ macro_rules! impl_vector {
             #[inline]
             fn normalized(self) -> Option<Self> {
                 self.normalized()
+            }
+
+            #[inline]
+            fn unit_and_norm(self) -> (Option<Self>, S) {
+                self.unit_and_norm()
             }
 
             #[inline]
@@ -212,6 +211,20 @@ impl<S: Scalar> From<Vec3<S>> for Vec2<S> {
 }
 
 impl<S: Scalar> Vec2<S> {
+    /// The vector of length 1 with the same direction, if one exists ([`Scalar::unit`]).
+    #[must_use]
+    pub fn normalized(self) -> Option<Self> {
+        let [x, y] = S::unit_in_plane([self.x, self.y]);
+        Some(Self { x, y }).filter(|unit| *unit != Self::ZERO)
+    }
+
+    /// [`Self::normalized`] and [`Self::norm`], with one root.
+    #[must_use]
+    pub fn unit_and_norm(self) -> (Option<Self>, S) {
+        let ([x, y], norm) = S::unit_and_norm([self.x, self.y]);
+        (Some(Self { x, y }).filter(|unit| *unit != Self::ZERO), norm)
+    }
+
     /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Vec2<T> {
@@ -244,6 +257,18 @@ impl<S: Scalar> Vec2<S> {
 }
 
 impl<S: Scalar> Vec3<S> {
+    /// The vector of length 1 with the same direction, if one exists ([`Scalar::unit`]).
+    #[must_use]
+    pub fn normalized(self) -> Option<Self> {
+        S::unit(self.padded()).map(|[x, y, z]| Self { x, y, z })
+    }
+
+    /// [`Self::normalized`] and [`Self::norm`].
+    #[must_use]
+    pub fn unit_and_norm(self) -> (Option<Self>, S) {
+        (self.normalized(), self.norm())
+    }
+
     /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Vec3<T> {

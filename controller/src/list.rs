@@ -29,10 +29,11 @@ pub(crate) fn collect<T, const N: usize>(items: impl IntoIterator<Item = T>) -> 
 }
 
 /// Moves the last item towards the front past all items that must come after it.
-pub(crate) fn sink_last<T>(items: &mut [T], must_swap: impl Fn(&T, &T) -> bool) {
+/// It copies, because `mem::swap` moves one word at a time in a loop.
+pub(crate) fn sink_last<T: Copy>(items: &mut [T], must_swap: impl Fn(&T, &T) -> bool) {
     for i in (1..items.len()).rev() {
         match items.get_mut(i - 1..=i) {
-            Some([before, after]) if must_swap(before, after) => core::mem::swap(before, after),
+            Some([before, after]) if must_swap(before, after) => (*before, *after) = (*after, *before),
             _ => break,
         }
     }

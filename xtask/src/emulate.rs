@@ -58,12 +58,18 @@ pub fn on_part(
 /// Runs a program that ends by itself, with the part's UART on one of QEMU's devices, `none` or
 /// `stdio`; what it printed. Each instruction takes a nanosecond of the part's time.
 pub fn run(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<String, String> {
+    run_with(repo, part, elf, line, &[])
+}
+
+/// [`run`] with arguments for the program.
+pub fn run_with(repo: &Repo, part: &Part, elf: &Path, line: &str, arguments: &[&str]) -> Result<String, String> {
+    let arguments: String = arguments.iter().map(|argument| format!(",arg={argument}")).collect();
     let mut command = repo.command(part.emulator);
     command
         .args(machine(part))
         .args(["-icount", "shift=0", "-display", "none"])
         .args(["-monitor", "none", "-serial", line])
-        .args(["-semihosting-config", "enable=on,target=native"])
+        .args(["-semihosting-config", &format!("enable=on,target=native{arguments}")])
         .arg("-kernel")
         .arg(elf);
     println!("$ {}", shown(&command));

@@ -50,7 +50,7 @@ type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
 
 /// The commands. Of lines that begin with the same word, the first that fits counts.
 #[rustfmt::skip]
-const COMMANDS: [Command; 30] = [
+const COMMANDS: [Command; 31] = [
     ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
     ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, Short)),
     ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, All)),
@@ -83,6 +83,7 @@ const COMMANDS: [Command; 30] = [
     ("python", "the package for Python: its wheel, types and tests", |s, _| python::package(s)),
     ("qemu", "fetches the emulators of the parts", |s, _| emulate::run_command(s)),
     ("size [--json]", "flash, RAM, stack, instructions against budgets", |s, o| size::run(s, o.has("--json"))),
+    ("size [--search] [--seed N] [--scenes N]", "the longest step behind ORCA that a search finds", size::search),
     ("soak [--minutes N] [--json FILE] [flood|key|companion|hil...]", "everything at once among hostile clients",
         soak::run_command),
     ("swarms", "the canned swarms give one hash on the host and on each part", |s, _| swarms::run(s)),

@@ -1,13 +1,15 @@
-//! `cargo xtask size`: what the firmware takes on each part, against `hil/budgets.toml`.
+//! `cargo xtask size`: what the firmware takes on each part, against `hil/budgets.toml`, and the
+//! search for the longest step behind ORCA.
 
 mod bench;
 mod budget;
 mod reach;
 
-use crate::device::{PARTS, Part};
+use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
 use crate::files;
 use crate::firmware::{self, Profile, Sections};
+use crate::options::Options;
 use crate::repo::Repo;
 use crate::session::Session;
 use bench::Row;
@@ -54,6 +56,19 @@ pub fn run(s: &mut Session, is_json: bool) {
             Err(error) => println!("{error}"),
         }
     }
+}
+
+/// Searches for the scene with the longest step behind ORCA, and prints it as an expression for
+/// `hil/cases/src/scene/found.rs`.
+pub fn search(s: &mut Session, options: &Options<'_>) {
+    let seed = options.value("--seed").unwrap_or("1");
+    let scenes = options.value("--scenes").unwrap_or("20000");
+    on_part(s, "search for the longest step", STM32F405, (Profile::Firmware, &["search"]), |repo| {
+        let elf = Profile::Firmware.elf(repo, STM32F405, "search");
+        let said = emulate::run_with(repo, STM32F405, &elf, "none", &[seed, scenes])?;
+        print!("{said}");
+        Ok(())
+    });
 }
 
 fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {

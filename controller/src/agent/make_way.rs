@@ -149,6 +149,7 @@ fn gap<S: Scalar>(body: &Body<S>, other: &Nearby<S>) -> S {
 }
 
 /// Whether walls leave less than `space_m` beside the robot and the other one, metres.
+#[inline(never)] // Firmware contains this once.
 fn is_narrow<S: Scalar>(body: &Body<S>, other: &Nearby<S>, obstacles: &[Obstacle<S>], space_m: S) -> bool {
     let [left, right] = beside(obstacles, other.offset_m.xy());
     left + right < (body.radius_m + other.radius_m) * S::TWO + space_m

@@ -37,8 +37,8 @@ impl<S: Scalar> Obstacle<S> {
     pub fn nearest_point(&self) -> Option<(Vec3<S>, S)> {
         match *self {
             Self::Wall([a, b]) => {
-                let (along, length) = (b - a, (b - a).norm());
-                let foot = match along.normalized() {
+                let (unit, length) = (b - a).unit_and_norm();
+                let foot = match unit {
                     Some(unit) => a + unit * (-a).dot(unit).clamp(S::ZERO, length),
                     None => a,
                 };

@@ -6,7 +6,8 @@
 
 use super::dimension::{Dimension, HalfPlane, HalfSpace, MovingBall, Situation};
 use super::linear_program::{Solution, solve};
-use super::{AvoidParams, Params, half_plane, half_space, wall};
+use super::wall::wall_from;
+use super::{AvoidParams, Params, half_plane, half_space};
 use crate::body::Body;
 use crate::geom::{Vec2, Vec3, Vector};
 use crate::neighbor::Nearby;
@@ -269,7 +270,7 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     for obstacle in obstacles {
         let nearest_point = obstacle.nearest_point();
         let distance = nearest_point.map_or(-V::Scalar::MAX, |(_, distance)| distance);
-        let Some(constraint) = static_obstacle(params, body, own, obstacle) else {
+        let Some(constraint) = static_obstacle(params, body, own, (obstacle, nearest_point)) else {
             continue;
         };
         if distances.len() >= room {
@@ -301,14 +302,14 @@ fn static_obstacle<V: Dimension>(
     params: &AvoidParams<V::Scalar>,
     body: &Body<V::Scalar>,
     own: V,
-    obstacle: &Obstacle<V::Scalar>,
+    (obstacle, nearest_point): (&Obstacle<V::Scalar>, Option<(Vec3<V::Scalar>, V::Scalar)>),
 ) -> Option<HalfSpace<V>> {
     let zero = V::Scalar::ZERO;
     let horizon_s = params.wall_horizon_s;
     match *obstacle {
         Obstacle::Wall(ends_m) => {
             let own = own.at_height(zero).xy();
-            let plane = wall(own, ends_m, body.radius_m + params.margin_m, horizon_s)?;
+            let plane = wall_from(own, ends_m, nearest_point, body.radius_m + params.margin_m, horizon_s)?;
             Some(HalfSpace { point: plane.point.extend(zero).into(), normal: plane.normal.extend(zero).into() })
         }
         Obstacle::Ball { center_m, radius_m } => {

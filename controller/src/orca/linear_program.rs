@@ -108,9 +108,9 @@ fn least_penetration<V: Dimension, const N: usize>(
 /// The velocities that violate `other` no more than `one`; `None` if that holds for all.
 fn bisector<V: Dimension>(one: &HalfSpace<V>, other: &HalfSpace<V>) -> Option<HalfSpace<V>> {
     // penetration_one(v) >= penetration_other(v) <=> v . (n_o - n) >= c_o - c with c = point . n.
-    let difference = other.normal - one.normal;
-    let normal = difference.normalized()?;
+    let (normal, length) = (other.normal - one.normal).unit_and_norm();
+    let normal = normal?;
     let offset = other.point.dot(other.normal) - one.point.dot(one.normal);
-    let distance = offset.checked_div(difference.norm())?;
+    let distance = offset.checked_div(length)?;
     Some(HalfSpace { point: normal * distance, normal })
 }

@@ -157,21 +157,25 @@ fn best_on_line<S: Scalar>(
     }
     let half_chord = ((speed - distance) * (speed + distance)).sqrt();
     let (mut low, mut high) = (-half_chord, half_chord);
-    // Values are selected: a branch predictor cannot know which side a plane cuts off.
-    let mut is_shut = false;
+    let steep = S::EPSILON * S::from_i32(64);
     for other in before {
         let slope = direction.dot(other.normal);
         let gap = other.penetration(foot);
-        let crossing = gap.checked_div(slope);
-        let t = crossing.unwrap_or(S::ZERO);
-        let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON * S::from_i32(64));
-        // Parallel. Rounding between copies of one half-plane must not exclude the border.
-        is_shut |= !is_crossed & (gap > rounding(speed, other));
-        let rises = slope > S::ZERO;
-        low = if is_crossed & rises & (t > low) { t } else { low };
-        high = if is_crossed & !rises & (t < high) { t } else { high };
+        let rises = slope > steep;
+        if (rises || slope < -steep)
+            && let Some(t) = gap.checked_div(slope)
+        {
+            if rises {
+                low = if t > low { t } else { low };
+            } else {
+                high = if t < high { t } else { high };
+            }
+        } else if gap > rounding(speed, other) {
+            // Parallel. Rounding between copies of one half-plane must not exclude the border.
+            return None;
+        }
     }
-    if is_shut || low > high {
+    if low > high {
         return None;
     }
     let t = match aim {

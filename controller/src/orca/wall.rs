@@ -1,7 +1,8 @@
 //! The constraint of a static obstacle (ORCA section 5.4): a segment; a polygon has several.
 
 use super::dimension::HalfPlane;
-use crate::geom::Vec2;
+use crate::geom::{Vec2, Vec3};
+use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
 
 struct Nearest<S> {
@@ -26,16 +27,28 @@ pub fn wall<S: Scalar>(
     radius_m: S,
     horizon_s: S,
 ) -> Option<HalfPlane<S>> {
+    wall_from(own_velocity_mps, ends_m, Obstacle::Wall(ends_m).nearest_point(), radius_m, horizon_s)
+}
+
+/// [`wall`], given [`Obstacle::nearest_point`] of the wall.
+pub(super) fn wall_from<S: Scalar>(
+    own_velocity_mps: Vec2<S>,
+    ends_m: [Vec2<S>; 2],
+    nearest_point: Option<(Vec3<S>, S)>,
+    radius_m: S,
+    horizon_s: S,
+) -> Option<HalfPlane<S>> {
     let [a, b] = ends_m;
     let v = own_velocity_mps;
     let is_sound = a.is_finite() && b.is_finite() && v.is_finite();
     if !(is_sound && radius_m > S::ZERO && horizon_s > S::ZERO) {
         return None;
     }
-    let foot = nearest_on_segment(Vec2::ZERO, a, b);
-    if foot.norm() <= radius_m {
+    if let Some((foot, distance)) = nearest_point
+        && distance <= radius_m
+    {
         // On the wall's centre line: to its left.
-        let normal = (-foot).normalized().or_else(|| (b - a).perp().normalized());
+        let normal = (-foot.xy()).normalized().or_else(|| (b - a).perp().normalized());
         let normal = normal.unwrap_or(Vec2::new(S::ONE, S::ZERO));
         return Some(HalfPlane { point: Vec2::ZERO, normal });
     }
@@ -43,23 +56,16 @@ pub fn wall<S: Scalar>(
     let rate = S::ONE.checked_div(horizon_s)?;
     let (near_left, near_right) = (left * rate, right * rate);
     let reach = radius_m * rate;
+    let ends = Tangent::new(left, radius_m, rate).zip(Tangent::new(right, radius_m, rate));
+    let leg = |is_left| ends.as_ref().map(|ends| leg(v, ends, is_left));
     let pieces = [
-        leg(v, [left, right], radius_m, rate, true),
-        leg(v, [left, right], radius_m, rate, false),
+        leg(true),
+        leg(false),
         cap(v, near_left, near_right, reach),
         cap(v, near_right, near_left, reach),
         side(v, near_left, near_right, reach),
     ];
     pieces.into_iter().flatten().min_by(|one, other| one.distance.order(other.distance)).map(|nearest| nearest.plane)
-}
-
-fn nearest_on_segment<S: Scalar>(at: Vec2<S>, a: Vec2<S>, b: Vec2<S>) -> Vec2<S> {
-    let along = b - a;
-    let length = along.norm();
-    match along.normalized() {
-        Some(unit) => a + unit * (at - a).dot(unit).clamp(S::ZERO, length),
-        None => a,
-    }
 }
 
 /// `None` unless the point is on the near side, where the normal points back towards the origin.
@@ -84,23 +90,39 @@ fn side<S: Scalar>(v: Vec2<S>, left: Vec2<S>, right: Vec2<S>, reach: S) -> Optio
     is_beside.then(|| near_side(v, right + along * t + normal * reach, normal)).flatten()
 }
 
-/// A tangent from the origin to the capsule, beyond its near side.
-fn leg<S: Scalar>(v: Vec2<S>, [left, right]: [Vec2<S>; 2], radius: S, rate: S, is_left: bool) -> Option<Nearest<S>> {
-    // The outermost tangent of the two end discs: seen from outside, one disc may hide the other.
-    let tangent = |end: Vec2<S>| {
-        let sin = radius.checked_div(end.norm())?;
+/// The tangents from the origin to the disc at one end of the wall.
+struct Tangent<S> {
+    ahead: Vec2<S>,
+    sin: S,
+    cos: S,
+    /// Distance of the point where it touches the disc, divided by the horizon.
+    start: S,
+}
+
+impl<S: Scalar> Tangent<S> {
+    fn new(end: Vec2<S>, radius: S, rate: S) -> Option<Self> {
+        let (ahead, distance) = end.unit_and_norm();
+        let sin = radius.checked_div(distance)?;
         let cos = (S::ONE - sin * sin).sqrt();
-        let ahead = end.normalized()?;
-        let direction = ahead.rotate(cos, if is_left { sin } else { -sin });
-        Some((direction, end.norm() * cos * rate))
+        Some(Self { ahead: ahead?, sin, cos, start: distance * cos * rate })
+    }
+}
+
+/// A tangent from the origin to the capsule, beyond its near side.
+#[inline(never)]
+fn leg<S: Scalar>(v: Vec2<S>, (left, right): &(Tangent<S>, Tangent<S>), is_left: bool) -> Nearest<S> {
+    // The outermost tangent of the two end discs: seen from outside, one disc may hide the other.
+    let tangent = |end: &Tangent<S>| {
+        let direction = end.ahead.rotate(end.cos, if is_left { end.sin } else { -end.sin });
+        (direction, end.start)
     };
-    let (one, other) = (tangent(left)?, tangent(right)?);
+    let (one, other) = (tangent(left), tangent(right));
     let is_outside = one.0.det(other.0) > S::ZERO;
     let (direction, start) = if is_outside == is_left { other } else { one };
     let along = v.dot(direction).max(start);
     let point = direction * along;
     let normal = if is_left { direction.perp() } else { -direction.perp() };
-    Some(Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } })
+    Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } }
 }
 
 #[cfg(test)]

@@ -1,6 +1,12 @@
 //! `f32` and `f64` through libm: software routines, hence the same bits on every target.
 
 use super::{Scalar, sealed};
+use libm::sqrt;
+
+#[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+use super::root::sqrtf;
+#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+use libm::sqrtf;
 
 macro_rules! impl_scalar {
     ($float:ident, $nan_bits:expr, $floor:ident, $round:ident, $sqrt:ident, $sincos:ident, $atan2:ident, $exp:ident, $log:ident) => {
@@ -76,7 +82,7 @@ macro_rules! impl_scalar {
 
             fn sqrt(self) -> Self {
                 // Correctly rounded, so that a hardware root (VSQRT) gives the same bits.
-                if self < 0.0 { 0.0 } else { libm::$sqrt(self) }
+                if self < 0.0 { 0.0 } else { $sqrt(self) }
             }
 
             fn sin_cos(self) -> (Self, Self) {
@@ -96,7 +102,7 @@ macro_rules! impl_scalar {
             }
 
             fn norm([x, y, z]: [Self; 3]) -> Self {
-                libm::$sqrt(x * x + y * y + z * z)
+                $sqrt(x * x + y * y + z * z)
             }
 
             fn length_key([x, y, z]: [Self; 3]) -> u64 {
@@ -109,9 +115,28 @@ macro_rules! impl_scalar {
                 let squared = x * x + y * y + z * z;
                 // A subnormal square has lost the bits that the direction needs.
                 (squared.is_normal()).then(|| {
-                    let scale = 1.0 / libm::$sqrt(squared);
+                    let scale = 1.0 / $sqrt(squared);
                     [x * scale, y * scale, z * scale]
                 })
+            }
+
+            #[inline(never)]
+            fn unit_in_plane(components: [Self; 2]) -> [Self; 2] {
+                Self::unit_and_norm(components).0
+            }
+
+            #[inline]
+            fn unit_and_norm([x, y]: [Self; 2]) -> ([Self; 2], Self) {
+                const NORMAL: core::ops::RangeInclusive<$float> = $float::MIN_POSITIVE..=$float::MAX;
+                let squared = x * x + y * y;
+                let norm = $sqrt(squared);
+                let unit = if NORMAL.contains(&squared) {
+                    let scale = 1.0 / norm;
+                    [x * scale, y * scale]
+                } else {
+                    [0.0; 2]
+                };
+                (unit, norm)
             }
         }
     };

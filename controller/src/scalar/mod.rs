@@ -12,6 +12,8 @@ mod fast;
 mod fixed;
 mod float;
 pub(crate) mod integer;
+#[cfg(any(test, all(target_arch = "arm", target_abi = "eabihf")))]
+mod root;
 #[cfg(all(test, feature = "micromath"))]
 mod tests;
 
@@ -154,6 +156,18 @@ pub trait Scalar:
     /// for the zero vector (floats: also below 2e-19) and if a component is not finite.
     #[must_use]
     fn unit(components: [Self; 3]) -> Option<[Self; 3]>;
+
+    /// [`Scalar::unit`] in the plane; zeros instead of `None`.
+    #[must_use]
+    fn unit_in_plane([x, y]: [Self; 2]) -> [Self; 2] {
+        Self::unit([x, y, Self::ZERO]).map_or([Self::ZERO; 2], |[x, y, _]| [x, y])
+    }
+
+    /// [`Scalar::unit_in_plane`] and [`Scalar::norm`] of one vector, with one root.
+    #[must_use]
+    fn unit_and_norm([x, y]: [Self; 2]) -> ([Self; 2], Self) {
+        (Self::unit_in_plane([x, y]), Self::norm([x, y, Self::ZERO]))
+    }
 
     /// The magnitude.
     #[must_use]

@@ -15,11 +15,13 @@ mod hash;
 mod land;
 mod medium;
 mod plane;
+mod scene;
 mod swarms;
 #[cfg(test)]
 mod tests;
 mod worst;
 
+pub use scene::{FOUND, ROBOTS, Scene};
 pub use swarms::Case;
 pub use worst::{WorstCase, worst_orca};
 

@@ -1,9 +1,10 @@
 //! One agent of full size under heavy load: a full table of near neighbours with random velocities,
-//! other ones in each step. Not a proof of the worst case.
+//! other ones in each step, and scenes that a search found. Not a proof of the worst case.
 
 use crate::hash::Hashes;
 use crate::land::WINDOW;
 use crate::plane::STEP;
+use crate::scene;
 use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
@@ -53,6 +54,8 @@ pub enum WorstCase {
     FormationReflexive,
     /// ORCA in a crowd in which mostly no velocity is permitted, half-planes by formula.
     OrcaAnalytic,
+    /// The scenes in which a search found the longest steps of [`WorstCase::OrcaAnalytic`].
+    OrcaFound,
     /// Like [`WorstCase::OrcaAnalytic`], with half-planes from the table.
     OrcaTemplate2k,
     /// ORCA in space, in such a crowd.
@@ -76,6 +79,7 @@ impl WorstCase {
         Self::Formation,
         Self::FormationReflexive,
         Self::OrcaAnalytic,
+        Self::OrcaFound,
         Self::OrcaTemplate2k,
         #[cfg(feature = "all-cases")]
         Self::Fly,
@@ -94,6 +98,7 @@ impl WorstCase {
             Self::Formation => "worst_formation",
             Self::FormationReflexive => "worst_formation_reflexive",
             Self::OrcaAnalytic => "worst_orca_analytic",
+            Self::OrcaFound => "worst_orca_found",
             Self::OrcaTemplate2k => "worst_orca_template_2k",
             #[cfg(feature = "all-cases")]
             Self::Fly => "worst_fly",
@@ -105,13 +110,14 @@ impl WorstCase {
         }
     }
 
-    /// Runs 64 steps with `N` neighbours (at most eight on the grid) and at most `K` half-planes.
+    /// Runs 64 steps (the found scenes: 7 each) with `N` neighbours (at most eight on the grid) and at most `K` half-planes.
     pub fn run<S: Scalar, P: Probe<S>, const N: usize, const K: usize>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::<S, _, P, N>(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), probe),
             Self::Formation => on_grid::<S, _, P, N>(formation(Prediction::Constant), probe),
             Self::FormationReflexive => on_grid::<S, _, P, N>(formation(Prediction::Reflexive), probe),
             Self::OrcaAnalytic => worst_orca::<S, _, P, N, K>(Analytic, probe),
+            Self::OrcaFound => scene::found::<S, _, P, N, K>(Analytic, probe),
             Self::OrcaTemplate2k => worst_orca::<S, _, P, N, K>(VoxelTable2k, probe),
             #[cfg(feature = "all-cases")]
             Self::Fly => {

@@ -1,61 +1,125 @@
 //! The way around walls: from corner to corner, as far as they are seen.
 
 use crate::geom::Vec2;
+use crate::list;
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
+use heapless::Vec;
 
 /// Distance of a robot's centre from the corner that it passes, thousandths of its radius.
 const ROOM: i32 = 1_100;
 /// Corners of a way that are considered behind the first one.
 const CORNERS: u8 = 3;
 
+/// Walls whose corners are remembered for the time of one question; others are computed each time.
+const REMEMBERED: usize = 8;
+
+/// The places beyond the ends of walls.
+pub(super) struct Corners<'a, S> {
+    obstacles: &'a [Obstacle<S>],
+    radius_m: S,
+    first: Vec<[Option<Vec2<S>>; 2], REMEMBERED>,
+}
+
+impl<'a, S: Scalar> Corners<'a, S> {
+    /// O(walls).
+    #[inline(never)]
+    pub(super) fn new(obstacles: &'a [Obstacle<S>], radius_m: S) -> Self {
+        let first = walls(obstacles).map(|ends| ends.map(|end| outside(obstacles, end, radius_m)));
+        Self { obstacles, radius_m, first: list::collect(first.take(REMEMBERED)) }
+    }
+
+    fn of(&self, wall: usize, ends: [Vec2<S>; 2]) -> [Option<Vec2<S>>; 2] {
+        let compute = || ends.map(|end| outside(self.obstacles, end, self.radius_m));
+        self.first.get(wall).copied().unwrap_or_else(compute)
+    }
+
+    /// About the length of the way to `target`, around the first [`CORNERS`]. O(walls).
+    pub(super) fn rest(&self, from: Vec2<S>, target: Vec2<S>) -> S {
+        let (mut from, mut length) = (from, S::ZERO);
+        for _ in 0..CORNERS {
+            let Some((wall, ends)) = first_wall(self.obstacles, from, target) else {
+                break;
+            };
+            let mut best = None::<(S, S, Vec2<S>)>;
+            for next in self.of(wall, ends).into_iter().flatten() {
+                let way = (next - from).norm();
+                if way > self.radius_m {
+                    let cost = way + (target - next).norm();
+                    if best.is_none_or(|(least, ..)| is_less(cost, least)) {
+                        best = Some((cost, way, next));
+                    }
+                }
+            }
+            let Some((_, way, next)) = best else {
+                break;
+            };
+            (from, length) = (next, length + way);
+        }
+        length + (target - from).norm()
+    }
+}
+
+/// In the order of [`Scalar::order`].
+fn is_less<S: Scalar>(one: S, other: S) -> bool {
+    one.order(other).is_lt()
+}
+
 /// The first place of the shortest way to `target` if a wall blocks the straight one: outside a
 /// corner that is seen. O(walls x obstacles).
 pub(crate) fn detour<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, radius_m: S) -> Option<Vec2<S>> {
     first_wall(obstacles, Vec2::ZERO, target)?;
-    let is_free = |place: &Vec2<S>| {
-        !is_hidden(obstacles, *place)
-            && obstacles.iter().filter_map(|obstacle| distance(obstacle, *place)).all(|distance| distance >= radius_m)
+    let corners = Corners::new(obstacles, radius_m);
+    let is_free = |place: Vec2<S>| {
+        !is_hidden(obstacles, place)
+            && obstacles.iter().filter_map(|obstacle| distance(obstacle, place)).all(|distance| distance >= radius_m)
     };
-    let outside = |end| outside(obstacles, end, radius_m);
-    let places = walls(obstacles).flatten().filter_map(outside).filter(is_free);
-    let costs = places.map(|place| (place.norm() + rest(obstacles, place, target, radius_m), place));
-    costs.min_by(|(one, _), (other, _)| one.order(*other)).map(|(_, place)| place)
-}
-
-/// About the length of the way to `target`, around the first [`CORNERS`]. O(walls).
-pub(super) fn rest<S: Scalar>(obstacles: &[Obstacle<S>], from: Vec2<S>, target: Vec2<S>, radius_m: S) -> S {
-    let (mut from, mut length) = (from, S::ZERO);
-    for _ in 0..CORNERS {
-        let ends = first_wall(obstacles, from, target).into_iter().flatten();
-        let next = ends.filter_map(|end| outside(obstacles, end, radius_m));
-        let next = next.map(|next| ((next - from).norm(), next)).filter(|(way, _)| *way > radius_m);
-        let cost = |(way, next): &(S, Vec2<S>)| *way + (target - *next).norm();
-        let Some((way, next)) = next.min_by(|one, other| cost(one).order(cost(other))) else {
-            break;
-        };
-        (from, length) = (next, length + way);
+    let mut best = None::<(S, Vec2<S>)>;
+    for (wall, ends) in walls(obstacles).enumerate() {
+        for place in corners.of(wall, ends).into_iter().flatten() {
+            if is_free(place) {
+                let cost = place.norm() + corners.rest(place, target);
+                if best.is_none_or(|(least, _)| is_less(cost, least)) {
+                    best = Some((cost, place));
+                }
+            }
+        }
     }
-    length + (target - from).norm()
+    best.map(|(_, place)| place)
 }
 
 /// A place beyond the end of a wall, or of several that end there; `None` if they are in line.
 fn outside<S: Scalar>(obstacles: &[Obstacle<S>], end: Vec2<S>, radius_m: S) -> Option<Vec2<S>> {
-    let is_here = |other: Vec2<S>| (other - end).norm() < radius_m * S::from_milli(50);
+    let near = radius_m * S::from_milli(50);
+    let is_here = |other: Vec2<S>| {
+        let way = other - end;
+        // The first two save most roots: no component is longer than the vector.
+        way.x.abs() < near && way.y.abs() < near && way.norm() < near
+    };
     let ways = walls(obstacles).filter_map(|[a, b]| match () {
         () if is_here(a) => (a - b).normalized(),
         () if is_here(b) => (b - a).normalized(),
         () => None,
     });
     let out = ways.fold(Vec2::ZERO, |sum, way| sum + way);
-    (out.norm() > S::from_milli(20)).then(|| out.normalized())?.map(|out| end + out * (radius_m * S::from_milli(ROOM)))
+    let (unit, length) = out.unit_and_norm();
+    unit.filter(|_| length > S::from_milli(20)).map(|out| end + out * (radius_m * S::from_milli(ROOM)))
 }
 
-fn first_wall<S: Scalar>(obstacles: &[Obstacle<S>], from: Vec2<S>, target: Vec2<S>) -> Option<[Vec2<S>; 2]> {
+/// The wall that the straight way meets first, and its index.
+fn first_wall<S: Scalar>(obstacles: &[Obstacle<S>], from: Vec2<S>, target: Vec2<S>) -> Option<(usize, [Vec2<S>; 2])> {
     let way = target - from;
-    let met = walls(obstacles).filter(|ends| crosses(way, ends.map(|end| end - from)));
-    let share = |[a, b]: [Vec2<S>; 2]| (a - from).det(b - a).checked_div(way.det(b - a)).unwrap_or(S::ZERO);
-    met.min_by(|one, other| share(*one).order(share(*other)))
+    let mut first = None::<(S, usize, [Vec2<S>; 2])>;
+    for (wall, ends) in walls(obstacles).enumerate() {
+        let [a, b] = ends;
+        if crosses(way, [a - from, b - from]) {
+            let share = (a - from).det(b - a).checked_div(way.det(b - a)).unwrap_or(S::ZERO);
+            if first.is_none_or(|(least, ..)| is_less(share, least)) {
+                first = Some((share, wall, ends));
+            }
+        }
+    }
+    first.map(|(_, wall, ends)| (wall, ends))
 }
 
 /// Whether a wall lies before `place`; the wall that ends there does not count.

@@ -1,6 +1,6 @@
 //! Finds narrow places between walls, which robots must share.
 
-use super::detour::{crosses, distance, is_hidden, nearest, rest, walls};
+use super::detour::{Corners, crosses, distance, is_hidden, nearest, walls};
 use crate::geom::Vec2;
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
@@ -104,7 +104,8 @@ impl<S: Scalar> Gap<S> {
         let joined = Self { middle, depth: (high - low) * S::HALF, ..self };
         // The ends of a corridor that this one crosses.
         let own = joined.place(Vec2::ZERO);
-        if own.x == S::ZERO && own.y.abs() > self.half { self } else { joined }
+        let is_crossing = own.x == S::ZERO && own.y.abs() > self.half;
+        if is_crossing || !other.is_clear(obstacles) { self } else { joined }
     }
 }
 
@@ -114,15 +115,20 @@ impl<S: Scalar> Gap<S> {
 pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, wanted: &Wanted<S>) -> Option<Gap<S>> {
     let is_blocked = is_hidden(obstacles, target);
     let mut best: Option<(S, Gap<S>)> = None;
+    let mut corners = None;
     for_each_gap(obstacles, target, wanted, &mut |gap| {
         // Two ends of walls are a gap only if both are seen: a solid may lie between them.
         let side = gap.ahead.perp() * gap.half;
         // Behind a gap but before a wall, the robot need not have come through the gap.
         let is_behind = gap.is_passed(wanted) || is_blocked && gap.place(Vec2::ZERO).x > S::ZERO;
-        if is_behind || [side, -side].into_iter().any(|side| is_hidden(obstacles, gap.middle + side)) {
+        if is_behind || !gap.is_clear(obstacles) {
             return;
         }
-        let detour = gap.middle.norm() + rest(obstacles, gap.middle, target, wanted.radius_m);
+        if [side, -side].into_iter().any(|side| is_hidden(obstacles, gap.middle + side)) {
+            return;
+        }
+        let corners = corners.get_or_insert_with(|| Corners::new(obstacles, wanted.radius_m));
+        let detour = gap.middle.norm() + corners.rest(gap.middle, target);
         if best.is_none_or(|(least, _)| detour < least) {
             best = Some((detour, gap));
         }
@@ -155,9 +161,7 @@ fn for_each_gap<S: Scalar>(
                 if !(width >= wanted.least_m && width <= wanted.most_m) {
                     continue;
                 }
-                if let Some(gap) = Gap::between(a, b, target)
-                    && gap.is_clear(obstacles)
-                {
+                if let Some(gap) = Gap::between(a, b, target) {
                     visit(gap);
                 }
             }
