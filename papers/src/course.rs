@@ -1,4 +1,4 @@
-//! Followers that look ahead: with [`Course`] a follower looks ahead (R. C. Coulter, "Implementation of the pure pursuit path
+//! With [`Course`] a follower looks ahead (R. C. Coulter, "Implementation of the pure pursuit path
 //! tracking algorithm", CMU-RI-TR-92-01, 1992): it plans its route to where its place will be some
 //! moves later, avoids bad land in time, and the leader waits less.
 

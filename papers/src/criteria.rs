@@ -1,5 +1,5 @@
-//! The criteria of formation keeping as published: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms
-//! 2, 5, 6 and 7. Algorithm 5 is [`find_neighbors`](staya_controller::formation::find_neighbors).
+//! Criteria of formation keeping as published: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2,
+//! 5, 6 and 7. Algorithm 5 is [`find_neighbors`](staya_controller::formation::find_neighbors).
 //! Misprints are resolved as in [`staya_controller::formation`]; sums hold each neighbour's offset.
 
 use serde::{Deserialize, Serialize};

@@ -117,6 +117,9 @@ where
     }
 }
 
+/// A decision and its target.
+type Targeted<S> = (Decision<S>, Option<Cell>);
+
 /// One step of a law that decides by `decide`. Not generic over the law, so it is compiled once.
 #[inline(never)]
 fn follow<S: Scalar, P>(
@@ -124,7 +127,7 @@ fn follow<S: Scalar, P>(
     last: &mut Option<Last<S>>,
     input: &View<'_, S, P>,
     here: &InCells<'_, S>,
-    decide: &mut dyn FnMut(OnGrid<'_>) -> Result<(Decision<S>, Option<Cell>), BadInput>,
+    decide: &mut dyn FnMut(OnGrid<'_>) -> Result<Targeted<S>, BadInput>,
 ) -> Result<Decision<S>, BadInput> {
     let (under, place) = (here.grid.cell.cell, here.in_cell);
     let to_center = |cell: Cell| {

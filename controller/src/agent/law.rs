@@ -224,7 +224,6 @@ pub struct Decision<S> {
 
 impl<S> Decision<S> {
     /// The decision of a law without a goal.
-    #[must_use]
     pub fn idle() -> Self {
         Self { action: Action::Idle, status: Status::default() }
     }

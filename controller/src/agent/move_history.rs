@@ -56,7 +56,7 @@ impl MoveHistory {
         moves
     }
 
-    /// Stores the choice. Returns the robot that has been in the way for too long, to be redirected.
+    /// Stores the choice. Returns a robot to redirect, which has been in the way for too long.
     /// `idle`: moves since the robot was nearest to its target.
     pub(super) fn note<S>(&mut self, input: &View<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<RobotId> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;

@@ -64,7 +64,7 @@ pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0,
 }
 
 impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M, L> {
-    /// Creates the law without a map. By default it searches in each cell and tries cheap moves first.
+    /// Creates the law without a map. It searches in each cell and tries cheap moves first.
     #[must_use]
     pub const fn new(params: RouteParams) -> Self {
         Self::with_map(params, ())

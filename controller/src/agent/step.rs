@@ -149,7 +149,8 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                     let _ = order(law, last, OrderOf::<L, S>::template(&part, is_restarted));
                 }
                 Some(Received::Waypoint { index, version, waypoint }) => {
-                    if order(law, last, OrderOf::<L, S>::waypoint(index, waypoint)) {
+                    let is_of_use = order(law, last, OrderOf::<L, S>::waypoint(index, waypoint));
+                    if is_of_use {
                         link.placed(index, version);
                     }
                 }

@@ -298,11 +298,14 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     }
 }
 
+/// A point of an obstacle, and its distance.
+type Nearest<S> = Option<(Vec3<S>, S)>;
+
 fn static_obstacle<V: Dimension>(
     params: &AvoidParams<V::Scalar>,
     body: &Body<V::Scalar>,
     own: V,
-    (obstacle, nearest_point): (&Obstacle<V::Scalar>, Option<(Vec3<V::Scalar>, V::Scalar)>),
+    (obstacle, nearest_point): (&Obstacle<V::Scalar>, Nearest<V::Scalar>),
 ) -> Option<HalfSpace<V>> {
     let zero = V::Scalar::ZERO;
     let horizon_s = params.wall_horizon_s;

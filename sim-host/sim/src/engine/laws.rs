@@ -1,6 +1,5 @@
 //! The laws that scenario files name: Staya's, and those of papers.
 
-use super::simulate::WIDE;
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
@@ -13,10 +12,14 @@ use staya_controller::robot::RobotId;
 use staya_papers::criteria::PublishedParams;
 use staya_papers::{Course, PublishedFormation};
 
+/// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
+pub const WIDE: usize = 1225;
+
 type Map = Option<Box<SharedMap<MAP_TILES>>>;
 
 /// A law of a scenario file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "nearly all robots have a built-in law")]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum ScenarioLaw {
     BuiltIn(AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Map>),

@@ -37,13 +37,13 @@ pub use grid::Grid;
 pub use ground::{Ground, HostLaw, StateWords};
 pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, known};
 pub use intervene::Change;
-pub use laws::ScenarioLaw;
+pub use laws::{ScenarioLaw, WIDE};
 pub use operator::{Observation, Operated, operated};
 pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own, simulate_own_with};
 pub use plane::{PlaneGround, Sensor};
 #[doc(hidden)]
 pub use simulate::{LawOf, SafetyOf, agents};
-pub use simulate::{Moment, Outcome, StartError, WIDE, Watch, simulate, simulate_from, simulate_with};
+pub use simulate::{Moment, Outcome, StartError, Watch, simulate, simulate_from, simulate_with};
 pub use state::{Saves, State, StateError};
 pub use status::Status;
 

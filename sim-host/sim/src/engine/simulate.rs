@@ -17,9 +17,6 @@ use std::collections::HashMap;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
-pub const WIDE: usize = 1225;
-
 /// State of the swarm after a tick, or before the first one (tick 0).
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
