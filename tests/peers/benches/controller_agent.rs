@@ -7,8 +7,9 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::agent::{
-    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridWorkspace, InPlane, Inputs, KinematicState,
-    OnGrid, OrcaAgent, OrcaSafety, RouteAgent, RouteGuidance, Unguarded, Waypoint, WaypointGuidance,
+    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridOrder, GridWorkspace, InPlane, Inputs,
+    KinematicState, OnGrid, OrcaAgent, OrcaSafety, RouteAgent, RouteGuidance, Unguarded, Waypoint, WaypointGuidance,
+    WaypointOrder,
 };
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::geom::{Position, Vec3};
@@ -91,7 +92,7 @@ fn agent_step(c: &mut Criterion) {
         let template = Template::from_graph(&PLACES, &EDGES, OWN, 2).unwrap();
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut agent = FormationAgent::new(&config, guidance, Unguarded, Postcard);
-        agent.assign_goal(goal);
+        agent.order(GridOrder::Goal(goal));
         let mut step = 0;
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
@@ -104,7 +105,7 @@ fn agent_step(c: &mut Criterion) {
     }
     let law = RouteGuidance::new(RouteParams::default());
     let mut alone = RouteAgent::new(&config, law, Unguarded, Postcard);
-    alone.assign_goal(goal);
+    alone.order(GridOrder::Goal(goal));
     let mut step = 0;
     group.bench_function("route_only", |bencher| {
         bencher.iter(|| {
@@ -158,7 +159,7 @@ fn agent_step_in_plane(c: &mut Criterion) {
     let safety = OrcaSafety::new(AvoidParams::default(), inflation);
     let mut agent = OrcaAgent::new(&config, WaypointGuidance::new(0.5, 0.02), safety, Postcard);
     let goal = Waypoint::fixed(Position::from_mm([20_000, 3_000, 0]));
-    assert!(agent.assign_waypoint(0, &goal));
+    assert!(agent.order(WaypointOrder::first(goal)));
     // The robot stays in place, so that the scene is identical in each round.
     let inputs = |step: usize| Inputs {
         state: KinematicState { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..KinematicState::default() },
