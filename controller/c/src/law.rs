@@ -115,6 +115,8 @@ impl AgentLaw<Number> for Law {
         tools: Tools<'_, Number, Self>,
     ) -> Result<Decision<Number>, BadInput> {
         let Tools { rng, mut radio, workspace } = tools;
+        #[cfg(not(feature = "grid"))]
+        let () = *workspace;
         let sends = (rng, &mut radio);
         match self {
             Self::Waypoint(law) => decide_as(law, view, here, sends, &mut ()),

@@ -14,7 +14,8 @@ pub trait Steering {
     #[must_use]
     fn aims(&self, params: &FormationParams, anchor: &Anchor, goal: Cell) -> [Cell; 2];
 
-    /// How far `off` (actual minus desired, cells) is behind, [`UNIT`]s; `heading` is the leader's.
+    /// How far `off` (actual minus desired, cells) is behind, in
+    /// [`UNIT`](crate::grid::UNIT)s; `heading` is the leader's.
     #[must_use]
     fn lag(&self, off: Cell, heading: Dir) -> u32;
 }

@@ -5,30 +5,10 @@
 //! A complete program for your own law, with the arguments of `staya hil`:
 //!
 //! ```ignore
-//! # use serde::{Deserialize, Serialize};
-//! # use staya_controller::agent::*;
-//! # use staya_controller::{geom::Vec3, rand::Rng, scalar::Scalar};
 //! #[derive(Clone, Debug, Serialize, Deserialize)]
 //! struct East {
 //!     speed_mps: f32,
 //! }
-//! #//! # impl<S: Scalar> Law<S> for East {
-//! #     type Surroundings<'a> = InPlane<'a, S>;
-//! #     type Protocol = ();
-//! #     type Workspace = ();
-//! #//! #     fn decide(
-//! #         &mut self,
-//! #         _: &GuidanceInput<'_, S>,
-//! #         _: &InPlane<'_, S>,
-//! #         _: &mut Rng,
-//! #         (): &mut (),
-//! #     ) -> Result<Decision<S>, BadInput> {
-//! #         let x = S::from_f32(self.speed_mps).unwrap_or(S::ZERO);
-//! #         let wish_mps = Vec3 { x, ..Vec3::ZERO };
-//! #         let action = Action::Velocity { wish_mps, way_m: None };
-//! #         Ok(Decision { action, ..Decision::default() })
-//! #     }
-//! # }
 //! fn main() -> std::process::ExitCode {
 //!     staya_hil::Own::new(staya_hil::package!(), |_robot| East { speed_mps: 0.5 }).main()
 //! }
