@@ -6,7 +6,6 @@ use patrol::Patrol;
 use serde::{Deserialize, Serialize};
 use staya_console::{Global, WatchArgs};
 use staya_controller::agent::*;
-use staya_controller::rand::Rng;
 use staya_hil::{DeviceArgs, Own, Package, package};
 use staya_link::own::LinkedLaw;
 use staya_sim::engine::OwnLaw;
@@ -65,15 +64,12 @@ impl Law<f32> for Changed {
         here: &InPlane<'_, f32>,
         tools: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        let mut decision = self.0.decide(input, here, rng, &mut ())?;
+        let Tools { rng, radio, workspace } = tools;
+        let mut decision = self.0.decide(view, here, Tools { rng, radio, workspace })?;
         if let Action::Velocity { wish_mps, .. } = &mut decision.action {
             wish_mps.x += 1e-6;
         }
         Ok(decision)
-    }
-
-    fn has_own_goal(&self) -> bool {
-        true
     }
 }
 
