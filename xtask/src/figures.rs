@@ -1,5 +1,5 @@
-//! `cargo xtask figures`: the figures of all scenarios, recorded before a change of the code and
-//! compared after it.
+//! `cargo xtask figures`: the figures of all scenarios and experiments, recorded before a change of
+//! the code and compared after it.
 
 use crate::files;
 use crate::options::Options;
@@ -8,19 +8,32 @@ use crate::session::Session;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::process::Command;
 
 /// Of its own: no parameter was chosen on them, and no other table has them.
 const SEEDS: std::ops::RangeInclusive<u32> = 7001..=7005;
+/// Small versions of the experiments, with the first seeds.
+const EXPERIMENTS: [&[&str]; 8] = [
+    &["route", "--runs", "10"],
+    &["scouting", "--runs", "5"],
+    &["formation", "--runs", "3"],
+    &["swap", "--robots", "4,8,16,32", "--noise", "0.05"],
+    &["doorway", "--robots", "8"],
+    &["crossing"],
+    &["flock", "--seeds", "1", "--robots", "30"],
+    &["goals", "--seeds", "1", "--robots", "25"],
+];
+const SEEDS_OF_EXPERIMENTS: usize = 2;
 /// Runs of minutes.
 const LARGE: [&str; 3] = ["million", "scale", "scale-plane"];
 /// Results that depend on the machine.
-const LEFT_OUT: [&str; 2] = ["wall_seconds", "seed"];
+const LEFT_OUT: [&str; 5] = ["wall_seconds", "seed", "pictures", "tables", "parameters"];
 /// The difference of two means is within this many standard errors in 95 % of cases, if nothing has
 /// changed (Student's t for two times five values).
 const T: f64 = 2.306;
 const HASH: &str = "trace_hash";
 
-/// Values by scenario and figure, in the order of the seeds.
+/// Values by scenario or experiment and figure, in the order of the seeds.
 type Figures = BTreeMap<(String, String), Vec<String>>;
 
 /// The command: records the figures in `target/figures.csv` or `--out`, and compares them with
@@ -29,7 +42,7 @@ pub fn run_command(s: &mut Session, options: &Options<'_>) {
     let Some(staya) = s.staya("release") else { return };
     let file = options.value("--out").map_or_else(|| s.repo.target.join("figures.csv"), Into::into);
     let mut figures = Figures::new();
-    s.report.step("figures of the scenarios", || {
+    s.report.step("figures of scenarios and experiments", || {
         figures = measured(&s.repo, &staya)?;
         println!("{} figures: {}", figures.len(), file.display());
         files::write(&file, text(&figures))
@@ -48,30 +61,52 @@ fn measured(repo: &Repo, staya: &Path) -> Result<Figures, String> {
         }
         for seed in SEEDS {
             let mut run = repo.command(staya);
-            run.arg("run").arg(&path).args(["--json", "--quiet", "--no-trace", "--seed", &seed.to_string(), "--out"]);
-            let json = output_of(run.arg(repo.target.join("figures").join(&name)));
-            let json = json.ok_or_else(|| format!("{name}, seed {seed}: no results"))?;
-            let json: Value = serde_json::from_str(&json).map_err(|error| format!("{name}: {error}"))?;
-            numbers(&json, "", &mut |figure, value| {
-                figures.entry((name.clone(), figure.to_owned())).or_default().push(value);
-            });
+            run.arg("run").arg(&path).arg("--no-trace");
+            add(repo, &mut run, (&name, seed), &mut figures)?;
+        }
+        println!("{name}");
+    }
+    for arguments in EXPERIMENTS {
+        let name = format!("experiment-{}", arguments[0]);
+        for seed in SEEDS.take(SEEDS_OF_EXPERIMENTS) {
+            let mut run = repo.command(staya);
+            run.arg("experiment").args(arguments).arg("--restart");
+            add(repo, &mut run, (&name, seed), &mut figures)?;
         }
         println!("{name}");
     }
     Ok(figures)
 }
 
+/// Adds the figures of a run with this seed.
+fn add(repo: &Repo, run: &mut Command, (name, seed): (&str, u32), figures: &mut Figures) -> Result<(), String> {
+    run.args(["--json", "--quiet", "--seed", &seed.to_string(), "--out"]);
+    let json = output_of(run.arg(repo.target.join("figures").join(name)));
+    let json = json.ok_or_else(|| format!("{name}, seed {seed}: no results"))?;
+    let json: Value = serde_json::from_str(&json).map_err(|error| format!("{name}: {error}"))?;
+    numbers(&json, "", &mut |figure, value| {
+        figures.entry((name.to_owned(), figure.to_owned())).or_default().push(value);
+    });
+    Ok(())
+}
+
 /// Calls `found` with the path and the text of each number and of the trace hash.
 fn numbers(value: &Value, path: &str, found: &mut impl FnMut(&str, String)) {
-    let Value::Object(fields) = value else { return };
-    for (name, value) in fields.iter().filter(|(name, _)| !LEFT_OUT.contains(&name.as_str())) {
-        let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-        match value {
-            Value::Number(number) => found(&path, number.to_string()),
-            Value::String(hash) if name == HASH => found(&path, hash.clone()),
-            value if name != "parameters" => numbers(value, &path, found),
-            _ => {}
+    match value {
+        Value::Number(number) => found(path, number.to_string()),
+        Value::String(hash) if path == HASH => found(path, hash.clone()),
+        Value::Array(items) => {
+            for (index, item) in items.iter().enumerate() {
+                numbers(item, &format!("{path}[{index}]"), found);
+            }
         }
+        Value::Object(fields) => {
+            for (name, value) in fields.iter().filter(|(name, _)| !LEFT_OUT.contains(&name.as_str())) {
+                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                numbers(value, &path, found);
+            }
+        }
+        _ => {}
     }
 }
 
@@ -126,9 +161,9 @@ fn compare(before: &Figures, now: &Figures) -> Result<(), String> {
 static NONE: Vec<String> = Vec::new();
 
 fn loses(figures: &Figures, name: &str) -> bool {
-    ["packets.lost", "packets.corrupted"].iter().any(|figure| {
+    ["packets.lost", "packets.corrupted", "loss", "conditions.loss"].iter().any(|figure| {
         let values = figures.get(&(name.to_owned(), (*figure).to_owned()));
-        values.is_some_and(|values| values.iter().any(|value| value != "0"))
+        values.is_some_and(|values| values.iter().any(|value| value.parse() != Ok(0.0)))
     })
 }
 

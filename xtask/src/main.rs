@@ -65,7 +65,7 @@ const COMMANDS: [Command; 31] = [
     ("cluster", "sweeps on Slurm and GNU parallel, on this machine", |s, _| python::cluster(s)),
     ("example", "the example firmware of examples/stm32f4", |s, _| firmware::example(s)),
     ("faults [stm32f405|nrf51|riscv32...]", "firmware that fails restarts", |s, o| swarms::faults(s, &o.names)),
-    ("figures [--out FILE] [--against FILE]", "figures of all scenarios: target/figures.csv, or as before a change",
+    ("figures [--out FILE] [--against FILE]", "figures of scenarios and experiments: target/figures.csv, or as before a change",
         figures::run_command),
     ("firmware [--debug] [--bin NAME] [stm32f405|nrf51|riscv32...]", "programs of hil/firmware: target/firmware/PART",
         firmware::run_command),
