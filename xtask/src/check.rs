@@ -90,7 +90,7 @@ fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
             let mut check = toolchain.cargo(&s.repo, part.target, "check");
             // Quiet, because other steps run beside it.
             check.args(["--locked", "--quiet", "--package", "staya-controller", "--no-default-features"]);
-            check.args(["--features", features]).env("CARGO_TARGET_DIR", &folder);
+            check.args(["--features", features]).env("CARGO_TARGET_DIR", &folder).env("RUSTFLAGS", "-Dwarnings");
             (features.clone(), check)
         });
         let mut commands: Vec<_> = commands.collect();

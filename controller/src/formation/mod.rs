@@ -43,6 +43,7 @@ pub use gap_closing::GapClosing;
 pub use lookahead::{NextMove, Steering};
 pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
+#[cfg(feature = "agent")]
 pub(crate) use places::scaled;
 pub use places::{Drive, behind, is_straight};
 pub use steering::{Anchor, Footprint, PaceControl, aim, blended, def, deviation, distances, lag, should_stay};

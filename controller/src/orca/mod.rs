@@ -38,6 +38,7 @@ mod fast32;
 mod fixtures;
 
 pub use avoider::{Analytic, Avoider, HalfSpaces, InSpace};
+#[cfg(feature = "agent")]
 pub(crate) use deadlock::detour;
 pub use dimension::{Dimension, HalfPlane, HalfSpace, MovingBall};
 pub use linear_program::{Solution, solve};

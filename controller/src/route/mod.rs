@@ -28,7 +28,9 @@ pub use learned::LearnedCosts;
 pub use router::{PLAN, Replan, Router};
 pub use visits::VisitMemory;
 
-use crate::cost::{EXCLUDED, Gain, TICK, Weights};
+use crate::cost::Gain;
+#[cfg(feature = "agent")]
+use crate::cost::{EXCLUDED, TICK, Weights};
 use crate::grid::{Cell, Dir, Norm, Window};
 use crate::names::named;
 use crate::parameters::row;
@@ -109,6 +111,7 @@ impl RouteParams {
     }
 
     /// Every move that the land permits from `cell`, for a robot that only moves aside.
+    #[cfg(feature = "agent")]
     pub(crate) fn open_moves(&self, window: &Window<'_>, cell: Cell) -> Weights {
         Weights::new(Dir::MOVES.map(|dir| if self.opens(window, cell, dir) { TICK } else { EXCLUDED }))
     }

@@ -84,6 +84,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         &self.visits
     }
 
+    #[cfg(feature = "agent")]
     pub(crate) const fn idle(&self) -> u8 {
         self.idle
     }
