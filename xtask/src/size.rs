@@ -27,7 +27,7 @@ struct Measured {
     /// Programs with their sections, bytes.
     programs: Vec<(String, Sections)>,
     rows: Vec<Row>,
-    /// The minimal firmware of each law, in the kind of number that limits are for.
+    /// The agent of each law and `lockstep`, in the kind of number that limits are for.
     laws: Vec<laws::Law>,
     /// The flash that each behaviour's step needs.
     steps: Vec<reach::Step>,
@@ -82,14 +82,13 @@ fn measure(repo: &Repo, part: &'static Part, number: &str) -> Result<Measured, S
     let bytes = files::bytes(&elf("bench"))?;
     let program = reach::Program::read(&bytes)?;
     let steps = reach::steps(&program);
-    Ok(Measured {
-        part: part.name,
-        programs: programs.iter().map(sections).collect::<Result<_, String>>()?,
-        laws: laws::laws(number, &rows, &steps),
-        rows,
-        steps,
-        formats: reach::formats(&program),
-    })
+    let programs = programs.iter().map(sections).collect::<Result<Vec<_>, String>>()?;
+    let mut laws = laws::laws(number, &rows, &steps);
+    if let Some((_, Sections { text, rodata, ram, .. })) = programs.iter().find(|(name, _)| name == "lockstep") {
+        let stack = rows.iter().filter(|row| row.number == number).map(|row| row.stack).max().unwrap_or(0);
+        laws.push(laws::Law { law: "lockstep, all laws", text: *text, rodata: *rodata, ram: *ram, stack });
+    }
+    Ok(Measured { part: part.name, programs, laws, rows, steps, formats: reach::formats(&program) })
 }
 
 impl Measured {

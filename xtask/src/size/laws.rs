@@ -5,13 +5,14 @@ use super::bench::Row;
 use super::reach::Step;
 use serde::Serialize;
 
-/// Each law with its case in `bench`, its guidance and its safety layer.
+/// Each law with its case in `bench`, its guidance and its safety layer in numbers `#` with at most
+/// `K` half-planes.
 const LAWS: [(&str, &str, &str, &str); 9] = [
     ("route", "worst_route", "RouteGuidance", "Unguarded"),
     ("formation", "worst_formation_reflexive", "FormationGuidance", "Unguarded"),
-    ("waypoint_orca", "worst_orca_found", "WaypointGuidance", "OrcaSafety<#, 32>"),
-    ("waypoint_orca_template", "worst_orca_template_2k", "WaypointGuidance", "OrcaSafety<#, 32, VoxelTable2k>"),
-    ("waypoint_orca_in_space", "worst_fly", "WaypointGuidance", "OrcaSafety<#, 32, InSpace<#>>"),
+    ("waypoint_orca", "worst_orca_found", "WaypointGuidance", "OrcaSafety<#, K>"),
+    ("waypoint_orca_template", "worst_orca_template_2k", "WaypointGuidance", "OrcaSafety<#, K, VoxelTable2k>"),
+    ("waypoint_orca_in_space", "worst_fly", "WaypointGuidance", "OrcaSafety<#, K, InSpace<#>>"),
     ("waypoint_push_out", "worst_push_out", "WaypointGuidance", "PushOutSafety"),
     ("lattice", "worst_lattice", "LatticeGuidance", "Unguarded"),
     ("goal_flock", "worst_goal_flock", "GoalFlockGuidance", "Unguarded"),
@@ -37,9 +38,10 @@ pub struct Law {
 pub fn laws(number: &str, rows: &[Row], steps: &[Step]) -> Vec<Law> {
     let law = |(law, case, guidance, safety): &(&'static str, &str, &str, &str)| {
         let row = rows.iter().find(|row| row.case == *case && row.number == number)?;
-        let safety = safety.replace('#', number);
-        // Another case may have a formation in the same type.
         let step = steps.iter().find(|step| {
+            // Twice as many half-planes as neighbours.
+            let neighbors = step.behaviour.rsplit(", ").next().and_then(|it| it.parse::<u32>().ok());
+            let safety = safety.replace('#', number).replace('K', &(2 * neighbors.unwrap_or(0)).to_string());
             let mut arguments = arguments(&step.behaviour).into_iter();
             arguments.next() == Some(number)
                 && arguments.next().is_some_and(|it| it == *guidance || it.starts_with(&format!("{guidance}<")))
@@ -85,6 +87,7 @@ mod tests {
             step("Q16, WaypointGuidance<Q16>, OrcaSafety<Q16, 32>, Postcard, 16", 1),
             step("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32, VoxelTable2k>, Postcard, 16", 2),
             step("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32>, Postcard, 16", 3),
+            step("f32, WaypointGuidance<f32>, PushOutSafety<f32>, Mavlink, 16", 4),
         ];
         let law = Law { law: "waypoint_orca", text: 3, rodata: 2, ram: 21, stack: 30 };
         assert_eq!(laws("f32", &rows, &steps), [law]);
