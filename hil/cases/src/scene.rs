@@ -4,6 +4,9 @@
 //! The program `search` of `hil/firmware` changes scenes at random and keeps those whose longest
 //! step takes more instructions. `cargo xtask size --search` runs it and prints the scenes for
 //! [`FOUND`].
+//!
+//! The search does not vary the body (no inertia, no lag) and the inbox (one beacon of each robot
+//! that is heard, no robot beyond the sixteen).
 
 use crate::plane::STEP;
 use crate::{Probe, Summary, hash::Hashes};
