@@ -78,7 +78,7 @@ pub struct Robot {
     pub radio: Radio,
 }
 
-/// A scene: the agent stands at one place and is told that it moves at `velocity_mmps`.
+/// A scene: the agent remains at one place, and its state reports the velocity `velocity_mmps`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scene {
     /// Own velocity, mm/s.
