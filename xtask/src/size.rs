@@ -3,6 +3,7 @@
 
 mod bench;
 mod budget;
+mod laws;
 mod reach;
 
 use crate::device::{PARTS, Part, STM32F405};
@@ -26,6 +27,8 @@ struct Measured {
     /// Programs with their sections, bytes.
     programs: Vec<(String, Sections)>,
     rows: Vec<Row>,
+    /// The agent of each law and `lockstep`, in the kind of number that limits are for.
+    laws: Vec<laws::Law>,
     /// The flash that each behaviour's step needs.
     steps: Vec<reach::Step>,
     /// The flash that encoder and decoder of each wire format need.
@@ -38,9 +41,9 @@ pub fn run(s: &mut Session, is_json: bool) {
     let mut all = Vec::new();
     for part in &PARTS {
         on_part(s, &format!("budget of the {}", part.name), part, (Profile::Firmware, &[]), |repo| {
-            let measured = measure(repo, part)?;
             let text = files::read(&repo.root.join(BUDGETS))?;
             let budget = Budget::read(&text, part.name).map_err(|error| format!("{BUDGETS}: {error}"))?;
+            let measured = measure(repo, part, budget.number())?;
             let breaches = budget.breaches(&measured);
             if !is_json {
                 print!("{}", measured.table());
@@ -71,20 +74,21 @@ pub fn search(s: &mut Session, options: &Options<'_>) {
     });
 }
 
-fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
+fn measure(repo: &Repo, part: &'static Part, number: &str) -> Result<Measured, String> {
     let elf = |program: &str| Profile::Firmware.elf(repo, part, program);
     let programs = ["lockstep", "replay", "bench"];
     let sections = |program: &&str| Ok((program.to_string(), firmware::sections(&elf(program))?));
     let rows = bench::rows(&emulate::run(repo, part, &elf("bench"), "none")?)?;
     let bytes = files::bytes(&elf("bench"))?;
     let program = reach::Program::read(&bytes)?;
-    Ok(Measured {
-        part: part.name,
-        programs: programs.iter().map(sections).collect::<Result<_, String>>()?,
-        rows,
-        steps: reach::steps(&program),
-        formats: reach::formats(&program),
-    })
+    let steps = reach::steps(&program);
+    let programs = programs.iter().map(sections).collect::<Result<Vec<_>, String>>()?;
+    let mut laws = laws::laws(number, &rows, &steps);
+    if let Some((_, Sections { text, rodata, ram, .. })) = programs.iter().find(|(name, _)| name == "lockstep") {
+        let stack = rows.iter().filter(|row| row.number == number).map(|row| row.stack).max().unwrap_or(0);
+        laws.push(laws::Law { law: "lockstep, all laws", text: *text, rodata: *rodata, ram: *ram, stack });
+    }
+    Ok(Measured { part: part.name, programs, laws, rows, steps, formats: reach::formats(&program) })
 }
 
 impl Measured {
@@ -101,6 +105,11 @@ impl Measured {
         );
         for row in &self.rows {
             text += &format!("{row}\n");
+        }
+        text +=
+            &format!("\n{:<24} {:>8} {:>8} {:>8} {:>8}\n", "law: bytes of an agent", "text", "rodata", "RAM", "stack");
+        for laws::Law { law, text: code, rodata, ram, stack } in &self.laws {
+            text += &format!("{law:<24} {code:>8} {rodata:>8} {ram:>8} {stack:>8}\n");
         }
         text += &format!(
             "\n{:>8} {:>8}  step of a behaviour: number, guidance, safety, wire format, neighbours\n",

@@ -270,7 +270,7 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     for obstacle in obstacles {
         let nearest_point = obstacle.nearest_point();
         let distance = nearest_point.map_or(-V::Scalar::MAX, |(_, distance)| distance);
-        let Some(constraint) = static_obstacle(params, body, own, (obstacle, nearest_point)) else {
+        let Some(constraint) = static_obstacle(params, body, own, obstacle, nearest_point) else {
             continue;
         };
         if distances.len() >= room {
@@ -298,14 +298,12 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     }
 }
 
-/// A point of an obstacle, and its distance.
-type Nearest<S> = Option<(Vec3<S>, S)>;
-
 fn static_obstacle<V: Dimension>(
     params: &AvoidParams<V::Scalar>,
     body: &Body<V::Scalar>,
     own: V,
-    (obstacle, nearest_point): (&Obstacle<V::Scalar>, Nearest<V::Scalar>),
+    obstacle: &Obstacle<V::Scalar>,
+    nearest_point: Option<(Vec3<V::Scalar>, V::Scalar)>,
 ) -> Option<HalfSpace<V>> {
     let zero = V::Scalar::ZERO;
     let horizon_s = params.wall_horizon_s;

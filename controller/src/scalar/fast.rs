@@ -1,5 +1,5 @@
-//! Approximate `f32` through micromath, for parts with an FPU and little time: ORCA takes a fifth
-//! fewer instructions on a Cortex-M4F than with `f32` (`docs/firmware.md`).
+//! Approximate `f32` through micromath, for parts with an FPU and little time: the alpha flock
+//! takes a third fewer instructions on a Cortex-M4F than with `f32` (`docs/firmware.md`).
 
 use super::{Scalar, sealed};
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};

@@ -4,6 +4,9 @@
 //! The program `search` of `hil/firmware` changes scenes at random and keeps those whose longest
 //! step takes more instructions. `cargo xtask size --search` runs it and prints the scenes for
 //! [`FOUND`].
+//!
+//! The search does not vary the body (no inertia, no lag) and the inbox (one beacon of each robot
+//! that is heard, no robot beyond the sixteen).
 
 use crate::plane::STEP;
 use crate::{Probe, Summary, hash::Hashes};
@@ -75,7 +78,7 @@ pub struct Robot {
     pub radio: Radio,
 }
 
-/// A scene: the agent stands at one place and is told that it moves at `velocity_mmps`.
+/// A scene: the agent remains at one place, and its state reports the velocity `velocity_mmps`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scene {
     /// Own velocity, mm/s.

@@ -110,8 +110,8 @@ impl WorstCase {
         }
     }
 
-    /// Runs 64 steps (the found scenes: 7 each) with `N` neighbours (at most eight on the grid) and
-    /// at most `K` half-planes.
+    /// Runs 64 steps (of a found scene 7) with `N` neighbours (at most eight on the grid) and at
+    /// most `K` half-planes.
     pub fn run<S: Scalar, P: Probe<S>, const N: usize, const K: usize>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::<S, _, P, N>(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), probe),

@@ -18,6 +18,9 @@ pub struct Budget {
     ram: Option<u64>,
     agent_and_workspace: Option<u64>,
     stack: Option<u64>,
+    /// Machine code of the minimal agent, by law.
+    #[serde(default)]
+    text: BTreeMap<String, u64>,
     /// Of the longest step, by case.
     #[serde(default)]
     instructions: BTreeMap<String, u64>,
@@ -28,6 +31,11 @@ impl Budget {
     pub fn read(text: &str, name: &str) -> Result<Self, String> {
         let mut parts: BTreeMap<String, Self> = toml::from_str(text).map_err(|error| error.to_string())?;
         parts.remove(name).ok_or_else(|| format!("no limits for {name}"))
+    }
+
+    /// The kind of number that the limits are for.
+    pub fn number(&self) -> &str {
+        &self.number
     }
 
     /// A line for each limit that is breached, or that nothing was measured for.
@@ -51,6 +59,11 @@ impl Budget {
             let row = rows().find(|row| row.case == *case);
             checks.push((case, Some(*limit), row.map(|row| row.worst)));
         }
+        let names: Vec<String> = self.text.keys().map(|law| format!("text of {law}")).collect();
+        for ((name, limit), law) in names.iter().zip(self.text.values()).zip(self.text.keys()) {
+            let law = measured.laws.iter().find(|it| it.law == law);
+            checks.push((name, Some(*limit), law.map(|law| law.text)));
+        }
         checks
             .into_iter()
             .filter_map(|(what, limit, value)| match (limit?, value) {
@@ -64,6 +77,7 @@ impl Budget {
 
 #[cfg(test)]
 mod tests {
+    use super::super::laws::Law;
     use super::*;
     use crate::firmware::Sections;
 
@@ -86,6 +100,7 @@ mod tests {
             part: "a",
             programs: vec![(String::from("lockstep"), sections)],
             rows: vec![row("route", "f32", worst), row("fly", "f32", 1), row("route", "Q16", 1000)],
+            laws: vec![Law { law: "boids", text: worst, rodata: 0, ram: 0, stack: 0 }],
             steps: Vec::new(),
             formats: Vec::new(),
         }
@@ -103,6 +118,10 @@ mod tests {
 
     #[test]
     fn a_limit_without_a_measurement_is_a_breach() {
+        let text = TEXT.replace("[a.instructions]", "[a.text]\nboids = 7\nlattice = 9\n[a.instructions]");
+        let told = Budget::read(&text, "a").unwrap().breaches(&measured(1, 1, 1, 8));
+        assert_eq!(told[..2], ["route: 8, at most 7", "text of boids: 8, at most 7"]);
+        assert_eq!(told[2..], ["text of lattice: limited, but not measured"]);
         let text = TEXT.replace("fly", "boids");
         let budget = Budget::read(&text, "a").unwrap();
         assert_eq!(budget.breaches(&measured(1, 1, 1, 1)).len(), 1);

@@ -36,7 +36,7 @@ fn fly<const K: usize>(
 fn obstacle(own: V, obstacle: &Obstacle<f64>, radius_m: f64, horizon_s: f64) -> Option<HalfSpace<V>> {
     let params = AvoidParams { wall_horizon_s: horizon_s, margin_m: 0.0, ..AvoidParams::default() };
     let body = Body { radius_m, ..body(1, [0.0; 3]) };
-    static_obstacle(&params, &body, own, (obstacle, obstacle.nearest_point()))
+    static_obstacle(&params, &body, own, obstacle, obstacle.nearest_point())
 }
 
 fn swap(starts: &[V], most_s: f64) -> (Option<f64>, f64) {

@@ -31,7 +31,7 @@ mod program {
     /// Scenes that are kept at a time. More: slower, and ends less often at a local maximum.
     #[cfg(part = "stm32f405")]
     const POPULATION: usize = 24;
-    /// After so many scenes without an improvement a new population begins.
+    /// Scenes without an improvement after which a new population begins.
     #[cfg(part = "stm32f405")]
     const PATIENCE: u32 = 3_000;
 
