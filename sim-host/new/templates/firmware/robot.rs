@@ -6,7 +6,7 @@ use embassy_futures::select::select;
 use embassy_time::{Instant as Clock, Ticker};
 use embedded_hal::pwm::SetDutyCycle;
 use embedded_io_async::{Read, Write};
-use my_swarm::Law;
+use my_swarm::MyLaw;
 use staya_controller::agent::*;
 use staya_controller::geom::Position;
 use staya_controller::neighbor::StalenessInflation;
@@ -90,8 +90,8 @@ where
     config.max_acceleration_mps2 = ahead.max_speed(LIMITS.acceleration_mps2, TRACK_M);
     config.lag_s = LAG_S;
     let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
-    let law = Law::new(max_speed_mps, 0.02, 0.6);
-    let mut agent: Agent<f32, Law, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>> =
+    let law = MyLaw::new(max_speed_mps, 0.02, 0.6);
+    let mut agent: Agent<f32, MyLaw, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>> =
         Agent::new(&config, law, safety, Postcard);
     agent.order(WaypointOrder::first(Waypoint::fixed(GOAL)));
 

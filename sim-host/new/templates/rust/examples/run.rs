@@ -1,7 +1,7 @@
 //! Runs scenario.toml and prints the result. With a file name it also records the run: `cargo run
 //! --example run -- run.staya`, then `staya view run.staya`.
 
-use my_swarm::Law;
+use my_swarm::MyLaw;
 use staya_sim::engine::simulate_own;
 use staya_sim::record::Files;
 use staya_sim::scenario::{Overrides, Scenario};
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut failed = None;
     let outcome = simulate_own(
         &scenario,
-        |_robot| Law::new(0.5, 0.02, 0.6),
+        |_robot| MyLaw::new(0.5, 0.02, 0.6),
         |moment, rows| match recording.as_mut().map(|recording| recording.tick(moment, rows)) {
             Some(Err(error)) => {
                 failed = Some(error);

@@ -10,7 +10,7 @@ use staya_controller::geom::Vec3;
 /// The fields are the law's memory. serde saves them in checkpoints and sends them to robots in
 /// hardware-in-the-loop tests.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Law {
+pub struct MyLaw {
     /// Preferred speed, m/s.
     pub speed_mps: f32,
     /// Distance at which the goal counts as reached, metres.
@@ -20,7 +20,7 @@ pub struct Law {
     goal: Option<Waypoint<f32>>,
 }
 
-impl Law {
+impl MyLaw {
     /// Creates a law without a goal.
     #[must_use]
     pub const fn new(speed_mps: f32, tolerance_m: f32, careful_m: f32) -> Self {
@@ -28,7 +28,7 @@ impl Law {
     }
 }
 
-impl Law<f32> for Law {
+impl Law<f32> for MyLaw {
     type Surroundings<'a> = InPlane<'a, f32>;
     type Protocol = Waypoints;
     type Workspace = ();
