@@ -16,7 +16,7 @@ const SYMBOL: &str = "staya_panic_is_reachable";
 const COPY: &str = "planted";
 /// The files in the copy: manifests, sources and their pages, linker scripts, MAVLink's
 /// messages.
-const FOLDERS: [&str; 6] = ["controller", "examples", "hil", "sim-host", "tests", "xtask"];
+const FOLDERS: [&str; 7] = ["controller", "examples", "hil", "papers", "sim-host", "tests", "xtask"];
 const FILES: [&str; 3] = ["Cargo.toml", "Cargo.lock", "memory.x"];
 const ENDINGS: [&str; 5] = ["rs", "toml", "md", "x", "xml"];
 
@@ -54,7 +54,7 @@ const PLANTS: [Plant; 6] = [
     Plant { name: "logs", file: "hil/firmware/src/log.rs", bin: "lockstep", is_long: false,
         right: "if let Some(place) = self.bytes.get_mut(self.used) {",
         wrong: "{\n                let place = &mut self.bytes[self.used];" },
-    Plant { name: "an operator's orders", file: "controller/src/agent/commanded.rs", bin: "nopanic_operator", is_long: true,
+    Plant { name: "an operator's orders", file: "controller/src/agent/guided.rs", bin: "nopanic_operator", is_long: true,
         right: "self.wish = wish;",
         wrong: "self.wish = [wish][core::hint::black_box(1)];" },
 ];
