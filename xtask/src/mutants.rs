@@ -46,7 +46,7 @@ fn planted(repo: &Repo, shard: &str) -> Result<(Counts, String), String> {
     let sources = copied(repo, &folder)?;
     let mut command = repo.command(program);
     command
-        .args(["mutants", "--in-place", "--package", "staya-controller", "--features", "host,published"])
+        .args(["mutants", "--in-place", "--package", "staya-controller", "--features", "host"])
         .args(["--cargo-arg=--lib", "--sharding", "round-robin", "--shard", shard, "--colors", "never"])
         .args(["--timeout-multiplier", "5", "--minimum-test-timeout", "60", "--output"])
         .arg(&folder)
