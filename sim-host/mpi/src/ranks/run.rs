@@ -12,7 +12,9 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::wire::Ring;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::hash;
-use staya_sim::engine::{Engine, Grid, HostLaw, Moment, Outcome, PlaneGround, Saves, State, Watch, agents};
+use staya_sim::engine::{
+    Engine, Grid, HostLaw, Moment, Outcome, OwnLaw, PlaneGround, Saves, State, Watch, agents, own_agents,
+};
 use staya_sim::metrics::{FormationQuality, Member};
 use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
@@ -99,7 +101,23 @@ pub fn simulate_on(
     sharing: &Sharing,
     watch: &mut Watch<'_>,
 ) -> Result<Ended, RankError> {
-    go(scenario, None, exchange, sharing, watch)
+    go(scenario, None, exchange, sharing, agents(scenario), watch)
+}
+
+/// As [`simulate_own`](staya_sim::engine::simulate_own), on all ranks together; from the state of a
+/// checkpoint, if there is one.
+///
+/// # Errors
+/// As [`simulate_on_from`]; or the law needs another world.
+pub fn simulate_own_on<L: OwnLaw>(
+    scenario: &Scenario,
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
+    state: Option<&[u8]>,
+    exchange: &mut dyn Exchange,
+    sharing: &Sharing,
+    watch: &mut Watch<'_>,
+) -> Result<Ended, RankError> {
+    go(scenario, state, exchange, sharing, own_agents(scenario, law)?, watch)
 }
 
 /// Continues from a checkpoint's state, written by any number of ranks; `watch` sees later ticks.
@@ -113,23 +131,24 @@ pub fn simulate_on_from(
     sharing: &Sharing,
     watch: &mut Watch<'_>,
 ) -> Result<Ended, RankError> {
-    go(scenario, Some(state), exchange, sharing, watch)
+    go(scenario, Some(state), exchange, sharing, agents(scenario), watch)
 }
 
-fn go(
+fn go<G: HostLaw + State, A: Safety<f32> + Send + State>(
     scenario: &Scenario,
     state: Option<&[u8]>,
     exchange: &mut dyn Exchange,
     sharing: &Sharing,
+    agents: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
     watch: &mut Watch<'_>,
 ) -> Result<Ended, RankError> {
     check(scenario, exchange.ranks())?;
     match &scenario.plane {
         Some(setup) => {
             let ground = PlaneGround::new(scenario, setup);
-            Rank::new(scenario, exchange, sharing, ground, agents(scenario))?.run(state, watch)
+            Rank::new(scenario, exchange, sharing, ground, agents)?.run(state, watch)
         }
-        None => Rank::new(scenario, exchange, sharing, Grid::new(scenario)?, agents(scenario))?.run(state, watch),
+        None => Rank::new(scenario, exchange, sharing, Grid::new(scenario)?, agents)?.run(state, watch),
     }
 }
 

@@ -7,6 +7,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 
+mod own;
+
 fn on_ranks(scenario: &Scenario, ranks: usize, sharing: &Sharing) -> Vec<Result<Ended, RankError>> {
     resume_on(scenario, ranks, sharing, None, &Mutex::default())
 }

@@ -39,7 +39,7 @@ pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, kn
 pub use intervene::Change;
 pub use laws::{ScenarioLaw, WIDE};
 pub use operator::{Observation, Operated, operated};
-pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own, simulate_own_with};
+pub use own::{OwnLaw, WrongWorld, operated_own, own_agents, simulate_own, simulate_own_from, simulate_own_with};
 pub use plane::{PlaneGround, Sensor};
 #[doc(hidden)]
 pub use simulate::{LawOf, SafetyOf, agents};

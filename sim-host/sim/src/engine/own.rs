@@ -1,85 +1,148 @@
-//! Scenarios in the plane or in space with a guidance law supplied by the caller.
+//! Scenarios with a law supplied by the caller, on the grid, in the plane or in space.
 
+use super::inspect::Scratchpad;
 use super::operator::{Operated, boxed};
-use super::simulate::{SafetyOf, go};
+use super::simulate::{SafetyOf, go, resume};
 use super::state::State;
 use super::witness::Witness;
-use super::{Engine, ExternalController, Moment, Outcome, PlaneGround, Watch};
+use super::{Engine, ExternalController, Grid, Ground as _, Moment, Outcome, PlaneGround, StartError, Watch};
 use crate::record::RobotRow;
 use crate::scenario::Scenario;
-use staya_controller::agent::{Guided, InPlane, Law};
+use staya_controller::agent::{AnySurroundings, CellState, Guided, InCell, InCells, InPlane, Law, OnGrid};
+use staya_controller::geom::Vec2;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// A guidance law supplied by the caller. Its state is serialized in checkpoints.
-pub trait OwnLaw:
-    for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
-{
-}
+/// A law supplied by the caller. Its state is serialized in checkpoints.
+pub trait OwnLaw: Law<f32, Workspace: Scratchpad> + State + Clone + Send + 'static {}
 
-impl<G> OwnLaw for G where
-    G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
-{
-}
+impl<L> OwnLaw for L where L: Law<f32, Workspace: Scratchpad> + State + Clone + Send + 'static {}
 
-/// The scenario has no `[plane]`, but the law commands velocities.
+/// The law needs other surroundings than the scenario's robots have.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error("the scenario has no table [plane], and the law goes by velocities; give it one")]
-pub struct NotInPlane;
+pub enum WrongWorld {
+    /// The scenario has no `[plane]`.
+    #[error("the scenario has no table [plane], and the law goes by velocities; give it one")]
+    Grid,
+    /// The scenario has `[plane]` and no land.
+    #[error("the scenario has no [terrain], and the law plans on land; give it one")]
+    Plane,
+    /// The scenario has `[plane]` on land.
+    #[error("the scenario has a table [plane], and the law moves from cell to cell; leave it out")]
+    Land,
+}
 
-/// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the guidance law of
-/// robot `i` in [`Scenario::robots`] at each of its starts. The scenario determines the bodies,
-/// safety layers, radio, faults and goals (given by orders).
+/// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the law of robot `i`
+/// in [`Scenario::robots`] at each of its starts. The scenario determines the bodies, safety
+/// layers, radio, faults and goals (given by orders).
 ///
 /// # Errors
-/// [`NotInPlane`].
-pub fn simulate_own<G: OwnLaw>(
+/// [`StartError::World`], and those of [`Grid::new`].
+pub fn simulate_own<L: OwnLaw>(
     scenario: &Scenario,
-    law: impl Fn(usize) -> G + Send + Sync + 'static,
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
     mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
-) -> Result<Outcome, NotInPlane> {
+) -> Result<Outcome, StartError> {
     simulate_own_with(scenario, law, None, &mut watch)
 }
 
 /// Runs [`simulate_own`] with some controllers outside this process, which may use another law.
 ///
 /// # Errors
-/// [`NotInPlane`].
-pub fn simulate_own_with<G: OwnLaw>(
+/// Those of [`simulate_own`].
+pub fn simulate_own_with<L: OwnLaw>(
     scenario: &Scenario,
-    law: impl Fn(usize) -> G + Send + Sync + 'static,
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
     external: Option<Box<dyn ExternalController>>,
     watch: &mut Watch<'_>,
-) -> Result<Outcome, NotInPlane> {
-    Ok(go(scenario, engine(scenario, law)?, external, watch))
+) -> Result<Outcome, StartError> {
+    Ok(match engine(scenario, law)? {
+        OwnEngine::Plane(engine) => go(scenario, *engine, external, watch),
+        OwnEngine::Cells(engine) => go(scenario, *engine, external, watch),
+    })
+}
+
+/// Resumes [`simulate_own`] from a checkpoint, as [`simulate_from`](super::simulate_from) does.
+///
+/// # Errors
+/// Those of [`simulate_own`], and [`StartError::State`].
+pub fn simulate_own_from<L: OwnLaw>(
+    scenario: &Scenario,
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
+    state: &[u8],
+    watch: &mut Watch<'_>,
+) -> Result<Outcome, StartError> {
+    Ok(match engine(scenario, law)? {
+        OwnEngine::Plane(engine) => resume(scenario, *engine, state, watch)?,
+        OwnEngine::Cells(engine) => resume(scenario, *engine, state, watch)?,
+    })
 }
 
 /// Creates a run with the caller's law and an operator; for bridges and live views.
 ///
 /// # Errors
-/// [`NotInPlane`].
-pub fn operated_own<G: OwnLaw>(
+/// Those of [`simulate_own`].
+pub fn operated_own<L: OwnLaw>(
     scenario: &Scenario,
-    law: impl Fn(usize) -> G + Send + Sync + 'static,
-) -> Result<Box<dyn Operated>, NotInPlane> {
-    Ok(boxed(scenario, engine(scenario, law)?))
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
+) -> Result<Box<dyn Operated>, StartError> {
+    Ok(match engine(scenario, law)? {
+        OwnEngine::Plane(engine) => boxed(scenario, *engine),
+        OwnEngine::Cells(engine) => boxed(scenario, *engine),
+    })
 }
 
-fn engine<G: OwnLaw>(
+/// Returns a function that creates the caller's law, which an operator may override, and the safety
+/// layer of a robot; as [`agents`](super::agents) does.
+///
+/// # Errors
+/// [`WrongWorld`].
+pub fn own_agents<L: OwnLaw>(
     scenario: &Scenario,
-    law: impl Fn(usize) -> G + Send + Sync + 'static,
-) -> Result<Engine<PlaneGround, Guided<f32, G>, SafetyOf>, NotInPlane> {
-    let setup = scenario.plane.as_ref().ok_or(NotInPlane)?;
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
+) -> Result<impl Fn(usize) -> (Guided<f32, L>, SafetyOf) + Send + Sync + 'static, WrongWorld> {
+    fits::<L>(scenario)?;
     let robots = (0..scenario.robots.len()).map(|index| {
-        let group = setup.group(index);
-        (scenario.safety(index), [group.cruise_mps, group.tolerance_m].map(|x| x as f32))
+        let group = scenario.plane.as_ref().map(|setup| setup.group(index));
+        let limits = group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32));
+        (scenario.safety(index), limits)
     });
     let robots: Vec<_> = robots.collect();
-    let factory = move |index: usize| {
+    Ok(move |index: usize| {
         let (safety, [speed_mps, tolerance_m]) = &robots[index];
         (Guided::new(law(index), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+    })
+}
+
+fn fits<L: OwnLaw>(scenario: &Scenario) -> Result<(), WrongWorld> {
+    let grid = OnGrid { cell: CellState::default(), window: None };
+    let plane = InPlane { max_speed_mps: 0.0, obstacles: &[] };
+    let in_cell = InCell { offset_m: Vec2::ZERO, cell_m: 1.0 };
+    let (surroundings, wrong) = match &scenario.plane {
+        None => (AnySurroundings::OnGrid(grid), WrongWorld::Grid),
+        Some(setup) if PlaneGround::new(scenario, setup).terrain().is_none() => {
+            (AnySurroundings::InPlane(plane), WrongWorld::Plane)
+        }
+        Some(_) => (AnySurroundings::InCells(InCells { grid, plane, in_cell }), WrongWorld::Land),
     };
-    Ok(Engine::new(scenario, PlaneGround::new(scenario, setup), factory))
+    L::Surroundings::try_from(surroundings).map(|_| ()).map_err(|_| wrong)
+}
+
+enum OwnEngine<L: OwnLaw> {
+    Plane(Box<Engine<PlaneGround, Guided<f32, L>, SafetyOf>>),
+    Cells(Box<Engine<Grid, Guided<f32, L>, SafetyOf>>),
+}
+
+fn engine<L: OwnLaw>(
+    scenario: &Scenario,
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
+) -> Result<OwnEngine<L>, StartError> {
+    let agents = own_agents(scenario, law)?;
+    Ok(if let Some(setup) = &scenario.plane {
+        OwnEngine::Plane(Box::new(Engine::new(scenario, PlaneGround::new(scenario, setup), agents)))
+    } else {
+        OwnEngine::Cells(Box::new(Engine::new(scenario, Grid::new(scenario)?, agents)))
+    })
 }
 
 #[cfg(test)]

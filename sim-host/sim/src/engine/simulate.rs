@@ -1,6 +1,7 @@
 //! Runs a whole scenario with the guidance law that it names.
 
 use super::laws::{Papers, ScenarioLaw};
+use super::own::WrongWorld;
 use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
@@ -118,6 +119,9 @@ pub enum StartError {
     /// The saved state cannot be restored.
     #[error(transparent)]
     State(#[from] StateError),
+    /// A law of the caller needs other surroundings.
+    #[error(transparent)]
+    World(#[from] WrongWorld),
 }
 
 /// Resumes a run from the bytes of [`Saves::save`]; the result is identical to that of an
@@ -210,7 +214,7 @@ where
     ticks(scenario, engine, watch)
 }
 
-fn resume<W, G, A>(
+pub(super) fn resume<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
     state: &[u8],

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     Action, BadInput, Decision, Never, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
 };
+use staya_controller::grid::Dir;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Format;
 use std::path::Path;
@@ -102,23 +103,75 @@ fn a_run_resumed_from_a_checkpoint_ends_identically() {
     let scenario = line("loss = 0.3");
     let whole = run(&scenario);
     let mut bytes = Vec::new();
-    let mut saved = engine(&scenario, |_| Highest::default()).unwrap();
-    for _ in 0..5 {
-        let _ = saved.step();
-    }
-    saved.save(&mut bytes).unwrap();
-    let mut again = engine(&scenario, |_| Highest::default()).unwrap();
-    again.restore(&bytes).map_err(StartError::State).unwrap();
-    while !again.is_over() && again.ticks() < scenario.ticks {
-        let _ = again.step();
-    }
-    assert_eq!(again.outcome(), whole);
+    let until_five = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
+        if moment.row.tick < 5 {
+            return ControlFlow::Continue(());
+        }
+        moment.run.unwrap().save(&mut bytes).unwrap();
+        ControlFlow::Break(())
+    };
+    let _ = simulate_own(&scenario, |_| Highest::default(), until_five).unwrap();
+    let again =
+        simulate_own_from(&scenario, |_| Highest::default(), &bytes, &mut |_, _| ControlFlow::Continue(())).unwrap();
+    assert_eq!(again, whole);
 }
 
 #[test]
 fn a_scenario_of_the_grid_is_refused() {
     let scenario = Scenario { plane: None, ..line("") };
     let refused = simulate_own(&scenario, |_| Highest::default(), |_, _| ControlFlow::Continue(()));
-    assert_eq!(refused.err(), Some(NotInPlane));
-    assert!(NotInPlane.to_string().contains("give it one"));
+    assert_eq!(refused.err(), Some(StartError::World(WrongWorld::Grid)));
+    assert!(WrongWorld::Grid.to_string().contains("give it one"));
+}
+
+/// Moves east, and knows the robots that it hears.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct East(u32);
+
+impl Law<f32> for East {
+    type Surroundings<'a> = OnGrid<'a>;
+    type Protocol = Numbers;
+    type Workspace = ();
+
+    fn decide(
+        &mut self,
+        view: &View<'_, f32, u32>,
+        here: &OnGrid<'_>,
+        _: Tools<'_, f32, Self>,
+    ) -> Result<Decision<f32>, BadInput> {
+        let (cell, _) = here.seen()?;
+        let heard = view.neighbors.iter().map(|other| other.payload);
+        self.0 = heard.fold(self.0.max(view.id.0), u32::max);
+        let is_at_goal = cell.x >= 9;
+        let action = Action::Moves([Dir::East].into_iter().collect());
+        Ok(Decision { action, status: Status { is_at_goal, ..Status::default() } })
+    }
+
+    fn payload(&mut self, _: &mut Radio<'_, Never>) -> u32 {
+        self.0
+    }
+
+    fn report(&self) -> Report {
+        Report { leader: RobotId(self.0), ..Report::default() }
+    }
+}
+
+#[test]
+fn a_law_of_the_grid_runs_on_the_grid_and_nowhere_else() {
+    let text = "name = \"t\"\nticks = 40\ntick_s = 1\n[terrain]\nuniform = { width = 12, height = 4, classes = 1 }\n\
+        [robots]\nlist = [{ start = [1, 1], goal = [9, 1] }, { start = [1, 3], goal = [9, 3] }]\n";
+    let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).unwrap();
+    let mut leaders = Vec::new();
+    let outcome = simulate_own(
+        &scenario,
+        |_| East::default(),
+        |_, rows| {
+            leaders = rows.map(|row| row.leader).collect();
+            ControlFlow::Continue(())
+        },
+    );
+    assert_eq!(outcome.unwrap().arrived, 2);
+    assert_eq!(leaders, [2; 2], "each has heard the other");
+    let refused = simulate_own(&line(""), |_| East::default(), |_, _| ControlFlow::Continue(()));
+    assert_eq!(refused.err(), Some(StartError::World(WrongWorld::Plane)));
 }
