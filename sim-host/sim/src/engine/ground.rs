@@ -13,6 +13,7 @@ use staya_controller::agent::{AgentConfig, AnyInputs, Command, Law, Task, WAYPOI
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Sighting;
 use staya_controller::time::Duration;
+use thiserror::Error;
 
 /// A world with bodies. `number` is the index of a robot in
 /// [`Scenario::robots`](crate::scenario::Scenario::robots), `index` that of its body in this
@@ -182,6 +183,20 @@ pub trait Ground: Send + Sync {
     fn orders(&self, _tick: u32) -> Option<&[u8]> {
         None
     }
+}
+
+/// The law needs other surroundings than the scenario's robots have.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum WrongWorld {
+    /// The scenario has no `[plane]`.
+    #[error("the scenario has no table [plane], and the law goes by velocities; give it one")]
+    Grid,
+    /// The scenario has `[plane]` and no land.
+    #[error("the scenario has no [terrain], and the law plans on land; give it one")]
+    Plane,
+    /// The scenario has `[plane]` on land.
+    #[error("the scenario has a table [plane], and the law moves from cell to cell; leave it out")]
+    Land,
 }
 
 /// A law that can change threads and whose scratch memory displays can show.

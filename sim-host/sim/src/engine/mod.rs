@@ -34,12 +34,12 @@ pub use checkpoint_interval::CheckpointInterval;
 use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
-pub use ground::{Ground, HostLaw, StateWords};
+pub use ground::{Ground, HostLaw, StateWords, WrongWorld};
 pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, known};
 pub use intervene::Change;
 pub use laws::{ScenarioLaw, WIDE};
 pub use operator::{Observation, Operated, operated};
-pub use own::{OwnLaw, WrongWorld, operated_own, own_agents, simulate_own, simulate_own_from, simulate_own_with};
+pub use own::{OwnLaw, operated_own, own_agents, simulate_own, simulate_own_from, simulate_own_with};
 pub use plane::{PlaneGround, Sensor};
 #[doc(hidden)]
 pub use simulate::{LawOf, SafetyOf, agents};

@@ -1,5 +1,6 @@
 //! Scenarios with a law supplied by the caller, on the grid, in the plane or in space.
 
+use super::ground::WrongWorld;
 use super::inspect::Scratchpad;
 use super::operator::{Operated, boxed};
 use super::simulate::{SafetyOf, go, resume};
@@ -11,26 +12,11 @@ use crate::scenario::Scenario;
 use staya_controller::agent::{AnySurroundings, CellState, Guided, InCell, InCells, InPlane, Law, OnGrid};
 use staya_controller::geom::Vec2;
 use std::ops::ControlFlow;
-use thiserror::Error;
 
 /// A law supplied by the caller. Its state is serialized in checkpoints.
 pub trait OwnLaw: Law<f32, Workspace: Scratchpad> + State + Clone + Send + 'static {}
 
 impl<L> OwnLaw for L where L: Law<f32, Workspace: Scratchpad> + State + Clone + Send + 'static {}
-
-/// The law needs other surroundings than the scenario's robots have.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum WrongWorld {
-    /// The scenario has no `[plane]`.
-    #[error("the scenario has no table [plane], and the law goes by velocities; give it one")]
-    Grid,
-    /// The scenario has `[plane]` and no land.
-    #[error("the scenario has no [terrain], and the law plans on land; give it one")]
-    Plane,
-    /// The scenario has `[plane]` on land.
-    #[error("the scenario has a table [plane], and the law moves from cell to cell; leave it out")]
-    Land,
-}
 
 /// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the law of robot `i`
 /// in [`Scenario::robots`] at each of its starts. The scenario determines the bodies, safety

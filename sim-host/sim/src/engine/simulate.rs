@@ -1,7 +1,7 @@
 //! Runs a whole scenario with the guidance law that it names.
 
+use super::ground::WrongWorld;
 use super::laws::{Papers, ScenarioLaw};
-use super::own::WrongWorld;
 use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};

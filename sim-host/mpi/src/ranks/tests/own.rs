@@ -38,7 +38,7 @@ impl Law<f32> for Sums {
             Some(_) => Action::Velocity { wish_mps: Vec3::new(0.3, 0.0, 0.0), way_m: None },
             None => Action::Moves([Dir::East, Dir::North].into_iter().collect()),
         };
-        Ok(Decision { action, status: Status { is_at_goal: self.0 % 37 == 0, ..Status::default() } })
+        Ok(Decision { action, status: Status { is_at_goal: self.0.is_multiple_of(37), ..Status::default() } })
     }
 
     fn payload(&mut self, _: &mut Radio<'_, Never>) -> u32 {
