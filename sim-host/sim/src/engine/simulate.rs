@@ -1,10 +1,9 @@
 //! Runs a whole scenario with the guidance law that it names.
 
-use super::ground::WrongWorld;
 use super::laws::{Papers, ScenarioLaw};
 use super::state::{Saves, State, StateError};
 use super::witness::Witness;
-use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
+use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround, WrongWorld};
 use crate::metrics::waits::WaitCount;
 use crate::metrics::{FormationKept, FormationQuality, PlaceError};
 use crate::record::{PacketCounts, RobotRow, TickRow};
