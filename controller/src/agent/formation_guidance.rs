@@ -34,8 +34,8 @@ pub use in_plane::FormationInPlane;
 const ALTERNATIVES: usize = 2;
 
 /// Moving in formation, with the visits of `M` cells and a template of `F` neighbours; alone
-/// without a template. `K` predicts the leader by its next move or its
-/// another [`Steering`]; `H` is a map of the terrain beyond the window.
+/// without a template. `K` predicts the leader by its next move or by another [`Steering`]; `H` is
+/// a map of the terrain beyond the window.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationGuidance<
     const CELLS: usize,
