@@ -79,14 +79,14 @@ const _: () = {
     is_error::<template::TemplateError>();
     #[cfg(feature = "wire")]
     {
-        is_error::<wire::AskError>();
         is_error::<wire::DecodeError>();
         is_error::<wire::EncodeError>();
-        is_error::<wire::PartError>();
+        is_error::<wire::SendError>();
     }
     #[cfg(feature = "agent")]
     {
         is_error::<agent::BadInput>();
+        is_error::<agent::PartError>();
         is_error::<agent::WrongTask>();
     }
 };

@@ -3,22 +3,25 @@
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
 use super::formation_guidance::{FormationGuidance, FormationInPlane};
-use super::law::{BadInput, Decision, Law, MessageOf, OrderOf, Report, Tools, View};
+use super::law::{BadInput, Decision, Known, Law, MessageOf, OrderOf, PayloadOf, Report, Tools, View};
 use super::orca_safety::{FlySafety, OrcaSafety};
 use super::other_safety::PushOutSafety;
-use super::protocol::{AnyOrder, AnyProtocol, GridMessage, Radio};
+use super::protocol::{Protocol, Radio, WaypointOrder, Waypoints};
 use super::route_guidance::{GridWorkspace, RouteGuidance};
 use super::safety::{Safety, SafetyInput, Unguarded};
 use super::waypoint_guidance::WaypointGuidance;
-use super::{AnySurroundings, FarMap, Protocol};
+use super::{AnySurroundings, FarMap, Grid, GridMessage, GridOrder, GridPayload};
 use crate::formation::NextMove;
 use crate::geom::{Vec2, Vec3};
-use crate::neighbor::StalenessInflation;
+use crate::grid::Dir;
+use crate::neighbor::{Neighbor, StalenessInflation};
 use crate::orca::{self, HalfPlane, HalfSpaces, MovingBall};
 use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
+use crate::time::Instant;
+use crate::wire::{Bytes, Content, Never, ProtocolId};
 use serde::{Deserialize, Serialize};
 
 /// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
@@ -77,38 +80,241 @@ macro_rules! each {
     }};
 }
 
-/// Decides with one law of an enum of laws. The last argument is `()` or the scratch memory.
+/// The protocol of an enum of built-in laws: each law speaks its own.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AnyProtocol {}
+
+impl Protocol for AnyProtocol {
+    const ID: ProtocolId = ProtocolId::NONE;
+    type Payload = AnyPayload;
+    type Message = AnyMessage;
+    type Order = AnyOrder;
+
+    fn subject(AnyMessage::Grid(message): &AnyMessage) -> u32 {
+        Grid::subject(message)
+    }
+
+    fn order_subject(order: &AnyOrder) -> Option<u32> {
+        match order {
+            AnyOrder::Grid(order) => Grid::order_subject(order),
+            AnyOrder::Waypoint(order) => Waypoints::order_subject(order),
+        }
+    }
+
+    fn received(order: &mut AnyOrder, sent: Instant, is_restarted: bool) {
+        match order {
+            AnyOrder::Grid(order) => Grid::received(order, sent, is_restarted),
+            AnyOrder::Waypoint(order) => Waypoints::received(order, sent, is_restarted),
+        }
+    }
+}
+
+/// The payload of any built-in law.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(missing_docs, reason = "each variant's type says it")]
+pub enum AnyPayload {
+    #[default]
+    None,
+    Grid(GridPayload),
+}
+
+/// A message of any built-in law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(missing_docs, reason = "each variant's type says it")]
+pub enum AnyMessage {
+    Grid(GridMessage),
+}
+
+/// An order to any built-in law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[expect(missing_docs, reason = "each variant's type says it")]
+pub enum AnyOrder {
+    Grid(GridOrder),
+    Waypoint(WaypointOrder),
+}
+
+impl Content for AnyPayload {
+    fn encode<const N: usize>(&self, _: ProtocolId) -> Option<(ProtocolId, Bytes<N>)> {
+        match self {
+            Self::None => Some((ProtocolId::NONE, Bytes::new())),
+            Self::Grid(payload) => payload.encode(Grid::ID),
+        }
+    }
+
+    fn decode(_: ProtocolId, id: ProtocolId, bytes: &[u8]) -> Option<Self> {
+        match id {
+            Grid::ID => Content::decode(id, id, bytes).map(Self::Grid),
+            _ => Some(Self::None),
+        }
+    }
+}
+
+impl Content for AnyMessage {
+    fn encode<const N: usize>(&self, _: ProtocolId) -> Option<(ProtocolId, Bytes<N>)> {
+        let Self::Grid(message) = self;
+        message.encode(Grid::ID)
+    }
+
+    fn decode(_: ProtocolId, id: ProtocolId, bytes: &[u8]) -> Option<Self> {
+        Content::decode(Grid::ID, id, bytes).map(Self::Grid)
+    }
+}
+
+impl Content for AnyOrder {
+    fn encode<const N: usize>(&self, _: ProtocolId) -> Option<(ProtocolId, Bytes<N>)> {
+        match self {
+            Self::Grid(order) => order.encode(Grid::ID),
+            Self::Waypoint(order) => order.encode(Waypoints::ID),
+        }
+    }
+
+    fn decode(_: ProtocolId, id: ProtocolId, bytes: &[u8]) -> Option<Self> {
+        match id {
+            Grid::ID => Content::decode(id, id, bytes).map(Self::Grid),
+            Waypoints::ID => Content::decode(id, id, bytes).map(Self::Waypoint),
+            _ => None,
+        }
+    }
+}
+
+/// A payload, a message or an order for a law that has another protocol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct OfAnotherLaw;
+
+macro_rules! one_of {
+    ($any:ident { $($variant:ident($one:ty)),+ }) => {$(
+        impl From<$one> for $any {
+            fn from(one: $one) -> Self {
+                Self::$variant(one)
+            }
+        }
+
+        impl TryFrom<$any> for $one {
+            type Error = OfAnotherLaw;
+            #[allow(unreachable_patterns, reason = "an enum may have one variant")]
+            fn try_from(any: $any) -> Result<Self, OfAnotherLaw> {
+                match any {
+                    $any::$variant(one) => Ok(one),
+                    _ => Err(OfAnotherLaw),
+                }
+            }
+        }
+    )+};
+}
+one_of!(AnyPayload { Grid(GridPayload) });
+one_of!(AnyMessage { Grid(GridMessage) });
+one_of!(AnyOrder { Grid(GridOrder), Waypoint(WaypointOrder) });
+
+impl From<()> for AnyPayload {
+    fn from((): ()) -> Self {
+        Self::None
+    }
+}
+
+impl TryFrom<AnyPayload> for () {
+    type Error = OfAnotherLaw;
+    fn try_from(any: AnyPayload) -> Result<Self, OfAnotherLaw> {
+        if any == AnyPayload::None { Ok(()) } else { Err(OfAnotherLaw) }
+    }
+}
+
+impl From<Never> for AnyMessage {
+    fn from(never: Never) -> Self {
+        match never {}
+    }
+}
+
+macro_rules! never {
+    ($($any:ty),+) => {$(
+        impl TryFrom<$any> for Never {
+            type Error = OfAnotherLaw;
+            fn try_from(_: $any) -> Result<Self, OfAnotherLaw> {
+                Err(OfAnotherLaw)
+            }
+        }
+    )+};
+}
+never!(AnyMessage, AnyOrder);
+
+/// The robots of an enum of laws with payload `P` as one of its laws knows them.
+pub struct Narrow<'a, S, P>(pub &'a dyn Known<S, P>);
+
+impl<S, P, Q: TryFrom<P>> Known<S, Q> for Narrow<'_, S, P>
+where
+    S: Scalar,
+{
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn at(&self, index: usize) -> Option<Neighbor<S, Q>> {
+        self.0.at(index).map(|robot| robot.map(|payload| payload.try_into().ok()))
+    }
+
+    fn find(&self, id: RobotId) -> Option<Neighbor<S, Q>> {
+        self.0.find(id).map(|robot| robot.map(|payload| payload.try_into().ok()))
+    }
+}
+
+/// Decides with one law of an enum of laws with protocol `P`. The last argument is `()` or the
+/// scratch memory.
 ///
 /// # Errors
 /// [`BadInput`] also for surroundings of another kind.
-pub fn decide_as<S: Scalar, L>(
+pub fn decide_as<S: Scalar, L: Law<S>, P: Protocol>(
     law: &mut L,
-    view: &View<'_, S>,
+    view: &View<'_, S, P>,
     here: &AnySurroundings<'_, S>,
-    (rng, radio): (&mut Rng, &mut Radio<'_, GridMessage>),
+    (rng, radio): (&mut Rng, &mut Radio<'_, P>),
     workspace: &mut L::Workspace,
 ) -> Result<Decision<S>, BadInput>
 where
-    L: Law<S, Protocol: Protocol<Payload = ()>>,
+    PayloadOf<L, S>: TryFrom<P::Payload>,
 {
     let here = L::Surroundings::try_from(*here).map_err(|_| BadInput)?;
-    law.decide(view, &here, Tools { rng, radio: radio.of(), workspace })
+    let known = Narrow(view.known);
+    law.decide(&view.with(&known), &here, Tools { rng, radio: radio.of(), workspace })
+}
+
+/// Asks one law of an enum of laws for its payload.
+pub fn payload_as<S: Scalar, L: Law<S>, P: Protocol>(
+    law: &mut L,
+    here: &AnySurroundings<'_, S>,
+    heading: Dir,
+    radio: &mut Radio<'_, P>,
+) -> P::Payload
+where
+    P::Payload: From<PayloadOf<L, S>>,
+{
+    let Ok(here) = L::Surroundings::try_from(*here) else { return Default::default() };
+    law.payload(&here, heading, &mut radio.of()).into()
 }
 
 /// Gives a message to one law of an enum of laws.
-pub fn receive_as<S: Scalar, L: Law<S>>(law: &mut L, from: RobotId, message: GridMessage) -> bool
-where
-    MessageOf<L, S>: TryFrom<GridMessage>,
+pub fn receive_as<S: Scalar, L: Law<S>, P: Protocol>(
+    law: &mut L,
+    from: RobotId,
+    message: &P::Message,
+    radio: &mut Radio<'_, P>,
+) where
+    MessageOf<L, S>: TryFrom<P::Message>,
 {
-    message.try_into().is_ok_and(|message| law.receive(from, message))
+    if let Ok(message) = message.clone().try_into() {
+        law.receive(from, &message, &mut radio.of());
+    }
 }
 
 /// Gives an order to one law of an enum of laws.
-pub fn order_as<S: Scalar, L: Law<S>>(law: &mut L, order: AnyOrder) -> bool
+pub fn order_as<S: Scalar, L: Law<S>, O: Clone>(law: &mut L, order: &O) -> bool
 where
-    OrderOf<L, S>: TryFrom<AnyOrder>,
+    OrderOf<L, S>: TryFrom<O>,
 {
-    order.try_into().is_ok_and(|order| law.order(order))
+    order.clone().try_into().is_ok_and(|order| law.order(&order))
 }
 
 impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, H: FarMap> Law<S>
@@ -120,7 +326,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        view: &View<'_, S, AnyProtocol>,
         here: &AnySurroundings<'_, S>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -138,16 +344,21 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
-        each!(self, law(inside_mut) => Law::<S>::payload(law, &mut radio.of()));
+    fn payload(
+        &mut self,
+        here: &AnySurroundings<'_, S>,
+        heading: Dir,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> AnyPayload {
+        each!(self, law(inside_mut) => payload_as(law, here, heading, radio))
     }
 
-    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
-        each!(self, law(inside_mut) => receive_as::<S, _>(law, from, message))
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
+        each!(self, law(inside_mut) => receive_as::<S, _, _>(law, from, message, radio));
     }
 
-    fn order(&mut self, order: AnyOrder) -> bool {
-        each!(self, law(inside_mut) => order_as::<S, _>(law, order))
+    fn order(&mut self, order: &AnyOrder) -> bool {
+        each!(self, law(inside_mut) => order_as::<S, _, _>(law, order))
     }
 
     fn needs(&self, id: RobotId) -> bool {

@@ -1,7 +1,7 @@
 //! Runs a law of the grid on a body that moves in the plane.
 
 use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Tools, View};
-use super::protocol::{LawMessage as _, Radio};
+use super::protocol::{Protocol, Radio};
 use super::{CellState, InCells, OnGrid};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
@@ -71,7 +71,7 @@ where
 
     fn decide(
         &mut self,
-        view: &View<'_, S, PayloadOf<Self, S>>,
+        view: &View<'_, S, Self::Protocol>,
         here: &InCells<'_, S>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -85,19 +85,23 @@ where
         })
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, MessageOf<Self, S>>) -> PayloadOf<Self, S> {
-        self.law.payload(radio)
+    fn payload(
+        &mut self,
+        here: &InCells<'_, S>,
+        heading: Dir,
+        radio: &mut Radio<'_, Self::Protocol>,
+    ) -> PayloadOf<Self, S> {
+        self.law.payload(&here.grid, heading, radio)
     }
 
-    fn receive(&mut self, from: RobotId, message: MessageOf<Self, S>) -> bool {
-        // A redirected robot decides at once.
-        if message.request().is_some() {
+    fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) {
+        self.law.receive(from, message, radio);
+        if radio.takes_anew() {
             self.last = None;
         }
-        self.law.receive(from, message)
     }
 
-    fn order(&mut self, order: OrderOf<Self, S>) -> bool {
+    fn order(&mut self, order: &OrderOf<Self, S>) -> bool {
         self.law.order(order)
     }
 
@@ -122,7 +126,7 @@ type Targeted<S> = (Decision<S>, Option<Cell>);
 
 /// One step of a law that decides by `decide`. Not generic over the law, so it is compiled once.
 #[inline(never)]
-fn follow<S: Scalar, P>(
+fn follow<S: Scalar, P: Protocol>(
     (speed_mps, has_goal): (S, bool),
     last: &mut Option<Last<S>>,
     input: &View<'_, S, P>,

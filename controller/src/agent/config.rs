@@ -35,17 +35,17 @@ pub struct AgentConfig<S> {
     pub latency: Duration,
     /// Ages at which the state of a neighbour counts as stale and as expired.
     pub ages: Ages,
-    /// How requests are resent.
+    /// How messages of laws are resent.
     pub retry: Retry,
-    /// Lifetime of a stop request that is not renewed; it bounds the cost of a lost resume request.
-    pub stop_valid: Duration,
+    /// Lifetime of a message that laws on the grid send, and of a stop that is not renewed: it
+    /// bounds the cost of a lost resume.
+    pub message_valid: Duration,
     /// The reaction to lost contact.
     pub contact_loss: ContactLossPolicy<S>,
     /// Limits on the values that other robots may report.
     pub plausibility: PlausibilityLimits<S>,
-    /// The own flock; 0 for no flock and for robots in formation, whose beacons carry
-    /// [`Beacon::slot`](crate::wire::Beacon::slot) in this field. A robot that
-    /// [flocks](crate::flock) treats members of other flocks as obstacles.
+    /// The own flock. A robot that [flocks](crate::flock) treats members of other flocks as
+    /// obstacles.
     pub flock: u8,
 }
 
@@ -65,7 +65,7 @@ impl<S: Scalar> AgentConfig<S> {
             latency: self.latency,
             ages: self.ages,
             retry: self.retry,
-            stop_valid: self.stop_valid,
+            message_valid: self.message_valid,
             contact_loss: self.contact_loss.cast(),
             plausibility: self.plausibility.cast(),
             flock: self.flock,
@@ -75,7 +75,7 @@ impl<S: Scalar> AgentConfig<S> {
     /// Creates a configuration from the values that every robot needs (on the grid any `radius_m`).
     ///
     /// Defaults: seed 0, boot 0, flock 0, a beacon per tick, states stale after 4 ticks and expired
-    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no lag, no
+    /// after 30, messages resent every 3 ticks, valid for 12 ticks, no inertia, no lag, no
     /// latency (set [`latency`](Self::latency) for a real radio in the plane), and no plausibility
     /// limits.
     #[must_use]
@@ -92,7 +92,7 @@ impl<S: Scalar> AgentConfig<S> {
             latency: Duration::ZERO,
             ages: Ages { stale_after: tick.saturating_mul(4), expire_after: tick.saturating_mul(30) },
             retry: Retry { attempts: 5, interval: tick.saturating_mul(3) },
-            stop_valid: tick.saturating_mul(12),
+            message_valid: tick.saturating_mul(12),
             contact_loss: ContactLossPolicy::DEFAULT,
             plausibility: PlausibilityLimits::ANY,
             flock: 0,

@@ -54,14 +54,14 @@ pub(super) const fn is_ahead(next: Header, header: Header) -> bool {
     boots > 0 || boots == 0 && ahead >= 0
 }
 
-/// Fingerprint of the time and the place in a beacon; `None` for other messages.
+/// Fingerprint of the place and the payload in a beacon; `None` for other messages.
 fn print(message: &Message) -> Option<u16> {
     let Message::Beacon(beacon) = message else {
         return None;
     };
-    let more = [beacon.time.as_micros(), beacon.cell.x as u32, beacon.cell.y as u32];
-    let words = beacon.position_mm.iter().map(|mm| mm.cast_unsigned()).chain(more);
-    let print = words.fold(0x811C_9DC5_u32, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193));
+    let bytes = beacon.position_mm.iter().flat_map(|mm| mm.to_le_bytes());
+    let bytes = bytes.chain(beacon.payload.iter().copied());
+    let print = bytes.fold(0x811C_9DC5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
     Some((print >> 16) as u16)
 }
 
@@ -85,29 +85,25 @@ pub(super) fn is_within<S: Scalar, P>(place: Position, known: &Neighbor<S, P>, t
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Cell;
-    use crate::time::Instant;
     use crate::wire::Beacon;
 
     #[test]
-    fn each_bit_of_time_and_place_changes_the_fingerprint() {
-        let beacon = Beacon {
-            time: Instant::from_micros(1_234_567),
-            position_mm: [-123_456, 7_890, -3],
-            cell: Cell::new(-5, 900),
-            ..Beacon::default()
-        };
-        let same = print(&Message::Beacon(beacon));
-        for bit in 0..15 {
-            let mut others = [beacon; 6];
-            let [x, y, z, east, north, time] = &mut others;
-            for (axis, other) in [x, y, z].into_iter().enumerate() {
+    fn each_bit_of_place_and_payload_changes_the_fingerprint() {
+        let payload = crate::wire::Bytes::from_slice(&[7, 0, 255]).unwrap();
+        let beacon = Beacon { position_mm: [-123_456, 7_890, -3], payload, ..Beacon::default() };
+        let same = print(&Message::Beacon(beacon.clone()));
+        for bit in 0..32 {
+            for axis in 0..3 {
+                let mut other = beacon.clone();
                 other.position_mm[axis] ^= 1 << bit;
+                assert_ne!(print(&Message::Beacon(other)), same, "bit {bit} of axis {axis}");
             }
-            (east.cell.x, north.cell.y) = (east.cell.x ^ 1 << bit, north.cell.y ^ 1 << bit);
-            time.time = Instant::from_micros(beacon.time.as_micros() ^ 1 << bit);
-            for (at, other) in others.into_iter().enumerate() {
-                assert_ne!(print(&Message::Beacon(other)), same, "bit {bit} of word {at}");
+        }
+        for bit in 0..8 {
+            for byte in 0..3 {
+                let mut other = beacon.clone();
+                other.payload[byte] ^= 1 << bit;
+                assert_ne!(print(&Message::Beacon(other)), same, "bit {bit} of byte {byte}");
             }
         }
     }

@@ -53,7 +53,7 @@ impl<S: Scalar> Law<S> for LatticeGuidance<S> {
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        view: &View<'_, S, Waypoints>,
         here: &InPlane<'_, S>,
         _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -76,7 +76,7 @@ impl<S: Scalar> Law<S> for LatticeGuidance<S> {
         Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
     }
 
-    fn order(&mut self, WaypointOrder { index, waypoint }: WaypointOrder) -> bool {
+    fn order(&mut self, &WaypointOrder { index, waypoint }: &WaypointOrder) -> bool {
         if index == 0 {
             self.reference = Some(waypoint.cast());
         }
@@ -140,7 +140,7 @@ impl<S: Scalar> Law<S> for GoalFlockGuidance<S> {
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        view: &View<'_, S, Waypoints>,
         _: &InPlane<'_, S>,
         _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -157,7 +157,7 @@ impl<S: Scalar> Law<S> for GoalFlockGuidance<S> {
         })
     }
 
-    fn order(&mut self, WaypointOrder { index, waypoint }: WaypointOrder) -> bool {
+    fn order(&mut self, &WaypointOrder { index, waypoint }: &WaypointOrder) -> bool {
         let (index, position) = (usize::from(index), waypoint.position);
         let is_taken = self.goals.set_goal(index, position)
             || (index == self.goals.as_slice().len() && self.goals.push(position).is_ok());

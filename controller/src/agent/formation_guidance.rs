@@ -1,11 +1,11 @@
 //! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2); see [`crate::formation`].
 
-use super::grid_task::GridTask;
 use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{MoveHistory, PATIENCE, avoid_crossing};
-use super::protocol::{Grid, GridMessage, GridOrder, Radio};
 use super::route_guidance::GridWorkspace;
-use super::{FarMap, OnGrid, Wait};
+use super::{
+    FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, OnGrid, Radio, TemplateAssembler, Wait,
+};
 use crate::cost::Weights;
 use crate::formation::{
     Anchor, Footprint, FormationParams, Found, GapClosing, GraphDistance, Member, NextMove, PaceControl, Recovery,
@@ -13,14 +13,13 @@ use crate::formation::{
 };
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
-use crate::neighbor::Neighbor;
 use crate::parameters::Parameters;
 use crate::robot::{Mode, RobotId};
 use crate::route::{RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use crate::template::Template;
-use crate::wire::{RequestKind, TemplateAssembler};
+use crate::time::Duration;
 use core::iter::successors;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -132,16 +131,21 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         &self.template
     }
 
-    /// Returns how far `neighbors`, from [`Agent::neighbors`](super::Agent::neighbors), are from
-    /// their places in the template of robot `id` in `cell`. O(F N).
+    /// Returns how far `neighbors`, the robots of [`Agent::neighbors`](super::Agent::neighbors) on
+    /// the grid, are from their places in the template of robot `id` in `cell`. O(F N).
     #[must_use]
-    pub fn graph_distance<S>(&self, id: RobotId, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
-        let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
+    pub fn graph_distance(
+        &self,
+        id: RobotId,
+        cell: Cell,
+        neighbors: impl Iterator<Item = GridNeighbor> + Clone,
+    ) -> GraphDistance {
+        let robots = neighbors.clone().map(|other| seen_at(&other, other.cell));
         let found = find_neighbors(&self.view(id, neighbors), cell, self.formation.eps, robots);
         graph_distance(cell, &found)
     }
 
-    fn view<S>(&self, own: RobotId, neighbors: &[Neighbor<S>]) -> Template<F> {
+    fn view(&self, own: RobotId, neighbors: impl Iterator<Item = GridNeighbor> + Clone) -> Template<F> {
         if self.formation.closes_ranks {
             self.ranks.view(own, &self.template, holders(neighbors))
         } else {
@@ -152,8 +156,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     // Functions with large stack frames are not inlined, so only one frame is live at a time.
 
     /// Returns the highest leader with a known place, and the own place relative to it.
-    fn top<S>(&self, input: &View<'_, S>, view: &Template<F>) -> Option<(RobotId, Cell)> {
-        let heard = |id: RobotId| input.neighbor(id);
+    fn top<S: Copy>(&self, input: &View<'_, S, Grid>, view: &Template<F>) -> Option<(RobotId, Cell)> {
+        let heard = |id: RobotId| input.grid_neighbor(id);
         let first = heard(self.leader)?;
         // Ids decrease along the chain, so it ends; a wrong beacon cannot make it a cycle.
         let chain = successors(Some(first), |robot| heard(robot.leader).filter(|next| next.id < robot.id));
@@ -171,9 +175,9 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 
     /// Keeps a leader while it is known, however far away (the paper chooses it only at t = 0).
-    fn choose_leader<S>(&mut self, input: &View<'_, S>, found: &Found<F>) {
+    fn choose_leader<S: Copy>(&mut self, input: &View<'_, S, Grid>, found: &Found<F>) {
         let leader = find_leader(input.id, &found.members);
-        if leader.is_some() || input.neighbor(self.leader).is_none() {
+        if leader.is_some() || input.grid_neighbor(self.leader).is_none() {
             self.leader = leader;
         }
         let member = found.members.iter().find(|m| m.seen.id == self.leader);
@@ -183,9 +187,9 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 
     #[inline(never)]
-    fn lead<S>(
+    fn lead<S: Copy>(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         (found, view): (&Found<F>, &Template<F>),
@@ -203,14 +207,14 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             blended(window, around, &view.entries, footprint, land)
         };
         let shown = shown.as_ref().unwrap_or(window);
-        let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
+        let others = input.on_grid().map(|neighbor| neighbor.cell);
         self.router.weights_over(&self.route, field, shown, (cell, target), others, self.map.land()).ok()
     }
 
     #[inline(never)]
-    fn follow<S>(
+    fn follow<S: Copy>(
         &self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         guide: &Guide,
@@ -232,12 +236,12 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         // Beyond the window the robot could circle in front of an obstacle, so it remembers visits.
         let is_in_sight = window.get(place).is_some();
         let visits = (!is_in_sight).then_some(self.router.visits());
-        let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
+        let others = input.on_grid().map(|neighbor| neighbor.cell);
         let weights = workspace.field.weights(&self.route, window, cell, place, others, visits).ok()?;
         Some(weights.plus(&price))
     }
 
-    fn guide<S>(&mut self, input: &View<'_, S>, view: &Template<F>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
+    fn guide<S: Copy>(&mut self, input: &View<'_, S, Grid>, view: &Template<F>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
         let top = self.top(input, view);
         let top = top.and_then(|(top, offset)| Some((seen.iter().find(|seen| seen.id == top)?, offset)));
         self.steering.note(top.map_or((input.id, cell), |(seen, _)| (seen.id, seen.cell)));
@@ -272,32 +276,33 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         Some(found.surplus)
     }
 
-    fn ask_pace(&mut self, lag: u32) -> Option<RequestKind> {
+    fn ask_pace(&mut self, own: RobotId, lag: u32, valid: Duration) -> Option<GridMessage> {
         let has_fallen_behind = self.pace.update(&self.formation, lag);
-        let kind = match (has_fallen_behind, self.has_asked) {
-            (true, _) => RequestKind::Stop,
-            (false, true) => RequestKind::Resume,
+        let message = match (has_fallen_behind, self.has_asked) {
+            (true, _) => GridMessage::stop(own, valid),
+            (false, true) => GridMessage::Resume { origin: own },
             (false, false) => return None,
         };
         self.has_asked = has_fallen_behind;
-        Some(kind)
+        Some(message)
     }
 }
 
 /// Whether robot `other` follows this one. Ids decrease along the chain, so it ends.
-fn comes_after<S>(input: &View<'_, S>, other: RobotId, leader: RobotId) -> bool {
-    let heard = |id: RobotId| input.neighbor(id);
+fn comes_after<S: Copy>(input: &View<'_, S, Grid>, other: RobotId, leader: RobotId) -> bool {
+    let heard = |id: RobotId| input.grid_neighbor(id);
     let chain = successors(Some((other, leader)), |&(id, leader)| {
         heard(leader).filter(|next| leader != input.id && next.id < id).map(|next| (next.id, next.leader))
     });
     chain.last().is_some_and(|(_, leader)| leader.is_some())
 }
 
-fn holders<S>(neighbors: &[Neighbor<S>]) -> impl Iterator<Item = (RobotId, u8)> + Clone {
-    neighbors.iter().map(|other| (other.id, other.slot))
+/// The robots that hold places; strangers hold none.
+fn holders(neighbors: impl Iterator<Item = GridNeighbor> + Clone) -> impl Iterator<Item = (RobotId, u8)> + Clone {
+    neighbors.filter(|other| other.is_peer).map(|other| (other.id, other.slot))
 }
 
-fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
+const fn seen_at(other: &GridNeighbor, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
 
@@ -310,21 +315,22 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
 
     fn decide(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         here: &OnGrid<'_>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
         let Tools { rng, mut radio, workspace } = tools;
-        let mut ask = |to: RobotId, kind: RequestKind| {
-            radio.send(to, &GridMessage::Request(kind));
+        let valid = radio.valid;
+        let mut ask = |to: RobotId, message: &GridMessage| {
+            radio.send(to, message, valid);
         };
         let Some(goal) = self.task.goal(input, self.template.offset) else { return Ok(Decision::idle()) };
         let (cell, window) = here.seen()?;
         self.map.see(&window, cell, goal);
         if self.formation.closes_ranks && cell != goal + self.ranks.shift() {
-            self.ranks.close(input.id, &self.template, holders(input.neighbors));
+            self.ranks.close(input.id, &self.template, holders(input.on_grid()));
         }
-        let view = &self.view(input.id, input.neighbors);
+        let view = &self.view(input.id, input.on_grid());
         let target = window.reachable(goal + self.ranks.shift());
         self.router.observe(&self.route, cell, target);
 
@@ -341,8 +347,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let mut stays = false;
         let weights = if let Some(guide) = &guide {
             self.router.forget_route();
-            if let Some(kind) = self.ask_pace(guide.lag) {
-                ask(leader, kind);
+            if let Some(message) = self.ask_pace(input.id, guide.lag, valid) {
+                ask(leader, &message);
             }
             status.is_off_place = self.pace.waits();
             status.is_at_goal &= guide.has_arrived;
@@ -370,7 +376,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let is_bearable = self.waited <= self.formation.patience;
             status.waits_for = (waits && is_bearable).then_some(Wait::Team);
             if goes_alone && core::mem::take(&mut self.has_asked) {
-                ask(leader, RequestKind::Resume);
+                ask(leader, &GridMessage::Resume { origin: input.id });
             }
             self.lead(input, &window, (cell, target), (&found, view), workspace)
         };
@@ -395,34 +401,35 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice, 0);
         if status.waits_for.is_none() && !status.is_at_goal {
-            blocked.into_iter().for_each(|to| ask(to, RequestKind::Redirect));
-            self.ask_surplus(&found).into_iter().for_each(|to| ask(to, RequestKind::Redirect));
+            blocked.into_iter().for_each(|to| ask(to, &GridMessage::Redirect));
+            self.ask_surplus(&found).into_iter().for_each(|to| ask(to, &GridMessage::Redirect));
         }
-        self.task.shown = Report { goal: Some(goal), target: Some(target), leader, slot: view.slot };
+        self.task.show(goal, target);
+        (self.task.shown.leader, self.task.shown.slot) = (leader, view.slot);
         Ok(Decision { action: Action::Moves(moves), status })
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+    fn payload(&mut self, here: &OnGrid<'_>, heading: Dir, radio: &mut Radio<'_, Grid>) -> GridPayload {
         if let Some(patch) = self.map.say(radio.now()) {
             radio.broadcast(&GridMessage::Land(patch));
         }
+        self.task.payload(here, heading)
     }
 
-    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
+    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
+        self.task.receive(from, message, radio);
         match message {
-            GridMessage::Request(kind) => self.travel.redirect_if(kind),
-            GridMessage::Land(patch) => self.map.hear(&patch),
+            GridMessage::Redirect => self.travel.redirect(),
+            GridMessage::Land(patch) => self.map.hear(patch),
+            GridMessage::Stop { .. } | GridMessage::Resume { .. } => {}
         }
     }
 
-    fn order(&mut self, order: GridOrder) -> bool {
-        let GridOrder::Template { part, is_restarted } = &order else {
-            return self.task.order(&order, self.template.offset);
-        };
-        if *is_restarted {
-            self.assembler.forget();
+    fn order(&mut self, order: &GridOrder) -> bool {
+        if self.task.order(order, self.template.offset) {
+            return true;
         }
-        let Ok(whole) = self.assembler.put(part) else { return false };
+        let Ok(whole) = self.assembler.order(order) else { return false };
         if let Some(template) = whole {
             self.template = template;
             self.ranks = GapClosing::new();
@@ -438,7 +445,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 
     fn report(&self) -> Report {
-        self.task.shown
+        self.task.report()
     }
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {

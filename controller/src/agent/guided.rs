@@ -1,11 +1,11 @@
 //! Lets an operator take over a robot temporarily.
 
 use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
-use super::protocol::{LawOrder as _, Radio};
+use super::protocol::Radio;
 use super::waypoint_guidance::WaypointGuidance;
 use super::{Surroundings, Wait, Waypoint, WrongTask};
 use crate::geom::Vec3;
-use crate::grid::Cell;
+use crate::grid::{Cell, Dir};
 use crate::parameters::Parameters;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -64,7 +64,7 @@ impl<S: Scalar, L> Guided<S, L> {
     ///
     /// # Errors
     /// [`WrongTask`], with the previous command still active, for a velocity or a waypoint if the
-    /// law moves cell by cell, a cell if its orders have none, and a velocity that is not finite.
+    /// law moves cell by cell, a cell if it does not plan on the grid, and a velocity that is not finite.
     /// An enum of laws accepts all of these; its host knows which body it has.
     pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
     where
@@ -75,7 +75,7 @@ impl<S: Scalar, L> Guided<S, L> {
             Wish::Own | Wish::Off | Wish::Hold => true,
             Wish::Velocity { velocity_mps, .. } => has_plane && velocity_mps.is_finite(),
             Wish::Waypoint { .. } => has_plane,
-            Wish::Cell(cell) => OrderOf::<L, S>::goal(*cell).is_some(),
+            Wish::Cell(_) => <L::Surroundings<'_> as Surroundings<S>>::HAS_GRID,
         };
         if !is_possible {
             return Err(WrongTask);
@@ -136,7 +136,7 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
 
     fn decide(
         &mut self,
-        view: &View<'_, S, PayloadOf<Self, S>>,
+        view: &View<'_, S, Self::Protocol>,
         here: &Self::Surroundings<'_>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -164,15 +164,20 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
         }
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, MessageOf<Self, S>>) -> PayloadOf<Self, S> {
-        self.inside.payload(radio)
+    fn payload(
+        &mut self,
+        here: &Self::Surroundings<'_>,
+        heading: Dir,
+        radio: &mut Radio<'_, Self::Protocol>,
+    ) -> PayloadOf<Self, S> {
+        self.inside.payload(here, heading, radio)
     }
 
-    fn receive(&mut self, from: RobotId, message: MessageOf<Self, S>) -> bool {
-        self.inside.receive(from, message)
+    fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) {
+        self.inside.receive(from, message, radio);
     }
 
-    fn order(&mut self, order: OrderOf<Self, S>) -> bool {
+    fn order(&mut self, order: &OrderOf<Self, S>) -> bool {
         self.inside.order(order)
     }
 

@@ -7,7 +7,7 @@ use crate::neighbor::Claim;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use crate::wire::{DecodeError, RequestKind};
+use crate::wire::DecodeError;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -85,13 +85,8 @@ pub enum Event {
         /// The cell used instead.
         to: Cell,
     },
-    /// A request ran out of retries.
-    RequestExpired {
-        /// The robot that was asked.
-        to: RobotId,
-        /// The kind of the request.
-        kind: RequestKind,
-    },
+    /// This robot did not acknowledge a message of the law in time.
+    MessageExpired(RobotId),
     /// A neighbour was added to the table.
     NeighborFound(RobotId),
     /// A neighbour was silent for longer than packet loss explains.

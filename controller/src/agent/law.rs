@@ -1,7 +1,7 @@
 //! The interface between the agent and its law, which chooses where the robot goes.
 
 use super::protocol::{Protocol, Radio};
-use super::{AnySurroundings, KinematicState, Surroundings, Wait};
+use super::{AnySurroundings, CellFrame, KinematicState, Surroundings, Wait};
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
@@ -32,12 +32,12 @@ pub type OrderOf<L, S> = <<L as Law<S>>::Protocol as Protocol>::Order;
 /// # fn workspace() -> GridWorkspace<CELLS> { GridWorkspace::new() }
 /// fn on_grid(agent: &mut RouteAgent, surroundings: OnGrid, now: Instant) {
 ///     let (state, inbox) = (KinematicState::default(), &[]);
-///     agent.order(GridOrder::Goal(Cell::new(9, 5)));
+///     agent.order(&GridOrder::Goal(Cell::new(9, 5)));
 ///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut workspace());
 /// }
 /// fn in_plane(agent: &mut OrcaAgent, surroundings: InPlane<f32>, now: Instant) {
 ///     let (state, inbox) = (KinematicState::default(), &[]);
-///     agent.order(WaypointOrder::first(Waypoint::fixed(Default::default())));
+///     agent.order(&WaypointOrder::first(Waypoint::fixed(Default::default())));
 ///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut ());
 /// }
 /// fn law(law: CellFollower<f32, Route>) -> impl Law<f32> { law }
@@ -65,12 +65,12 @@ pub type OrderOf<L, S> = <<L as Law<S>>::Protocol as Protocol>::Order;
 ///
 /// ```compile_fail
 /// # use staya_controller::{agent::*, grid::Cell};
-/// fn send(plane: &mut OrcaAgent) { plane.order(GridOrder::Goal(Cell::new(9, 5))); }
+/// fn send(plane: &mut OrcaAgent) { plane.order(&GridOrder::Goal(Cell::new(9, 5))); }
 /// ```
 ///
 /// ```compile_fail
 /// # use staya_controller::agent::*;
-/// fn send(grid: &mut RouteAgent, to: Waypoint<f32>) { grid.order(WaypointOrder::first(to)); }
+/// fn send(grid: &mut RouteAgent, to: Waypoint<f32>) { grid.order(&WaypointOrder::first(to)); }
 /// ```
 ///
 /// A follower of cells around a law without cells:
@@ -97,24 +97,28 @@ pub trait Law<S: Scalar>: Sized {
     /// [`BadInput`] puts the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
     fn decide(
         &mut self,
-        view: &View<'_, S, PayloadOf<Self, S>>,
+        view: &View<'_, S, Self::Protocol>,
         here: &Self::Surroundings<'_>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput>;
 
-    /// Returns the payload when a beacon is due: a state rather than a change, since receivers may
-    /// get it late, repeatedly or never. What is broadcast here follows the beacon.
-    fn payload(&mut self, _radio: &mut Radio<'_, MessageOf<Self, S>>) -> PayloadOf<Self, S> {
+    /// Returns the payload of a beacon that is due. `heading`: the move under way or intended.
+    /// What is broadcast here follows the beacon.
+    fn payload(
+        &mut self,
+        _here: &Self::Surroundings<'_>,
+        _heading: Dir,
+        _radio: &mut Radio<'_, Self::Protocol>,
+    ) -> PayloadOf<Self, S> {
         Default::default()
     }
 
-    /// Takes in a message of another robot, each once. Returns whether it was of use.
-    fn receive(&mut self, _from: RobotId, _message: MessageOf<Self, S>) -> bool {
-        false
-    }
+    /// Takes in a message of another robot, each once. Messages sent here follow those of the
+    /// frames in the inbox.
+    fn receive(&mut self, _from: RobotId, _message: &MessageOf<Self, S>, _radio: &mut Radio<'_, Self::Protocol>) {}
 
     /// Takes in an order. Returns whether it was of use; one that was not may come again.
-    fn order(&mut self, _order: OrderOf<Self, S>) -> bool {
+    fn order(&mut self, _order: &OrderOf<Self, S>) -> bool {
         false
     }
 
@@ -132,9 +136,8 @@ pub trait Law<S: Scalar>: Sized {
     fn parameters(&mut self, _visit: &mut dyn FnMut(&mut dyn Parameters)) {}
 }
 
-/// What a law knows at a decision besides its surroundings; `P` is its payload.
-#[derive(Clone, Copy, Debug)]
-pub struct View<'a, S, P = ()> {
+/// What a law knows at a decision besides its surroundings; `P` is its protocol.
+pub struct View<'a, S, P: Protocol = ()> {
     /// Own id.
     pub id: RobotId,
     /// Time of the decision.
@@ -151,18 +154,50 @@ pub struct View<'a, S, P = ()> {
     pub body: Body<S>,
     /// Nearby robots, nearest first; empty for robots that move cell by cell.
     pub nearby: &'a [Nearby<S>],
-    /// Known robots in ascending order of ids, none older than [`Ages::expire_after`].
-    pub neighbors: &'a [Neighbor<S, P>],
     /// Age limits of neighbour states.
     pub ages: Ages,
-    /// Whether another robot has asked this one to stop. The agent stops a robot without a leader
-    /// itself, unless [`Status::recovers`].
-    pub is_stopped: bool,
     /// The cell that an operator sends it to instead of its goal.
     pub sent_to: Option<Cell>,
+    /// Where cells lie in the world; `None` cell by cell and without cells.
+    pub cells: Option<CellFrame>,
+    /// Known robots in ascending order of ids, none older than [`Ages::expire_after`].
+    pub known: &'a dyn Known<S, P::Payload>,
 }
 
-impl<S: Scalar, P> View<'_, S, P> {
+impl<S: Copy, P: Protocol> Clone for View<'_, S, P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Copy, P: Protocol> Copy for View<'_, S, P> {}
+
+impl<'a, S: Copy, P: Protocol> View<'a, S, P> {
+    /// The known robots in the order of ids, each with its payload if its law has this protocol.
+    pub fn neighbors(&self) -> impl Iterator<Item = Neighbor<S, P::Payload>> + Clone + use<'a, S, P> {
+        let known = self.known;
+        (0..known.count()).map_while(|index| known.at(index))
+    }
+
+    /// One of them. O(log N).
+    #[must_use]
+    pub fn neighbor(&self, id: RobotId) -> Option<Neighbor<S, P::Payload>> {
+        self.known.find(id)
+    }
+
+    /// Those whose law has this protocol, with what they say.
+    pub fn peers(&self) -> impl Iterator<Item = (Neighbor<S, P::Payload>, P::Payload)> + Clone + use<'a, S, P> {
+        self.neighbors().filter_map(|neighbor| Some((neighbor, neighbor.payload?)))
+    }
+
+    /// The same view for a law with another protocol that gets its robots from `known`.
+    pub fn with<Q: Protocol>(&self, known: &'a dyn Known<S, Q::Payload>) -> View<'a, S, Q> {
+        let Self { id, now, tick, state, ahead_m, lag_s, body, nearby, ages, sent_to, cells, known: _ } = *self;
+        View { id, now, tick, state, ahead_m, lag_s, body, nearby, ages, sent_to, cells, known }
+    }
+}
+
+impl<S: Scalar, P: Protocol> View<'_, S, P> {
     /// Checks that the body can move by velocities.
     ///
     /// # Errors
@@ -172,12 +207,28 @@ impl<S: Scalar, P> View<'_, S, P> {
     }
 }
 
-impl<'a, S, P> View<'a, S, P> {
-    /// Returns a neighbour by its id. O(log N).
-    #[must_use]
-    pub fn neighbor(&self, id: RobotId) -> Option<&'a Neighbor<S, P>> {
-        let at = self.neighbors.binary_search_by_key(&id, |n| n.id).ok()?;
-        self.neighbors.get(at)
+/// The known robots with payloads `P`, in ascending order of ids.
+pub trait Known<S, P> {
+    /// Their number.
+    fn count(&self) -> usize;
+    /// The robot at a place of the order.
+    fn at(&self, index: usize) -> Option<Neighbor<S, P>>;
+    /// The robot with this id. O(log N).
+    fn find(&self, id: RobotId) -> Option<Neighbor<S, P>>;
+}
+
+impl<S: Copy, P: Copy> Known<S, P> for &[Neighbor<S, P>] {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn at(&self, index: usize) -> Option<Neighbor<S, P>> {
+        self.get(index).copied()
+    }
+
+    fn find(&self, id: RobotId) -> Option<Neighbor<S, P>> {
+        let at = self.binary_search_by_key(&id, |neighbor| neighbor.id).ok()?;
+        self.at(at)
     }
 }
 
@@ -187,7 +238,7 @@ pub struct Tools<'t, S: Scalar, L: Law<S>> {
     /// Random numbers of this robot and decision.
     pub rng: &'t mut Rng,
     /// Sends messages.
-    pub radio: Radio<'t, MessageOf<L, S>>,
+    pub radio: Radio<'t, L::Protocol>,
     /// Scratch memory.
     pub workspace: &'t mut L::Workspace,
 }
@@ -204,11 +255,14 @@ pub struct Report {
     pub leader: RobotId,
     /// Its place in the formation.
     pub slot: u8,
+    /// Until when another robot asked it to stop. The agent stops a robot without a leader, unless
+    /// [`Status::recovers`].
+    pub stopped_until: Option<Instant>,
 }
 
 impl Report {
     /// Nothing to show.
-    pub(super) const NONE: Self = Self { goal: None, target: None, leader: RobotId::NONE, slot: 0 };
+    pub(super) const NONE: Self = Self { goal: None, target: None, leader: RobotId::NONE, slot: 0, stopped_until: None };
 }
 
 /// The decision of a guidance law.
@@ -273,7 +327,7 @@ pub struct Status {
     pub waits_for: Option<Wait>,
     /// No exit of the window is reachable.
     pub is_stuck: bool,
-    /// It heads for scattered followers, and therefore ignores their stop requests.
+    /// It heads for scattered followers, and therefore ignores their stops.
     pub recovers: bool,
     /// It is too far from its place in the formation.
     pub is_off_place: bool,

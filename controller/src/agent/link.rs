@@ -3,18 +3,17 @@
 use super::contact_loss::{ContactState, Listening};
 use super::duplicate_id::EchoFilter;
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
-use super::{AgentConfig, CellState, Outgoing, Report, Waypoint};
+use super::protocol::{Outgoing, Protocol, Queued, Radio};
+use super::AgentConfig;
 use crate::body::Body;
 use crate::geom::{Position, Torus, Vec3};
-use crate::grid::{Cell, Dir};
-use crate::land::LandPatch;
 use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
-    Arrival, Beacon, DecodeError, Due, EncodeError, Frame, Header, KeyHeld, Message, Newest, Orders, Payload,
-    PayloadBytes, Request, RequestKind, Requests, SequenceWindow, TemplateAssignment, Wire,
+    Ack, Addressed, Arrival, Beacon, Broadcast, Content, DecodeError, Due, EncodeError, Frame, Header,
+    IncomingMessages, IncomingOrders, KeyHeld, MAX_PAYLOAD, Message, OutgoingMessages, SequenceWindow, Wire,
 };
 use heapless::Vec;
 use lost::LostNews;
@@ -25,41 +24,42 @@ mod lost;
 mod sight;
 
 const PENDING: usize = 4;
-const WAYPOINTS: usize = 4;
-const ORDERS: usize = 8;
+const INCOMING: usize = 8;
+/// Subjects of orders: one goal, or the waypoints.
+const ORDERS: usize = 4;
 
-pub(super) enum Received {
-    /// The sender asks to choose another direction.
-    Redirect(RobotId),
-    /// A stop or resume request for the own leader.
-    PassOn(Request),
-    /// `is_restarted`: the sender changed or restarted, so its version numbers start anywhere.
-    Template { part: TemplateAssignment, is_restarted: bool },
-    /// A goal for the top leader of the formation.
-    Goal(Cell),
-    /// Of the sender's map.
-    Land(RobotId, LandPatch),
-    /// Call [`Link::placed`] if it was accepted.
-    Waypoint { index: u8, version: u8, waypoint: Waypoint<f32> },
+/// What the law must handle.
+pub(super) enum Received<Q: Protocol> {
+    Message(RobotId, Q::Message),
+    /// Call [`Link::followed`] with the receipt if it was of use.
+    Order(Q::Order, Receipt),
+}
+
+/// Which order it was.
+pub(super) struct Receipt {
+    header: Header,
+    number: u8,
+    subject: Option<u32>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Link<S, const N: usize, W, P> {
+#[serde(bound(
+    serialize = "S: Serialize, W: Serialize",
+    deserialize = "S: Deserialize<'de>, W: Deserialize<'de>"
+))]
+pub(super) struct Link<S, const N: usize, W, Q: Protocol> {
     wire: W,
     header: Header,
     said: EchoFilter,
-    pub(super) table: NeighborTable<S, N, P>,
+    pub(super) table: NeighborTable<S, N, Q::Payload>,
     pub(super) contact: ContactState,
     pub(super) listening: Listening,
     suspects: PlausibilityFilter,
     loss: LossEstimate,
     windows: Vec<(RobotId, SequenceWindow), N>,
-    requests: Requests<PENDING>,
-    orders: Orders<ORDERS>,
-    goal: Newest,
-    waypoints: [Newest; WAYPOINTS],
-    /// Sender and boot number of the last goal, template and waypoint.
-    commanders: [Option<(RobotId, u8)>; 3],
+    outgoing: OutgoingMessages<PENDING>,
+    incoming: IncomingMessages<INCOMING>,
+    orders: IncomingOrders<ORDERS>,
     beacon_due: Instant,
     has_sent: bool,
     lost: LostNews,
@@ -80,7 +80,7 @@ pub(super) struct ReceiveContext<'a, S> {
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
-impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
+impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     pub(super) const fn new(config: &AgentConfig<S>, wire: W) -> Self {
         let AgentConfig { id, boot, ages, retry, .. } = *config;
         Self {
@@ -93,11 +93,9 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             suspects: PlausibilityFilter::new(),
             loss: LossEstimate::new(),
             windows: Vec::new(),
-            requests: Requests::new(id, boot, retry),
-            orders: Orders::new(ages.expire_after),
-            goal: Newest::new(),
-            waypoints: [Newest::new(); WAYPOINTS],
-            commanders: [None; 3],
+            outgoing: OutgoingMessages::new(id, boot, retry),
+            incoming: IncomingMessages::new(ages.expire_after),
+            orders: IncomingOrders::new(),
             beacon_due: Instant::from_micros(0),
             has_sent: false,
             lost: LostNews::NEW,
@@ -173,7 +171,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
-    ) -> Option<Received> {
+    ) -> Option<Received<Q>> {
         let frame = match self.wire.decode(bytes) {
             // Frames of other systems on the same band count as neither received nor rejected.
             Err(DecodeError::Foreign) => return None,
@@ -203,7 +201,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             self.loss.heard(missed);
         }
         if arrival == Arrival::Rebooted {
-            self.orders.forget(sender);
+            self.incoming.forget(sender);
             report(out, Event::NeighborRebooted(sender));
         }
         arrival.is_accepted().then_some(arrival)
@@ -217,67 +215,40 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
-    ) -> Option<Received> {
-        let Header { sender, .. } = frame.header;
+    ) -> Option<Received<Q>> {
+        let Frame { header, message, .. } = frame;
         let is_mine = |to: RobotId| to == self.header.sender;
-        match frame.message {
+        match message {
             Message::Beacon(beacon) if arrival.is_latest() => {
-                let mut neighbor = Neighbor::from_beacon(id, &beacon, listener.heard_at);
-                // The payload arrives in a separate frame; after a restart the old one is invalid.
-                let known = self.table.get(id, now).known().filter(|_| arrival != Arrival::Rebooted);
-                neighbor.payload = known.map_or(neighbor.payload, |known| known.payload);
-                self.keep(neighbor, frame.header, now, listener, out);
+                self.keep(Neighbor::from_beacon(id, &beacon, Q::ID, listener.heard_at), header, now, listener, out);
             }
-            Message::Request(request) if is_mine(request.to) => {
-                let answer = self.orders.receive(frame.header, &request, now);
-                self.say_early(&Message::Ack(answer.ack), out);
-                match request.kind {
-                    _ if !answer.is_new => {}
-                    RequestKind::Redirect => return Some(Received::Redirect(id)),
-                    RequestKind::Stop | RequestKind::Resume => return Some(Received::PassOn(request)),
-                }
+            Message::Law(Addressed { to, number, protocol, content }) if Q::Message::EXISTS && is_mine(to) => {
+                let message = Q::Message::decode(Q::ID, protocol, &content)?;
+                let is_new = self.incoming.receive(header, number, Q::subject(&message), now);
+                self.say_early(&Message::Ack(Ack { to: header.sender, boot: header.boot, number }), out);
+                return is_new.then_some(Received::Message(id, message));
             }
-            Message::Ack(ack) if is_mine(ack.to) => {
-                let _ = self.requests.acknowledged(sender, &ack);
+            Message::Broadcast(Broadcast { protocol, content }) if Q::Message::EXISTS => {
+                return Q::Message::decode(Q::ID, protocol, &content).map(|message| Received::Message(id, message));
             }
-            Message::Template(part) if is_mine(part.to) => {
-                let [_, commander, _] = &mut self.commanders;
-                let is_restarted = is_another(commander, frame.header);
-                return Some(Received::Template { part, is_restarted });
+            Message::Ack(ack) if Q::Message::EXISTS && is_mine(ack.to) => {
+                let _ = self.outgoing.acknowledged(header.sender, &ack);
             }
-            Message::Goal(goal) if is_mine(goal.to) || !goal.to.is_some() => {
-                let [commander, _, _] = &mut self.commanders;
-                if is_another(commander, frame.header) {
-                    self.goal.forget();
-                }
-                if self.goal.admit(goal.version) {
-                    return Some(Received::Goal(goal.target));
-                }
+            Message::Order(Addressed { to, number, protocol, content })
+                if Q::Order::EXISTS && (is_mine(to) || !to.is_some()) =>
+            {
+                let mut order = Q::Order::decode(Q::ID, protocol, &content)?;
+                let subject = Q::order_subject(&order);
+                let is_restarted = subject.is_none() && self.orders.is_restarted(header);
+                Q::received(&mut order, listener.heard_at, is_restarted);
+                let is_news = self.orders.is_news(header, number, subject);
+                return is_news.then_some(Received::Order(order, Receipt { header, number, subject }));
             }
-            Message::Waypoint(said) if is_mine(said.to) || !said.to.is_some() => {
-                let [_, _, commander] = &mut self.commanders;
-                if is_another(commander, frame.header) {
-                    self.waypoints = [Newest::new(); WAYPOINTS];
-                }
-                let newest = self.waypoints.get(usize::from(said.index))?;
-                if newest.is_news(said.version) {
-                    return Some(Received::Waypoint {
-                        index: said.index,
-                        version: said.version,
-                        waypoint: Waypoint {
-                            position: Position::from_mm(said.position_mm),
-                            velocity_mps: Vec3::from_milli(said.velocity_mmps.map(i32::from)),
-                            at: listener.heard_at,
-                        },
-                    });
-                }
-            }
-            Message::Land(patch) => return Some(Received::Land(id, patch)),
-            Message::Payload(bytes) if size_of::<P>() > 0 && arrival.is_latest() => self.table.tell(id, bytes.get()),
             Message::Lost(lost) if listener.fastest_mps.is_some() => self.hear_lost(&lost, now, listener, out),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
-                    self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
+                    let held = KeyHeld { to: header.sender, generation, phase };
+                    self.say_early(&Message::KeyHeld(held), out);
                 }
             }
             _ => {}
@@ -287,7 +258,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
 
     fn keep(
         &mut self,
-        mut neighbor: Neighbor<S, P>,
+        mut neighbor: Neighbor<S, Q::Payload>,
         header: Header,
         now: Instant,
         listener: &ReceiveContext<'_, S>,
@@ -316,75 +287,60 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         }
     }
 
-    /// One that was not accepted is reported again when it is repeated: it may be usable by then.
-    pub(super) fn placed(&mut self, index: u8, version: u8) {
-        if let Some(newest) = self.waypoints.get_mut(usize::from(index)) {
-            let _ = newest.admit(version);
+    /// An order that was not of use is reported again when it is repeated: it may be by then.
+    pub(super) fn followed(&mut self, Receipt { header, number, subject }: Receipt) {
+        if let Some(subject) = subject {
+            self.orders.note(header, number, subject);
         }
     }
 
-    /// Queues a request. It is dropped if the queue is full, because its cause will recur.
-    pub(super) fn ask(&mut self, to: RobotId, origin: RobotId, kind: RequestKind, valid: Duration, now: Instant) {
-        let millis = valid.as_micros().max(0).checked_div(1000).unwrap_or(0);
-        let millis = u16::try_from(millis).unwrap_or(u16::MAX);
-        let _ = self.requests.ask(to, origin, kind, millis, now);
+    /// Queues the messages of a law to single robots. One is dropped if the queue is full, because
+    /// its cause will recur.
+    pub(super) fn queue(&mut self, outgoing: &Outgoing, now: Instant) {
+        for Queued { to, subject, protocol, content, valid } in &outgoing.messages {
+            let _ = self.outgoing.send(*to, *subject, (*protocol, content), *valid, now);
+        }
     }
 
-    /// Queues the requests of a law and broadcasts its patch, after a decision.
-    pub(super) fn send(&mut self, outgoing: &Outgoing, valid: Duration, now: Instant, out: &mut Outputs<S>) {
-        for &(to, kind) in &outgoing.requests {
-            self.ask(to, self.header.sender, kind, valid, now);
-        }
-        if let Some(patch) = outgoing.patch {
-            self.say_early(&Message::Land(patch), out);
+    /// Queues the messages of a law and broadcasts one, after a decision.
+    pub(super) fn send(&mut self, outgoing: Outgoing, now: Instant, out: &mut Outputs<S>) {
+        self.queue(&outgoing, now);
+        if let Some((protocol, content)) = outgoing.broadcast {
+            self.say_early(&Message::Broadcast(Broadcast { protocol, content }), out);
         }
     }
 
     #[cfg(test)]
     pub(super) fn is_quiet(&self) -> bool {
-        self.requests.is_empty()
+        self.outgoing.is_empty()
     }
 
-    pub(super) fn is_stopped(&mut self, now: Instant) -> bool {
-        self.orders.is_stopped(now)
-    }
-
-    /// Sends due requests, the beacon if it is due, then the payload, a map patch and a lost robot
-    /// if they fit.
+    /// Sends due messages, the beacon if it is due, then a broadcast and a lost robot if they fit.
     pub(super) fn speak(
         &mut self,
         now: Instant,
-        period: Duration,
-        beacon: impl FnOnce() -> Beacon,
-        told: impl FnOnce(&mut Outgoing) -> P,
+        config: &AgentConfig<S>,
+        beacon: Beacon,
+        payload: impl FnOnce(&mut Radio<'_, Q>) -> Q::Payload,
         out: &mut Outputs<S>,
     ) {
-        // Polling twice per request always empties the list.
-        for _ in 0..2 * PENDING {
-            match self.requests.poll(now) {
-                Some(Due::Send(request)) => self.say_early(&Message::Request(request), out),
-                Some(Due::Expired(Request { to, kind, .. })) => {
-                    report(out, Event::RequestExpired { to, kind });
-                }
-                None => break,
-            }
+        if Q::Message::EXISTS {
+            self.resend(now, out);
         }
+        let period = config.beacon_period;
         if !self.has_sent || now.has_reached(self.beacon_due, period) {
-            let beacon = Message::Beacon(beacon());
+            let mut outgoing = Outgoing::default();
+            let payload = payload(&mut Radio::new(now, config.message_valid, &mut outgoing));
+            let (protocol, payload) = payload.encode::<MAX_PAYLOAD>(Q::ID).unwrap_or_default();
+            let beacon = Message::Beacon(Beacon { protocol, payload, ..beacon });
             self.said.note(self.header.sequence, &beacon);
             if self.say(&beacon, 0, out) == Err(EncodeError::Exhausted) {
                 report(out, Event::Muted);
             }
-            // Data that does not fit is sent again at its next turn.
-            let mut outgoing = Outgoing::default();
-            let payload = told(&mut outgoing);
-            if size_of::<P>() > 0
-                && let Some(bytes) = PayloadBytes::of(&payload)
-            {
-                let _ = self.say(&Message::Payload(bytes), 0, out);
-            }
-            if let Some(patch) = outgoing.patch {
-                let _ = self.say(&Message::Land(patch), 0, out);
+            self.queue(&outgoing, now);
+            // A broadcast that does not fit is lost, as one in the air.
+            if let Some((protocol, content)) = outgoing.broadcast {
+                let _ = self.say(&Message::Broadcast(Broadcast { protocol, content }), 0, out);
             }
             if let Some(lost) = self.lost_to_tell(now) {
                 let _ = self.say(&Message::Lost(lost), 0, out);
@@ -392,10 +348,19 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             self.has_sent = true;
             self.beacon_due = now + period;
         }
-        out.call_again = match self.requests.poll_at(now) {
-            Some(request_due) if request_due.is_before(self.beacon_due) => request_due,
-            _ => self.beacon_due,
-        };
+        let message_due = if Q::Message::EXISTS { self.outgoing.poll_at(now) } else { None };
+        out.call_again = message_due.filter(|due| due.is_before(self.beacon_due)).unwrap_or(self.beacon_due);
+    }
+
+    fn resend(&mut self, now: Instant, out: &mut Outputs<S>) {
+        // Polling twice per message always empties the list.
+        for _ in 0..2 * PENDING {
+            match self.outgoing.poll(now) {
+                Some(Due::Send(message)) => self.say_early(&Message::Law(message), out),
+                Some(Due::Expired(to)) => report(out, Event::MessageExpired(to)),
+                None => break,
+            }
+        }
     }
 
     fn say_early(&mut self, message: &Message, out: &mut Outputs<S>) {
@@ -416,40 +381,26 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 }
 
-/// Returns whether they changed.
-fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
-    let now = Some((header.sender, header.boot));
-    core::mem::replace(last, now) != now
-}
-
 pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
 }
 
-/// Lengths saturate, and NaN counts as 0.
+/// The kinematic part of a beacon. Lengths saturate, and NaN counts as 0.
 pub(super) fn beacon<S: Scalar>(
     config: &AgentConfig<S>,
-    (shown, heading): (Report, Dir),
     mode: Mode,
     state: &KinematicState<S>,
-    on_grid: CellState,
-    v: Vec3<S>,
-    now: Instant,
+    velocity_mps: Vec3<S>,
 ) -> Beacon {
     let milli = |value: S| value.to_milli().unwrap_or(0);
     let narrow = |value: S| milli(value).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-    let busy_ms = i64::from(on_grid.busy.as_micros().max(0)).checked_div(1000).unwrap_or(0);
+    let Vec3 { x, y, z } = velocity_mps;
     Beacon {
-        time: now,
         position_mm: state.position.mm,
-        velocity_mmps: [narrow(v.x), narrow(v.y), narrow(v.z)],
+        velocity_mmps: [narrow(x), narrow(y), narrow(z)],
         radius_mm: u16::try_from(milli(config.radius_m).max(0)).unwrap_or(u16::MAX),
-        cell: on_grid.cell,
-        heading,
-        busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
-        leader: shown.leader,
-        slot: if config.flock == 0 { shown.slot } else { config.flock },
         mode,
-        target: shown.target.unwrap_or_default(),
+        flock: config.flock,
+        ..Beacon::default()
     }
 }

@@ -1,6 +1,6 @@
 //! A robot makes way for a robot that it blocks in a narrow place.
 
-use super::View;
+use super::{Protocol, View};
 use super::goal_occupancy::SLOW;
 use crate::body::Body;
 use crate::geom::{Vec2, Vec3};
@@ -52,7 +52,7 @@ impl<S: Scalar> MakeWay<S> {
         Self { for_id: RobotId::NONE, times: 0, is_on: false, stood: (S::ZERO, S::ZERO), left: S::ZERO };
 
     /// Whether a robot is near and cannot be passed. O(nearby x obstacles).
-    pub(super) fn is_blocked<P>(input: &View<'_, S, P>, obstacles: &[Obstacle<S>]) -> bool {
+    pub(super) fn is_blocked<P: Protocol>(input: &View<'_, S, P>, obstacles: &[Obstacle<S>]) -> bool {
         let View { body, nearby, .. } = input;
         let is_near = |other: &&Nearby<S>| gap(body, other) < body.radius_m * S::from_milli(NEAR);
         nearby.iter().filter(is_near).any(|other| is_narrow(body, other, obstacles, S::ZERO))
@@ -60,7 +60,7 @@ impl<S: Scalar> MakeWay<S> {
 
     /// The direction to move to; `None` if no robot needs the place. `to_goal`: the offset of the
     /// next waypoint, metres. O(nearby x obstacles + obstacles^2).
-    pub(super) fn way<P>(
+    pub(super) fn way<P: Protocol>(
         &mut self,
         input: &View<'_, S, P>,
         obstacles: &[Obstacle<S>],

@@ -38,7 +38,7 @@
 //! let law = RouteGuidance::new(RouteParams::default());
 //! let mut agent = RouteAgent::new(&config, law, Unguarded, Postcard);
 //! let mut workspace = GridWorkspace::new();
-//! agent.order(GridOrder::Goal(Cell::new(9, 5)));
+//! agent.order(&GridOrder::Goal(Cell::new(9, 5)));
 //!
 //! // Sensors and radio report flat terrain and no other robot.
 //! let (land, mut cell, mut now) = ([1; 121], Cell::new(5, 5), Instant::from_micros(0));
@@ -77,7 +77,7 @@
 //! let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
 //! let safety = OrcaSafety::new(AvoidParams::default(), inflation);
 //! let mut agent = OrcaAgent::new(&config, WaypointGuidance::new(0.5, 0.02), safety, Postcard);
-//! agent.order(WaypointOrder::first(Waypoint::fixed(Position::from_mm([2000, 0, 0]))));
+//! agent.order(&WaypointOrder::first(Waypoint::fixed(Position::from_mm([2000, 0, 0]))));
 //!
 //! let (mut state, mut now) = (KinematicState::default(), Instant::from_micros(0));
 //! while agent.mode() != Mode::Arrived {
@@ -98,6 +98,7 @@
 //! ```
 
 mod any;
+mod assembly;
 mod cell_follower;
 mod config;
 mod contact_loss;
@@ -105,7 +106,7 @@ mod duplicate_id;
 mod flock_guidance;
 mod formation_guidance;
 mod goal_occupancy;
-mod grid_task;
+mod grid_protocol;
 mod guided;
 mod io;
 mod law;
@@ -132,24 +133,23 @@ mod waypoint_guidance;
 #[cfg(all(test, feature = "auth"))]
 mod tests;
 
-pub use any::{AnyHalfPlanes, AnyLaw, AnySafety, decide_as, order_as, receive_as};
+pub use any::{AnyHalfPlanes, AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySafety, Narrow, OfAnotherLaw, decide_as,
+    order_as, payload_as, receive_as};
+pub use assembly::{MAX_TEMPLATE, PartError, TEMPLATE_PART, TemplateAssembler, TemplatePart};
 pub use cell_follower::CellFollower;
 pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::{FormationGuidance, FormationInPlane};
-pub use grid_task::GridTask;
+pub use grid_protocol::{CellFrame, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask};
 pub use guided::{Guided, Wish};
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, KinematicState, OUTBOX, Outputs, Refused};
-pub use law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
+pub use law::{Action, BadInput, Decision, Known, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
 pub use parameter::parameters;
 pub use perception::{Perception, RadioOnly};
-pub use protocol::{
-    AnyOrder, AnyProtocol, Grid, GridMessage, GridOrder, LawMessage, LawOrder, Never, OfAnotherLaw, Outgoing, Protocol,
-    Radio, WaypointOrder, Waypoints,
-};
+pub use protocol::{Outgoing, Protocol, Radio, WaypointOrder, Waypoints};
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, SafetyInput, Unguarded};
 pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task};
@@ -165,7 +165,7 @@ use crate::grid::{Cell, Dir};
 use crate::robot::Mode;
 use crate::scalar::Scalar;
 use crate::supervisor::Situation;
-use crate::wire::{MAX_PAYLOAD, Postcard, Wire};
+use crate::wire::{Postcard, Wire};
 use link::Link;
 use serde::{Deserialize, Serialize};
 
@@ -221,7 +221,7 @@ pub struct Agent<S: Scalar, L: Law<S>, const N: usize, A = Unguarded, W = Postca
     law: L,
     safety: A,
     perception: P,
-    link: Link<S, N, W, PayloadOf<L, S>>,
+    link: Link<S, N, W, L::Protocol>,
     mode: Mode,
     /// Keys the random numbers of each decision.
     decisions: u32,
@@ -253,7 +253,6 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
     /// robots that its sensors detect.
     #[must_use]
     pub const fn with_perception(config: &AgentConfig<S>, law: L, safety: A, wire: W, perception: P) -> Self {
-        const { assert!(size_of::<PayloadOf<L, S>>() <= MAX_PAYLOAD, "the payload of a law does not fit a frame") };
         Self {
             config: *config,
             law,

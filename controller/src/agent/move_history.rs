@@ -1,13 +1,12 @@
 //! Shared by the laws on the grid: the last choice, requests to robots in the way, reachable goals.
 
 use super::law::View;
+use super::{Grid, GridNeighbor};
 use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
-use crate::neighbor::Neighbor;
 use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
 use crate::shuffle::{Sharpness, weighted_shuffle};
-use crate::wire::RequestKind;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -31,10 +30,8 @@ impl MoveHistory {
         self.choice
     }
 
-    /// Takes in a request; of use is only one to choose another direction.
-    pub(super) fn redirect_if(&mut self, kind: RequestKind) -> bool {
-        self.redirected |= kind == RequestKind::Redirect;
-        kind == RequestKind::Redirect
+    pub(super) const fn redirect(&mut self) {
+        self.redirected = true;
     }
 
     pub(super) fn take_redirection(&mut self) -> bool {
@@ -58,12 +55,12 @@ impl MoveHistory {
 
     /// Stores the choice. Returns a robot to redirect, which has been in the way for too long.
     /// `idle`: moves since the robot was nearest to its target.
-    pub(super) fn note<S>(&mut self, input: &View<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<RobotId> {
+    pub(super) fn note<S: Copy>(&mut self, input: &View<'_, S, Grid>, cell: Cell, choice: Dir, idle: u8) -> Option<RobotId> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
         self.cell = Some(cell);
         self.choice = choice;
-        let patience = |other: &Neighbor<S>| {
+        let patience = |other: &GridNeighbor| {
             if other.cell != cell {
                 return if other.mode == Mode::Arrived && idle > PATIENCE { 0 } else { PATIENCE };
             }
@@ -73,25 +70,25 @@ impl MoveHistory {
         };
         let wanted = cell + choice.offset();
         let to = occupant(input, wanted).or_else(|| occupant(input, cell))?;
-        if choice == Dir::Stay || self.attempts < patience(to) {
+        if choice == Dir::Stay || self.attempts < patience(&to) {
             return None;
         }
         self.attempts = 0;
-        Some(to.id)
+        to.is_peer.then_some(to.id)
     }
 }
 
 /// Removes diagonal moves out of `cell` that cross one of another robot: under way, or announced so
 /// recently that it may be under way. An announced move into an occupied cell has not begun.
-pub(super) fn avoid_crossing<S>(
+pub(super) fn avoid_crossing<S: Copy>(
     moves: &mut Vec<Dir, 8>,
-    input: &View<'_, S>,
+    input: &View<'_, S, Grid>,
     (window, norm): (&Window<'_>, Norm),
     cell: Cell,
 ) {
     // Beacons are a tick old.
     let now = input.now + input.tick;
-    for other in input.neighbors.iter().filter(|other| other.cell.chebyshev(cell) == 1) {
+    for other in input.on_grid().filter(|other| other.cell.chebyshev(cell) == 1) {
         let announced = other.cell + other.heading.offset();
         let class = window.get(announced).unwrap_or(BLOCKED);
         let length = i64::from(other.heading.length(norm)) * i64::from(class) * i64::from(input.tick.as_micros());
@@ -104,6 +101,6 @@ pub(super) fn avoid_crossing<S>(
     }
 }
 
-fn occupant<'a, S>(input: &View<'a, S>, cell: Cell) -> Option<&'a Neighbor<S>> {
-    input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
+fn occupant<S: Copy>(input: &View<'_, S, Grid>, cell: Cell) -> Option<GridNeighbor> {
+    input.on_grid().find(|neighbor| neighbor.cell == cell)
 }

@@ -1,167 +1,59 @@
 //! What robots with one law say to each other beyond where they are, and an operator to them.
 
 use super::Waypoint;
-use crate::grid::Cell;
-use crate::land::LandPatch;
+use crate::geom::{Position, Vec3};
 use crate::robot::RobotId;
-use crate::time::Instant;
-use crate::wire::{Payload, RequestKind, TemplateAssignment};
-use core::fmt::Debug;
+use crate::time::{Duration, Instant};
+use crate::wire::{Addressed, Bytes, Content, MAX_CONTENT, MAX_MESSAGE, Message, Never, ProtocolId};
 use core::marker::PhantomData;
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// The vocabulary of one or more laws. Laws that share a protocol understand each other.
 pub trait Protocol {
-    /// Sent after each beacon and received as [`Neighbor::payload`](crate::neighbor::Neighbor);
-    /// `()` for none, at no cost.
-    type Payload: Payload;
-    /// To one robot, acknowledged and resent, or to all, once.
-    type Message: LawMessage;
-    /// From the operator, by radio or by the firmware.
-    type Order: LawOrder;
+    /// Its number in each frame.
+    const ID: ProtocolId;
+    /// A part of each beacon, at most [`MAX_PAYLOAD`](crate::wire::MAX_PAYLOAD) bytes: a state
+    /// rather than a change, since receivers may get it late, repeatedly or never.
+    type Payload: Content + Copy + Default + Send + Sync;
+    /// To one robot, acknowledged and resent, at most [`MAX_MESSAGE`] bytes; or to all, once, at
+    /// most [`MAX_CONTENT`] bytes.
+    type Message: Content;
+    /// From the operator, by radio or by the firmware, at most
+    /// [`MAX_ORDER`](crate::wire::MAX_ORDER) bytes.
+    type Order: Content;
+
+    /// A newer message to the same robot about the same subject replaces an older one.
+    fn subject(_message: &Self::Message) -> u32 {
+        0
+    }
+
+    /// A newer order about the same subject replaces an older one, and repeats are recognised.
+    /// `None`: the law gets every copy.
+    fn order_subject(_order: &Self::Order) -> Option<u32> {
+        Some(0)
+    }
+
+    /// Completes an order that came by radio. `sent`: when, own clock. `is_restarted`: it has no
+    /// subject, and is by another operator than the last such order, or by one that restarted.
+    fn received(_order: &mut Self::Order, _sent: Instant, _is_restarted: bool) {}
+
+    /// Returns an order as a message to the robot `to`, or to all robots with [`RobotId::NONE`].
+    /// `number` is 1 higher for each new order about the subject, and the same in repeats. `None`
+    /// if the order has too many bytes.
+    #[must_use]
+    fn order(to: RobotId, number: u8, order: &Self::Order) -> Option<Message> {
+        let (protocol, content) = order.encode(Self::ID)?;
+        Some(Message::Order(Addressed { to, number, protocol, content }))
+    }
 }
 
 /// The protocol of a law that says nothing.
 impl Protocol for () {
+    const ID: ProtocolId = ProtocolId::NONE;
     type Payload = ();
     type Message = Never;
     type Order = Never;
-}
-
-/// No message and no order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Never {}
-
-/// A message as the frames of robots carry it.
-pub trait LawMessage: Clone + Debug {
-    /// From [`Message::Request`](crate::wire::Message) of the kind `Redirect`.
-    #[must_use]
-    fn redirect() -> Option<Self> {
-        None
-    }
-
-    /// From [`Message::Land`](crate::wire::Message).
-    #[must_use]
-    fn land(_patch: LandPatch) -> Option<Self> {
-        None
-    }
-
-    /// The request that carries the message.
-    fn request(&self) -> Option<RequestKind> {
-        None
-    }
-
-    /// The patch that carries the message.
-    fn patch(&self) -> Option<&LandPatch> {
-        None
-    }
-}
-
-/// An order as frames and the host's tasks carry it.
-pub trait LawOrder: Clone + Debug {
-    /// A goal for this robot alone.
-    #[must_use]
-    fn goal(_goal: Cell) -> Option<Self> {
-        None
-    }
-
-    /// A goal for the top leader of the formation; this robot heads for its own place beside it.
-    #[must_use]
-    fn formation_goal(_goal: Cell) -> Option<Self> {
-        None
-    }
-
-    /// A part of a template; `is_restarted`: its sender changed or restarted.
-    #[must_use]
-    fn template(_part: &TemplateAssignment, _is_restarted: bool) -> Option<Self> {
-        None
-    }
-
-    /// Waypoint `index`.
-    #[must_use]
-    fn waypoint(_index: u8, _waypoint: Waypoint<f32>) -> Option<Self> {
-        None
-    }
-}
-
-impl LawMessage for Never {}
-impl LawOrder for Never {}
-
-/// The protocol of the laws that plan on the grid.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Grid {}
-
-impl Protocol for Grid {
-    type Payload = ();
-    type Message = GridMessage;
-    type Order = GridOrder;
-}
-
-/// A message between robots that plan on the grid (A. V. Kuznetsov 2017, KUZ, section 7).
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum GridMessage {
-    /// A request. `Stop` and `Resume` reach the agent, which stops every robot that leads.
-    Request(RequestKind),
-    /// A patch of the sender's map, to all.
-    Land(LandPatch),
-}
-
-impl LawMessage for GridMessage {
-    fn redirect() -> Option<Self> {
-        Some(Self::Request(RequestKind::Redirect))
-    }
-
-    fn land(patch: LandPatch) -> Option<Self> {
-        Some(Self::Land(patch))
-    }
-
-    fn request(&self) -> Option<RequestKind> {
-        match self {
-            Self::Request(kind) => Some(*kind),
-            Self::Land(_) => None,
-        }
-    }
-
-    fn patch(&self) -> Option<&LandPatch> {
-        match self {
-            Self::Land(patch) => Some(patch),
-            Self::Request(_) => None,
-        }
-    }
-}
-
-/// An order to a robot that plans on the grid.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum GridOrder {
-    /// Go to this cell, regardless of the place in a formation.
-    Goal(Cell),
-    /// The top leader of the formation goes to this cell, each other robot to its place beside it.
-    FormationGoal(Cell),
-    /// A part of the formation's template.
-    Template {
-        /// The part.
-        part: TemplateAssignment,
-        /// The sender changed or restarted, so its version numbers start anywhere.
-        is_restarted: bool,
-    },
-}
-
-impl LawOrder for GridOrder {
-    fn goal(goal: Cell) -> Option<Self> {
-        Some(Self::Goal(goal))
-    }
-
-    fn formation_goal(goal: Cell) -> Option<Self> {
-        Some(Self::FormationGoal(goal))
-    }
-
-    fn template(part: &TemplateAssignment, is_restarted: bool) -> Option<Self> {
-        Some(Self::Template { part: part.clone(), is_restarted })
-    }
 }
 
 /// The protocol of the laws with waypoints.
@@ -170,20 +62,32 @@ impl LawOrder for GridOrder {
 pub enum Waypoints {}
 
 impl Protocol for Waypoints {
+    const ID: ProtocolId = ProtocolId(2);
     type Payload = ();
     type Message = Never;
     type Order = WaypointOrder;
+
+    fn order_subject(order: &WaypointOrder) -> Option<u32> {
+        Some(order.index.into())
+    }
+
+    fn received(order: &mut WaypointOrder, sent: Instant, _: bool) {
+        order.waypoint.at = sent;
+    }
 }
 
 /// Sets a waypoint.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WaypointOrder {
     /// Its number, below [`WAYPOINTS`](super::WAYPOINTS).
     pub index: u8,
     /// The waypoint.
+    #[serde(with = "on_air")]
     pub waypoint: Waypoint<f32>,
 }
+
+impl Content for WaypointOrder {}
 
 impl WaypointOrder {
     /// Waypoint 0: the start of a new course.
@@ -193,106 +97,65 @@ impl WaypointOrder {
     }
 }
 
-impl LawOrder for WaypointOrder {
-    fn waypoint(index: u8, waypoint: Waypoint<f32>) -> Option<Self> {
-        Some(Self { index, waypoint })
-    }
-}
+/// A waypoint in 18 bytes: millimetres and millimetres per second, when the frame was sent.
+mod on_air {
+    use super::{Instant, Position, Vec3, Waypoint};
+    use crate::fixint::Fixed;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// The protocol of an enum of built-in laws.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum AnyProtocol {}
-
-impl Protocol for AnyProtocol {
-    type Payload = ();
-    type Message = GridMessage;
-    type Order = AnyOrder;
-}
-
-/// An order to a law that is chosen at run time.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(missing_docs, reason = "each variant's type says it")]
-pub enum AnyOrder {
-    Grid(GridOrder),
-    Waypoint(WaypointOrder),
-}
-
-impl LawOrder for AnyOrder {
-    fn goal(goal: Cell) -> Option<Self> {
-        GridOrder::goal(goal).map(Self::Grid)
+    pub(super) fn serialize<Z: Serializer>(waypoint: &Waypoint<f32>, to: Z) -> Result<Z::Ok, Z::Error> {
+        let Vec3 { x, y, z } = waypoint.velocity_mps;
+        let milli = |mps: f32| crate::scalar::Scalar::to_milli(mps).unwrap_or(0);
+        let velocity_mmps = [x, y, z].map(|mps| milli(mps).clamp(i16::MIN.into(), i16::MAX.into()) as i16);
+        (waypoint.position.mm.to_bytes(), velocity_mmps.to_bytes()).serialize(to)
     }
 
-    fn formation_goal(goal: Cell) -> Option<Self> {
-        GridOrder::formation_goal(goal).map(Self::Grid)
-    }
-
-    fn template(part: &TemplateAssignment, is_restarted: bool) -> Option<Self> {
-        GridOrder::template(part, is_restarted).map(Self::Grid)
-    }
-
-    fn waypoint(index: u8, waypoint: Waypoint<f32>) -> Option<Self> {
-        WaypointOrder::waypoint(index, waypoint).map(Self::Waypoint)
-    }
-}
-
-/// An order for another law, or a message for one that takes none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct OfAnotherLaw;
-
-impl TryFrom<AnyOrder> for GridOrder {
-    type Error = OfAnotherLaw;
-    fn try_from(order: AnyOrder) -> Result<Self, OfAnotherLaw> {
-        if let AnyOrder::Grid(order) = order { Ok(order) } else { Err(OfAnotherLaw) }
-    }
-}
-
-impl TryFrom<AnyOrder> for WaypointOrder {
-    type Error = OfAnotherLaw;
-    fn try_from(order: AnyOrder) -> Result<Self, OfAnotherLaw> {
-        if let AnyOrder::Waypoint(order) = order { Ok(order) } else { Err(OfAnotherLaw) }
-    }
-}
-
-impl TryFrom<AnyOrder> for Never {
-    type Error = OfAnotherLaw;
-    fn try_from(_: AnyOrder) -> Result<Self, OfAnotherLaw> {
-        Err(OfAnotherLaw)
-    }
-}
-
-impl TryFrom<GridMessage> for Never {
-    type Error = OfAnotherLaw;
-    fn try_from(_: GridMessage) -> Result<Self, OfAnotherLaw> {
-        Err(OfAnotherLaw)
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Waypoint<f32>, D::Error> {
+        let (mm, mmps) = Deserialize::deserialize(from)?;
+        let mmps = <[i16; 3]>::from_bytes(mmps);
+        Ok(Waypoint {
+            position: Position::from_mm(Fixed::from_bytes(mm)),
+            velocity_mps: Vec3::from_milli(mmps.map(i32::from)),
+            at: Instant::from_micros(0),
+        })
     }
 }
 
 /// Messages that a law can send to single robots in one step.
-const MESSAGES: usize = 3;
+const MESSAGES: usize = 4;
+
+#[derive(Clone, Debug)]
+pub(super) struct Queued {
+    pub(super) to: RobotId,
+    pub(super) subject: u32,
+    pub(super) protocol: ProtocolId,
+    pub(super) content: Bytes<MAX_MESSAGE>,
+    pub(super) valid: Duration,
+}
 
 /// The messages of a law that the agent will send.
 #[derive(Clone, Debug, Default)]
 pub struct Outgoing {
-    pub(super) requests: Vec<(RobotId, RequestKind), MESSAGES>,
-    pub(super) patch: Option<LandPatch>,
+    pub(super) messages: Vec<Queued, MESSAGES>,
+    pub(super) broadcast: Option<(ProtocolId, Bytes<MAX_CONTENT>)>,
+    decides_anew: bool,
 }
 
-/// Sends messages `M` of a law.
+/// Sends messages of protocol `P`.
 #[derive(Debug)]
-pub struct Radio<'t, M> {
+pub struct Radio<'t, P> {
     now: Instant,
     outgoing: &'t mut Outgoing,
-    messages: PhantomData<fn(M)>,
+    /// How long requests hold, [`AgentConfig::message_valid`](super::AgentConfig).
+    pub valid: Duration,
+    protocol: PhantomData<fn(P)>,
 }
 
-impl<'t, M> Radio<'t, M> {
+impl<'t, P> Radio<'t, P> {
     /// Collects messages in `outgoing`; `now` is the time of the step. For tests of laws.
     #[must_use]
-    pub const fn new(now: Instant, outgoing: &'t mut Outgoing) -> Self {
-        Self { now, outgoing, messages: PhantomData }
+    pub const fn new(now: Instant, valid: Duration, outgoing: &'t mut Outgoing) -> Self {
+        Self { now, outgoing, valid, protocol: PhantomData }
     }
 
     /// Time of the step.
@@ -301,27 +164,43 @@ impl<'t, M> Radio<'t, M> {
         self.now
     }
 
-    /// The same radio for a law inside another one.
-    pub const fn of<T>(&mut self) -> Radio<'_, T> {
-        Radio { now: self.now, outgoing: self.outgoing, messages: PhantomData }
+    /// Makes a [`CellFollower`](super::CellFollower) decide at once rather than in the next cell.
+    pub const fn decide_anew(&mut self) {
+        self.outgoing.decides_anew = true;
     }
 
-    /// Takes requests of this kind back.
-    pub(super) fn retract(&mut self, kind: RequestKind) {
-        self.outgoing.requests.retain(|(_, other)| *other != kind);
+    /// Whether the law inside must decide anew.
+    pub(super) fn takes_anew(&mut self) -> bool {
+        core::mem::take(&mut self.outgoing.decides_anew)
+    }
+
+    /// The same radio for a law inside another one.
+    pub const fn of<T>(&mut self) -> Radio<'_, T> {
+        Radio { now: self.now, outgoing: self.outgoing, valid: self.valid, protocol: PhantomData }
     }
 }
 
-impl<M: LawMessage> Radio<'_, M> {
-    /// Sends a message to one robot, again until it is acknowledged or expires. Returns whether
-    /// there is room for it.
-    pub fn send(&mut self, to: RobotId, message: &M) -> bool {
-        let request = message.request();
-        request.is_some_and(|kind| self.outgoing.requests.push((to, kind)).is_ok())
+impl<P: Protocol> Radio<'_, P> {
+    /// Sends a message to one robot, again until it is acknowledged, for `valid` at most; then the
+    /// agent reports [`MessageExpired`](super::Event::MessageExpired). A message about the same
+    /// subject to the same robot is replaced. Returns whether there is room for it: it has at most
+    /// [`MAX_MESSAGE`] bytes, and in one step a law sends at most four.
+    pub fn send(&mut self, to: RobotId, message: &P::Message, valid: Duration) -> bool {
+        let Some((protocol, content)) = message.encode(P::ID) else { return false };
+        let queued = Queued { to, subject: P::subject(message), protocol, content, valid };
+        self.outgoing.messages.push(queued).is_ok()
     }
 
     /// Sends a message to all, once, if it fits the frames of this step.
-    pub fn broadcast(&mut self, message: &M) {
-        self.outgoing.patch = message.patch().cloned();
+    pub fn broadcast(&mut self, message: &P::Message) {
+        self.outgoing.broadcast = message.encode(P::ID);
+    }
+
+    /// Takes back the messages to single robots of this step that `stays` returns false for.
+    pub(super) fn retain(&mut self, stays: impl Fn(&P::Message) -> bool) {
+        self.outgoing.messages.retain(|queued| {
+            let message = P::Message::decode(P::ID, queued.protocol, &queued.content);
+            message.is_none_or(|message| stays(&message))
+        });
     }
 }

@@ -1,9 +1,8 @@
 //! Routing of a single robot to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
-use super::grid_task::GridTask;
 use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{MoveHistory, avoid_crossing};
-use super::protocol::{Grid, GridMessage, GridOrder, Radio};
+use super::{Grid, GridMessage, GridOrder, GridPayload, GridTask, Radio};
 use super::{FarMap, OnGrid};
 use crate::cost::{Gain, Weights};
 use crate::grid::{Cell, Dir, Window};
@@ -14,7 +13,6 @@ use crate::robot::RobotId;
 use crate::route::{CostField, Replan, RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
-use crate::wire::RequestKind;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -106,9 +104,9 @@ impl<const CELLS: usize, const M: usize, const L: usize, H> RouteGuidance<CELLS,
         self
     }
 
-    fn moves<S>(
+    fn moves<S: Copy>(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         window: &Window<'_>,
         (cell, target): (Cell, Cell),
         is_redirected: bool,
@@ -120,7 +118,7 @@ impl<const CELLS: usize, const M: usize, const L: usize, H> RouteGuidance<CELLS,
     {
         let params = &self.params;
         let field = &mut workspace.field;
-        let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
+        let others = input.on_grid().map(|neighbor| neighbor.cell);
         if self.replan == Replan::UntilChanged && !is_redirected {
             let dir = self.router.follow(params, field, window, cell, target, others).ok()?;
             return Some(list::collect([dir]));
@@ -152,7 +150,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> L
 
     fn decide(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         here: &OnGrid<'_>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -175,30 +173,33 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> L
         let choice = moves.first().copied().unwrap_or_default();
         let idle = if makes_way { u8::MAX } else { self.router.idle() };
         if let Some(blocker) = self.travel.note(input, cell, choice, idle) {
-            radio.send(blocker, &GridMessage::Request(RequestKind::Redirect));
+            radio.send(blocker, &GridMessage::Redirect, radio.valid);
         }
         Ok(Decision { action: Action::Moves(moves), status })
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
+    fn payload(&mut self, here: &OnGrid<'_>, heading: Dir, radio: &mut Radio<'_, Grid>) -> GridPayload {
         if let Some(patch) = self.map.say(radio.now()) {
             radio.broadcast(&GridMessage::Land(patch));
         }
+        self.task.payload(here, heading)
     }
 
-    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
+    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
+        self.task.receive(from, message, radio);
         match message {
-            GridMessage::Request(kind) => self.travel.redirect_if(kind),
-            GridMessage::Land(patch) => self.map.hear(&patch),
+            GridMessage::Redirect => self.travel.redirect(),
+            GridMessage::Land(patch) => self.map.hear(patch),
+            GridMessage::Stop { .. } | GridMessage::Resume { .. } => {}
         }
     }
 
-    fn order(&mut self, order: GridOrder) -> bool {
-        self.task.order(&order, Cell::default())
+    fn order(&mut self, order: &GridOrder) -> bool {
+        self.task.order(order, Cell::default())
     }
 
     fn report(&self) -> Report {
-        self.task.shown
+        self.task.report()
     }
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {

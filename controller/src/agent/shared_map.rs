@@ -15,10 +15,8 @@ pub trait FarMap {
         None
     }
 
-    /// Merges a patch of another robot's map. Returns whether there is a map.
-    fn hear(&mut self, _patch: &LandPatch) -> bool {
-        false
-    }
+    /// Merges a patch of another robot's map.
+    fn hear(&mut self, _patch: &LandPatch) {}
 
     /// Returns the patch to send after a beacon.
     fn say(&mut self, _now: Instant) -> Option<LandPatch> {
@@ -95,9 +93,8 @@ impl<const T: usize> FarMap for SharedMap<T> {
         (self.progress.idle <= self.progress.patience).then_some(&self.land as &dyn FarLand)
     }
 
-    fn hear(&mut self, patch: &LandPatch) -> bool {
+    fn hear(&mut self, patch: &LandPatch) {
         self.land.hear(patch);
-        true
     }
 
     fn say(&mut self, now: Instant) -> Option<LandPatch> {
@@ -119,8 +116,10 @@ impl<H: FarMap> FarMap for Option<alloc::boxed::Box<H>> {
         self.as_ref()?.land()
     }
 
-    fn hear(&mut self, patch: &LandPatch) -> bool {
-        self.as_mut().is_some_and(|map| map.hear(patch))
+    fn hear(&mut self, patch: &LandPatch) {
+        if let Some(map) = self {
+            map.hear(patch);
+        }
     }
 
     fn say(&mut self, now: Instant) -> Option<LandPatch> {

@@ -3,17 +3,18 @@
 use super::contact_loss::ContactState;
 use super::link::{ReceiveContext, Received, beacon, report};
 use super::wait::is_hindered;
+use super::grid_protocol::is_over;
+use super::protocol::{Outgoing, Radio};
 use super::{
-    Action, Agent, CellState, Command, Decision, Event, Inputs, KinematicState, Last, Law, LawMessage, LawOrder,
-    MessageOf, OrderOf, Outgoing, Outputs, Perception, Radio, Report, Safety, SafetyInput, Surroundings, Tools, View,
-    Wait,
+    Action, Agent, Command, Decision, Event, Inputs, KinematicState, Last, Law, OrderOf, Outputs, Perception, Report,
+    Safety, SafetyInput, Surroundings, Tools, View, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::neighbor::{GapLimit, Nearby, add_lost, nearest};
 use crate::rand::Rng;
-use crate::robot::{Mode, RobotId};
+use crate::robot::Mode;
 use crate::scalar::Scalar;
 use crate::supervisor::{moves, next_mode};
 use crate::time::{Duration, Instant};
@@ -112,7 +113,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let body = self.body(inputs);
         let Self { config, law, safety, link, last, .. } = self;
         let leader = law.report().leader;
-        let mut pass_on = Vec::<_, 4>::new();
+        let mut outgoing = Outgoing::default();
         let heard_at = now - config.latency;
         // Only a safety layer that tracks silent neighbours needs their last positions.
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
@@ -140,36 +141,23 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             };
             match link.hear(bytes, now, &listener, out) {
                 None => {}
-                Some(Received::Redirect(from)) => receive(law, from, MessageOf::<L, S>::redirect()),
-                Some(Received::Land(from, patch)) => receive(law, from, MessageOf::<L, S>::land(patch)),
-                Some(Received::Goal(goal)) => {
-                    let _ = order(law, last, OrderOf::<L, S>::formation_goal(goal));
+                Some(Received::Message(from, message)) => {
+                    law.receive(from, &message, &mut Radio::new(now, config.message_valid, &mut outgoing));
                 }
-                Some(Received::Template { part, is_restarted }) => {
-                    let _ = order(law, last, OrderOf::<L, S>::template(&part, is_restarted));
-                }
-                Some(Received::Waypoint { index, version, waypoint }) => {
-                    let is_of_use = order(law, last, OrderOf::<L, S>::waypoint(index, waypoint));
-                    if is_of_use {
-                        link.placed(index, version);
+                Some(Received::Order(given, receipt)) => {
+                    if order(law, last, &given) {
+                        link.followed(receipt);
                     }
                 }
-                // Lost beyond the capacity: stops are requested again, and old ones expire.
-                Some(Received::PassOn(request)) => drop(pass_on.push(request)),
             }
         }
-        // At the end, when requests acknowledged in this step have freed their entries.
-        for request in &pass_on {
-            if leader.is_some() && leader != request.origin {
-                let valid = Duration::from_millis(request.valid_ms.into());
-                link.ask(leader, request.origin, request.kind, valid, now);
-            }
-        }
+        // At the end, when messages acknowledged in this step have freed their entries.
+        link.queue(&outgoing, now);
     }
 
     /// Gives the law an order. Returns whether it was of use.
-    pub fn order(&mut self, given: OrderOf<L, S>) -> bool {
-        order(&mut self.law, &mut self.last, Some(given))
+    pub fn order(&mut self, given: &OrderOf<L, S>) -> bool {
+        order(&mut self.law, &mut self.last, given)
     }
 
     #[inline(never)]
@@ -182,8 +170,6 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         workspace: &mut L::Workspace,
         out: &mut Outputs<S>,
     ) -> Option<Decision<S>> {
-        // Queried in each step, so that its 32-bit clock cannot wrap unnoticed.
-        let is_stopped = self.link.is_stopped(now);
         let on_grid = inputs.surroundings.on_grid();
         if on_grid.is_some_and(|grid| grid.cell.busy > Duration::ZERO) {
             return None;
@@ -197,13 +183,13 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             lag_s: self.config.lag_s,
             body: self.body(inputs),
             nearby,
-            neighbors: self.link.table.as_slice(),
             ages: self.config.ages,
-            is_stopped,
             sent_to: None,
+            cells: inputs.surroundings.cell_frame(inputs.state.position),
+            known: &self.link.table.as_slice(),
         };
         let mut outgoing = Outgoing::default();
-        let tools = Tools { rng, radio: Radio::new(now, &mut outgoing), workspace };
+        let tools = Tools { rng, radio: Radio::new(now, self.config.message_valid, &mut outgoing), workspace };
         let target = self.law.report().target;
         let decision = self.law.decide(&view, &inputs.surroundings, tools);
         let situation = &mut self.last.situation;
@@ -215,7 +201,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         self.decisions = self.decisions.wrapping_add(1);
         situation.has_fault = decision.is_err();
         let decision = decision.ok()?;
-        self.link.send(&outgoing, self.config.stop_valid, now, out);
+        self.link.send(outgoing, now, out);
         let shown = self.law.report();
         if let Report { goal: Some(from), target: Some(to), .. } = shown
             && from != to
@@ -227,14 +213,14 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         if status.is_stuck && !situation.is_stuck {
             report(out, Event::NoRoute);
         }
-        let leads = !shown.leader.is_some();
+        let is_stopped = !shown.leader.is_some() && shown.stopped_until.is_some_and(|until| !is_over(until, now));
         situation.is_passive = matches!(decision.action, Action::Release);
         situation.is_at_goal = status.is_at_goal;
         situation.is_stuck = status.is_stuck;
         situation.is_off_place = status.is_off_place;
         let (is_left, stays) = (self.is_left(), matches!(status.waits_for, Some(wait) if wait != Wait::GoalTaken));
         let situation = &mut self.last.situation;
-        situation.is_stopped = stays || is_left || (leads && is_stopped && !status.recovers);
+        situation.is_stopped = stays || is_left || (is_stopped && !status.recovers);
         Some(decision)
     }
 
@@ -358,13 +344,10 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             Command::Velocity(velocity_mps) => velocity_mps,
             Command::Hold | Command::Move(_) => inputs.state.velocity_mps,
         };
-        let on_grid = inputs.surroundings.on_grid();
-        let on_grid = on_grid.map_or_else(CellState::default, |grid| grid.cell);
-        let shown = (law.report(), last.heading);
-        let beacon = || beacon(config, shown, mode, &inputs.state, on_grid, velocity_mps, now);
-        let told = |outgoing: &mut Outgoing| law.payload(&mut Radio::new(now, outgoing));
-        self.link.speak(now, config.beacon_period, beacon, told, out);
-        let busy = on_grid.busy;
+        let heading = last.heading;
+        let payload = |radio: &mut Radio<'_, L::Protocol>| law.payload(&inputs.surroundings, heading, radio);
+        self.link.speak(now, config, beacon(config, mode, &inputs.state, velocity_mps), payload, out);
+        let busy = inputs.surroundings.on_grid().map_or(Duration::ZERO, |grid| grid.cell.busy);
         let decision = now + if busy > Duration::ZERO { busy } else { config.tick };
         if decision.is_before(out.call_again) {
             out.call_again = decision;
@@ -372,14 +355,8 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
     }
 }
 
-fn receive<S: Scalar, L: Law<S>>(law: &mut L, from: RobotId, message: Option<MessageOf<L, S>>) {
-    if let Some(message) = message {
-        let _ = law.receive(from, message);
-    }
-}
-
-fn order<S: Scalar, L: Law<S>>(law: &mut L, last: &mut Last, order: Option<OrderOf<L, S>>) -> bool {
-    let is_of_use = order.is_some_and(|order| law.order(order));
+fn order<S: Scalar, L: Law<S>>(law: &mut L, last: &mut Last, order: &OrderOf<L, S>) -> bool {
+    let is_of_use = law.order(order);
     if is_of_use {
         // At once, even if it decides only after it has crossed its cell.
         last.situation.has_goal |= law.report().goal.is_some();

@@ -1,7 +1,7 @@
 //! The surroundings of a robot in a step, as each guidance law needs them.
 
-use super::BadInput;
-use crate::geom::Vec2;
+use super::{BadInput, CellFrame};
+use crate::geom::{Position, Vec2};
 use crate::grid::{Cell, Window};
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
@@ -87,16 +87,24 @@ pub enum AnySurroundings<'a, S> {
 pub trait Surroundings<S>: Copy + Debug {
     /// Whether there may be a part in the plane or in space.
     const HAS_PLANE: bool;
+    /// Whether there may be a part on the grid.
+    const HAS_GRID: bool;
 
     /// Returns the part on the grid, if any.
     fn on_grid(&self) -> Option<OnGrid<'_>>;
 
     /// Returns the part in the plane or in space; `None` for a robot that moves cell by cell.
     fn in_plane(&self) -> Option<InPlane<'_, S>>;
+
+    /// Where the cells lie, for a robot at a world position; `None` without both parts.
+    fn cell_frame(&self, _own: Position) -> Option<CellFrame> {
+        None
+    }
 }
 
 impl<S: Scalar> Surroundings<S> for OnGrid<'_> {
     const HAS_PLANE: bool = false;
+    const HAS_GRID: bool = true;
 
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         Some(*self)
@@ -109,6 +117,7 @@ impl<S: Scalar> Surroundings<S> for OnGrid<'_> {
 
 impl<S: Scalar> Surroundings<S> for InPlane<'_, S> {
     const HAS_PLANE: bool = true;
+    const HAS_GRID: bool = false;
 
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         None
@@ -121,6 +130,7 @@ impl<S: Scalar> Surroundings<S> for InPlane<'_, S> {
 
 impl<S: Scalar> Surroundings<S> for InCells<'_, S> {
     const HAS_PLANE: bool = true;
+    const HAS_GRID: bool = true;
 
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         Some(self.grid)
@@ -129,10 +139,18 @@ impl<S: Scalar> Surroundings<S> for InCells<'_, S> {
     fn in_plane(&self) -> Option<InPlane<'_, S>> {
         Some(self.plane)
     }
+
+    fn cell_frame(&self, own: Position) -> Option<CellFrame> {
+        let InCell { offset_m, cell_m } = self.in_cell;
+        let center = own.moved(-offset_m.extend(S::ZERO))?;
+        let cell_mm = cell_m.to_milli().filter(|side| *side > 0)?;
+        Some(CellFrame { cell: self.grid.cell.cell, center, cell_mm })
+    }
 }
 
 impl<S: Scalar> Surroundings<S> for AnySurroundings<'_, S> {
     const HAS_PLANE: bool = true;
+    const HAS_GRID: bool = true;
 
     fn on_grid(&self) -> Option<OnGrid<'_>> {
         match self {
@@ -146,6 +164,10 @@ impl<S: Scalar> Surroundings<S> for AnySurroundings<'_, S> {
             Self::InPlane(plane) | Self::InCells(InCells { plane, .. }) => Some(*plane),
             Self::OnGrid(_) => None,
         }
+    }
+
+    fn cell_frame(&self, own: Position) -> Option<CellFrame> {
+        if let Self::InCells(cells) = self { cells.cell_frame(own) } else { None }
     }
 }
 

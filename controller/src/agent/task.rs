@@ -1,6 +1,6 @@
 //! Assigns a host's task to an agent.
 
-use super::{Agent, Law, LawOrder as _, OrderOf, Perception, Safety, Task};
+use super::{Agent, AnyOrder, GridOrder, Law, OrderOf, Perception, Safety, Task, WaypointOrder};
 use crate::scalar::Scalar;
 use crate::wire::Wire;
 
@@ -22,13 +22,16 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
     ///
     /// # Errors
     /// [`WrongTask`] if the law cannot perform all of it.
-    pub fn assign(&mut self, task: &Task) -> Result<(), WrongTask> {
-        let mut give = |order: Option<OrderOf<L, S>>| order.is_some_and(|order| self.order(order));
+    pub fn assign(&mut self, task: &Task) -> Result<(), WrongTask>
+    where
+        OrderOf<L, S>: TryFrom<AnyOrder>,
+    {
+        let mut give = |order: AnyOrder| order.try_into().is_ok_and(|order| self.order(&order));
         let is_of_use = match task {
-            Task::Cell(goal) => give(OrderOf::<L, S>::goal(*goal)),
+            Task::Cell(goal) => give(AnyOrder::Grid(GridOrder::Goal(*goal))),
             Task::Waypoints(waypoints) => waypoints
                 .iter()
-                .map(|(index, waypoint)| give(OrderOf::<L, S>::waypoint(*index, *waypoint)))
+                .map(|&(index, waypoint)| give(AnyOrder::Waypoint(WaypointOrder { index, waypoint })))
                 .fold(true, |all, one| all & one),
         };
         is_of_use.then_some(()).ok_or(WrongTask)

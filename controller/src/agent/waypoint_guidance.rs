@@ -3,7 +3,7 @@
 use super::goal_occupancy::{Claim, GoalOccupancy};
 use super::law::{Action, BadInput, Decision, Law, Status, Tools, View};
 use super::make_way::MakeWay;
-use super::protocol::{WaypointOrder, Waypoints};
+use super::protocol::{Protocol, WaypointOrder, Waypoints};
 use super::{InPlane, WAYPOINTS, Wait, Waypoint};
 use crate::geom::{Vec2, Vec3};
 use crate::parameters::{Parameters, SPEED, TOLERANCE};
@@ -50,7 +50,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     }
 
     /// Offset, metres, and velocity of the current waypoint. Advances when one is passed.
-    fn next<P>(&mut self, view: &View<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
+    fn next<P: Protocol>(&mut self, view: &View<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
         let passed_m = self.tolerance_m.max(view.body.radius_m * S::from_i32(PASSED_RADII));
         let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));
         let mut waypoint = ahead.next()?;
@@ -67,7 +67,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     }
 
     /// Heads for the waypoint before again, if other robots pushed this one far away from it.
-    fn goes_back<P>(&mut self, view: &View<'_, S, P>, makes_way: bool) {
+    fn goes_back<P: Protocol>(&mut self, view: &View<'_, S, P>, makes_way: bool) {
         let View { state, now, body, .. } = view;
         let mut way = |leg: u8| Some(self.course.get_mut(usize::from(leg))?.way(state.position, *now));
         let before = self.leg.saturating_sub(1);
@@ -91,7 +91,7 @@ impl<S: Scalar> WaypointGuidance<S> {
         legs.fold(distance, |sum, leg| sum + leg)
     }
 
-    pub(super) fn head<P>(&mut self, view: &View<'_, S, P>) -> Result<Decision<S>, BadInput> {
+    pub(super) fn head<P: Protocol>(&mut self, view: &View<'_, S, P>) -> Result<Decision<S>, BadInput> {
         view.can_move()?;
         let (way, velocity_mps) = self.next(view).ok_or(BadInput)?;
         let from_body = way + view.ahead_m;
@@ -144,7 +144,7 @@ impl<S: Scalar> Law<S> for WaypointGuidance<S> {
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        view: &View<'_, S, Waypoints>,
         here: &InPlane<'_, S>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -169,7 +169,7 @@ impl<S: Scalar> Law<S> for WaypointGuidance<S> {
         Ok(decision)
     }
 
-    fn order(&mut self, WaypointOrder { index, waypoint }: WaypointOrder) -> bool {
+    fn order(&mut self, &WaypointOrder { index, waypoint }: &WaypointOrder) -> bool {
         let waypoint = waypoint.cast();
         if index == 0 {
             self.begin(&waypoint);

@@ -7,7 +7,6 @@
 
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
-use crate::grid::{Cell, Dir};
 use crate::list::sink_last;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
@@ -48,32 +47,22 @@ pub struct Neighbor<S, P = ()> {
     pub id: RobotId,
     /// When the state was received, own clock.
     pub heard: Instant,
-    /// When it is free to leave its cell, own clock (A. V. Kuznetsov 2017, KUZ, eq. 6).
-    pub busy_until: Instant,
     /// World position at the time `heard`.
     pub position: Position,
     /// World velocity at the time `heard`, m/s.
     pub velocity_mps: Vec3<S>,
     /// Radius of the ball around its body, metres.
     pub radius_m: S,
-    /// The cell that it occupies.
-    pub cell: Cell,
-    /// The cell of its goal.
-    pub target: Cell,
-    /// Its leader, or [`RobotId::NONE`].
-    pub leader: RobotId,
-    /// The move that it intends next.
-    pub heading: Dir,
-    /// Its place in the formation, or its flock.
-    pub slot: u8,
+    /// The number of its flock.
+    pub flock: u8,
     /// The mode that it last reported.
     pub mode: Mode,
     /// How its last beacon was received.
     pub trace: Trace,
     /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`].
     pub gap_m: S,
-    /// The last payload of its guidance law; the default until one arrives.
-    pub payload: P,
+    /// What its guidance law last said; `None` for a law with another protocol.
+    pub payload: Option<P>,
 }
 
 /// How the last beacon of a robot was received.
@@ -90,6 +79,14 @@ pub enum Trace {
 }
 
 impl<S: Scalar, P> Neighbor<S, P> {
+    /// The same robot with what its law says in another form.
+    #[must_use]
+    pub fn map<Q>(self, payload: impl FnOnce(P) -> Option<Q>) -> Neighbor<S, Q> {
+        let Self { id, heard, position, velocity_mps, radius_m, flock, mode, trace, gap_m, payload: said } = self;
+        let payload = said.and_then(payload);
+        Neighbor { id, heard, position, velocity_mps, radius_m, flock, mode, trace, gap_m, payload }
+    }
+
     /// Whether it has been silent for longer than [`Ages::expire_after`] without having left.
     #[must_use]
     pub fn is_lost(&self) -> bool {
@@ -177,7 +174,7 @@ type Entries<S, const N: usize, P> = crate::list::SparseVec<Neighbor<S, P>, N>;
 
 /// At most `N` robots, sorted by id: first the known robots, then the remembered lost ones.
 ///
-/// Bytes: 16, and `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the
+/// Bytes: 16, and `N` times the size of [`Neighbor`] (44 for `f32` and fixed point, plus the
 /// payload). With the feature `host`, only the memory of the stored robots.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTable<S, const N: usize, P = ()> {
@@ -344,15 +341,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Stores the payload of robot `id`, if known; ignores an invalid one (`None`). O(log N).
-    pub fn tell(&mut self, id: RobotId, payload: Option<P>) {
-        if let Some(payload) = payload
-            && let Some(entry) = self.place(id).and_then(|i| self.entries.get_mut(i))
-        {
-            entry.payload = payload;
-        }
-    }
-
     /// Removes robot `id` without remembering it as lost; returns whether it was known. O(N).
     pub fn forget(&mut self, id: RobotId) -> bool {
         let is_known = self.place(id).is_some();
@@ -455,6 +443,6 @@ impl<'a, S: Scalar, const N: usize, P: Copy> IntoIterator for &'a NeighborTable<
 }
 
 // Each robot stores 16 entries, and a simulated swarm has 100,000 robots.
-const _: () = assert!(size_of::<Neighbor<f32>>() == 60);
+const _: () = assert!(size_of::<Neighbor<f32>>() == 44);
 #[cfg(not(feature = "host"))]
-const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 16);
+const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 44 + 16);

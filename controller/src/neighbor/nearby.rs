@@ -59,7 +59,7 @@ impl<S: Scalar> StalenessInflation<S> {
 ///
 /// The ball of a stale robot grows at half of the speed in `inflation`, because
 /// [`GapLimit`](super::GapLimit) covers its worst case, and never over the own ball of
-/// `own_radius_m`. A robot that is not of `flock` ([`Neighbor::slot`]) is a stranger. O(N K); 24 K
+/// `own_radius_m`. A robot that is not of `flock` ([`Neighbor::flock`]) is a stranger. O(N K); 24 K
 /// bytes of stack in addition to the result (`f32`, 32-bit pointers).
 #[must_use]
 pub fn nearest<S: Scalar, const K: usize>(
@@ -87,7 +87,7 @@ pub fn nearest<S: Scalar, const K: usize>(
         }
     }
     let seen = |&(_, offset_m, entry): &(u64, Vec3<S>, &Neighbor<S, _>)| Nearby {
-        is_stranger: entry.slot != flock,
+        is_stranger: entry.flock != flock,
         ..seen(entry, offset_m, own_radius_m, now, ages, inflation)
     };
     list::collect(nearest.iter().map(seen))

@@ -4,7 +4,6 @@ use super::sighting::{Sighted, Sighting, TrackParams};
 use super::track::Track;
 use super::{Neighbor, NeighborTable, Trace};
 use crate::geom::{Position, Vec3};
-use crate::grid::{Cell, Dir};
 use crate::list;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
@@ -20,7 +19,6 @@ pub const TRACKS: usize = 16;
 /// Detections of a step that are processed; further ones are counted in [`Sighted::no_room`].
 pub const SIGHTINGS: usize = 32;
 
-const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 /// Assigns detections and beacons to tracks, and writes each track into the neighbour table.
 ///
@@ -39,8 +37,8 @@ const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 ///
 /// A tracked neighbour has the fused position, the time of its last measurement, and a radius
 /// enlarged by [`margin`](TrackParams::margin) standard deviations. A neighbour known from beacons
-/// alone is stored unchanged. One known from detections alone has no leader, no cell and no
-/// payload; it counts as a member of the own flock that gives way. 16 tracks of 80 bytes.
+/// alone is stored unchanged. One known from detections alone has no payload; it counts as a member
+/// of the own flock that gives way. 16 tracks of 80 bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tracker<S> {
     params: TrackParams<S>,
@@ -292,7 +290,7 @@ impl<S: Scalar> Tracker<S> {
 
     /// Returns the detected robots as neighbours to store in `table`, which gives the fields that
     /// detections do not determine. A robot without beacons belongs to `flock`. O(TRACKS log N).
-    pub fn seen<const N: usize, P: Copy + Default>(
+    pub fn seen<const N: usize, P: Copy>(
         &mut self,
         table: &NeighborTable<S, N, P>,
         flock: u8,
@@ -326,23 +324,18 @@ impl<S: Scalar> Tracker<S> {
     }
 }
 
-fn stranger<S: Scalar, P: Default>(track: &Track<S>, flock: u8) -> Neighbor<S, P> {
+fn stranger<S: Scalar, P>(track: &Track<S>, flock: u8) -> Neighbor<S, P> {
     Neighbor {
         id: track.id,
         heard: track.at,
-        busy_until: track.at,
         position: track.position,
         velocity_mps: track.velocity_mps,
         radius_m: track.radius_m,
-        cell: NO_CELL,
-        target: NO_CELL,
-        leader: RobotId::NONE,
-        heading: Dir::Stay,
-        slot: flock,
+        flock,
         mode: Mode::Cruise,
         trace: Trace::Heard,
         gap_m: S::ZERO,
-        payload: P::default(),
+        payload: None,
     }
 }
 

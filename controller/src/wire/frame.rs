@@ -20,12 +20,8 @@
 //!
 //! Flash on a Cortex-M0 (`opt-level = "s"`): CRC table 512 bytes, [`encode`] and [`decode`] 7 KiB.
 
-use super::message::{
-    Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, LostRobot, Message, Request, TEMPLATE_PART,
-    TemplateAssignment, WaypointAssignment,
-};
-use super::payload::{MAX_PAYLOAD, PayloadBytes};
-use crate::land::{LandPatch, PATCH_TILES};
+use super::content::{MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD};
+use super::message::{Ack, Addressed, Beacon, Broadcast, KeyAssignment, KeyHeld, LostRobot, Message};
 use crate::robot::RobotId;
 use core::fmt;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
@@ -36,10 +32,10 @@ use serde::{Deserialize, Serialize};
 mod beacon;
 
 /// The version of the format that this code writes and reads, 1..=127.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = 4;
 /// Length of an authentication tag in bytes.
 pub const TAG_LEN: usize = 8;
-/// The greatest robot number that a tagged frame can hold, as sender or as leader.
+/// The greatest robot number that a tagged frame can hold, as sender or as addressee.
 pub const MAX_TAGGED_ROBOT: RobotId = RobotId((1 << 21) - 1);
 
 const TAGGED: u8 = 0x80;
@@ -49,7 +45,6 @@ const CRC_LEN: usize = 2;
 const ID: usize = 3;
 /// Version, boot, sender, sequence, tag, CRC, COBS byte, delimiter.
 const OVERHEAD: usize = 1 + 1 + ID + 2 + TAG_LEN + CRC_LEN + 2;
-const CELL: usize = 4;
 
 /// 16 tables process 16 bytes at a time.
 const TABLES: usize = if cfg!(feature = "host") { 16 } else { 1 };
@@ -57,32 +52,24 @@ static CRC: Crc<u16, Table<TABLES>> = Crc::<u16, Table<TABLES>>::new(&CRC_16_IBM
 
 impl Beacon {
     /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 4 + 3 * 4 + 3 * 2 + 2 + CELL + 1 + 2 + ID + 1 + 1 + CELL;
+    pub const MAX_FRAME_LEN: usize = Self::BARE_FRAME_LEN + MAX_PAYLOAD;
+    /// The same without a payload.
+    pub const BARE_FRAME_LEN: usize = OVERHEAD + 1 + 3 * 4 + 3 * 2 + 2 + 1 + 1 + 1 + 1;
 }
 
-impl Request {
+impl Addressed {
     /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + ID + 1 + 1 + 2;
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1 + MAX_ORDER;
+}
+
+impl Broadcast {
+    /// Maximum length of its frame in bytes, with tag and delimiter.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 1 + 1 + MAX_CONTENT;
 }
 
 impl Ack {
     /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1;
-}
-
-impl TemplateAssignment {
-    /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1 + 1 + CELL + 1 + TEMPLATE_PART * (CELL + ID + 1);
-}
-
-impl GoalAssignment {
-    /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + CELL;
-}
-
-impl WaypointAssignment {
-    /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 3 * 4 + 3 * 2;
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1;
 }
 
 impl KeyAssignment {
@@ -95,16 +82,6 @@ impl KeyHeld {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 2 + 1;
 }
 
-impl LandPatch {
-    /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + CELL + PATCH_TILES;
-}
-
-impl PayloadBytes {
-    /// Maximum length of its frame in bytes, with tag and delimiter.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 1 + MAX_PAYLOAD;
-}
-
 impl LostRobot {
     /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 2 + 3 * 4 + 2;
@@ -114,16 +91,12 @@ impl LostRobot {
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
         Beacon::MAX_FRAME_LEN,
-        Request::MAX_FRAME_LEN,
+        Addressed::MAX_FRAME_LEN,
+        Broadcast::MAX_FRAME_LEN,
         Ack::MAX_FRAME_LEN,
-        TemplateAssignment::MAX_FRAME_LEN,
-        GoalAssignment::MAX_FRAME_LEN,
-        WaypointAssignment::MAX_FRAME_LEN,
+        LostRobot::MAX_FRAME_LEN,
         KeyAssignment::MAX_FRAME_LEN,
         KeyHeld::MAX_FRAME_LEN,
-        LandPatch::MAX_FRAME_LEN,
-        PayloadBytes::MAX_FRAME_LEN,
-        LostRobot::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();
@@ -136,13 +109,13 @@ pub const MAX_FRAME_LEN: usize = {
     max
 };
 
-const MAX_CONTENT: usize = MAX_FRAME_LEN - 2;
+const MAX_STUFFED: usize = MAX_FRAME_LEN - 2;
 
 // Crazyflie peer-to-peer packets hold 60 bytes; this COBS handles a single block.
 const _: () = assert!(MAX_FRAME_LEN <= 60);
-// The numbers of sender, addressee and template entries.
-const _: () = assert!((2 + TEMPLATE_PART) * (5 - ID) <= TAG_LEN);
-const _: () = assert!(MAX_CONTENT <= 253);
+// The numbers of sender and addressee.
+const _: () = assert!(2 * (5 - ID) <= TAG_LEN);
+const _: () = assert!(MAX_STUFFED <= 253);
 
 /// The sender of a frame and the frame's place in the sender's sequence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -273,7 +246,7 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
 /// Like [`encode`], with a tag: `authenticate` computes it from everything before it.
 ///
 /// # Errors
-/// Those of [`encode`], and [`EncodeError::Robot`] if sender or leader exceed [`MAX_TAGGED_ROBOT`].
+/// Those of [`encode`], and [`EncodeError::Robot`] if a robot number exceeds [`MAX_TAGGED_ROBOT`].
 pub fn encode_tagged<const N: usize>(
     header: Header,
     message: &Message,
@@ -300,7 +273,7 @@ pub fn decode_verified(
     verify: impl FnOnce(&[u8], Option<[u8; TAG_LEN]>) -> Result<(), DecodeError>,
 ) -> Result<Frame, DecodeError> {
     let (&first, stuffed) = frame.split_first().ok_or(DecodeError::Empty)?;
-    let mut buffer = [0; MAX_CONTENT];
+    let mut buffer = [0; MAX_STUFFED];
     let content = buffer.get_mut(..stuffed.len()).ok_or(DecodeError::TooLong)?;
     if frame_len(stuffed) < stuffed.len() {
         return Err(DecodeError::Cobs);
@@ -384,12 +357,8 @@ fn write<const N: usize>(
         return Err(EncodeError::NoSender);
     }
     if authenticate.is_some() {
-        let leader = match message {
-            Message::Beacon(beacon) => beacon.leader,
-            _ => RobotId::NONE,
-        };
-        let large = [header.sender, leader].into_iter();
-        if let Some(robot) = large.max().filter(|robot| *robot > MAX_TAGGED_ROBOT) {
+        let robot = message.addressee().map_or(header.sender, |to| to.max(header.sender));
+        if robot > MAX_TAGGED_ROBOT {
             return Err(EncodeError::Robot(robot));
         }
     }

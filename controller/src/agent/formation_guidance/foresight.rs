@@ -2,10 +2,10 @@
 
 use super::{FormationGuidance, seen_at};
 use crate::agent::law::View;
+use crate::agent::{Grid, GridNeighbor};
 use crate::cost::Gain;
 use crate::formation::{Prediction, Seen, Steering, distances};
 use crate::grid::{BLOCKED, Cell, Dir, Window};
-use crate::neighbor::Neighbor;
 use crate::robot::{Mode, RobotId};
 use crate::route::{CostField, RouteParams};
 use crate::template::Template;
@@ -20,9 +20,9 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
 {
     /// At most 32 robots: those of the template and the leader first, then the smallest ids.
     #[inline(never)]
-    pub(super) fn seen<S>(
+    pub(super) fn seen<S: Copy>(
         &self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         (window, view): (&Window<'_>, &Template<F>),
         field: &mut CostField<CELLS>,
         all: &mut Vec<Seen, 32>,
@@ -30,12 +30,12 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         let top = self.top(input, view);
         let concerns = |id: RobotId| id == self.leader || view.entries.iter().any(|entry| entry.id == id);
         for wanted in [true, false] {
-            let others = input.neighbors.iter().filter(|other| {
+            let others = input.on_grid().filter(|other| {
                 let is_top = top.is_some_and(|(top, _)| top == other.id);
                 (is_top || concerns(other.id)) == wanted
             });
             for other in others {
-                let _ = all.push(seen_at(other, self.foresee(input, window, other)));
+                let _ = all.push(seen_at(&other, self.foresee(input, window, &other)));
             }
         }
         if self.formation.prediction == Prediction::Reflexive {
@@ -57,7 +57,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 
     /// At constant velocity on the visible terrain, at most [`MAX_FORESIGHT`] cells away.
-    fn foresee<S>(&self, input: &View<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
+    fn foresee<S: Copy>(&self, input: &View<'_, S, Grid>, window: &Window<'_>, other: &GridNeighbor) -> Cell {
         let mut cell = other.cell;
         if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
             return cell;
@@ -87,15 +87,15 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 
     /// The choice of this law in another robot's place (KUZ section 7, item 1).
-    fn choice_of<S>(
+    fn choice_of<S: Copy>(
         &self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         window: &Window<'_>,
         field: &mut CostField<CELLS>,
         other: &Seen,
         place: Option<Cell>,
     ) -> Option<Cell> {
-        let neighbor = input.neighbor(other.id)?;
+        let neighbor = input.grid_neighbor(other.id)?;
         let is_free = (input.now + input.tick).since(neighbor.busy_until) >= Duration::ZERO;
         let is_in_sight = Dir::MOVES.iter().all(|dir| window.get(other.cell + dir.offset()).is_some());
         if !is_free || !is_in_sight {

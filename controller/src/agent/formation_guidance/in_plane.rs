@@ -4,19 +4,17 @@ use super::{FormationGuidance, comes_after};
 use crate::agent::cell_follower::CellFollower;
 use crate::agent::goal_occupancy::{Claim, GoalOccupancy};
 use crate::agent::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
-use crate::agent::protocol::{Grid, GridMessage, GridOrder, Radio};
 use crate::agent::route_guidance::GridWorkspace;
-use crate::agent::{FarMap, InCells, Wait};
+use crate::agent::{FarMap, Grid, GridMessage, GridOrder, GridPayload, InCells, Radio, Wait};
 use crate::formation::{Drive, NextMove, behind, is_straight, scaled};
 use crate::geom::Vec2;
-use crate::grid::{BLOCKED, Cell, Window};
+use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::neighbor::Neighbor;
 use crate::parameters::Parameters;
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::template::{Template, TemplateEntry};
 use crate::time::Duration;
-use crate::wire::RequestKind;
 use serde::{Deserialize, Serialize};
 
 /// [`FormationGuidance`] on a body that moves in the plane; [`crate::formation::Drive`] is the
@@ -55,7 +53,7 @@ impl<S: Scalar> Step<'_, S> {
     /// Offset of a place `offset` cells from another robot, extrapolated by its velocity, from the
     /// own body, metres.
     #[inline(never)]
-    fn beside(&self, input: &View<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
+    fn beside(&self, input: &View<'_, S, Grid>, other: &Neighbor<S, GridPayload>, offset: Cell) -> Vec2<S> {
         let offset_m = other.offset_at(input.state.position, input.now, input.ages.expire_after);
         (offset_m + input.ahead_m).xy() + self.metres(offset)
     }
@@ -113,7 +111,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 
     /// Returns the leader and the own place relative to it, unless this robot leads or is alone.
-    fn leader<'a>(&self, input: &View<'a, S>, view: &Template<F>) -> Option<(&'a Neighbor<S>, Cell)> {
+    fn leader(&self, input: &View<'_, S, Grid>, view: &Template<F>) -> Option<(Neighbor<S, GridPayload>, Cell)> {
         let law = self.inside();
         let (id, offset) = law.top(input, view)?;
         let keeps_touch = law.behind <= law.formation.patience;
@@ -123,9 +121,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     #[inline(never)]
     fn refine(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         here: &InCells<'_, S>,
-        radio: &mut Radio<'_, GridMessage>,
+        radio: &mut Radio<'_, Grid>,
         decision: &mut Decision<S>,
     ) -> Result<(), BadInput>
     where
@@ -139,7 +137,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             cell_m: here.in_cell.cell_m,
             drive: Drive::new(&input.body),
         };
-        let view = self.inside().view(input.id, input.neighbors);
+        let view = self.inside().view(input.id, input.on_grid());
         let target = Law::<S>::report(&self.cells).target;
         let to_goal_m = step.to_middle(target.ok_or(BadInput)?);
         let status = &mut decision.status;
@@ -150,14 +148,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let (way_m, place_mps) = if has_arrived {
                 (to_goal_m, Vec2::ZERO)
             } else {
-                (step.beside(input, leader, offset), leader.velocity_mps.xy())
+                (step.beside(input, &leader, offset), leader.velocity_mps.xy())
             };
             is_straight = step.is_open(way_m);
             wish_mps = if is_straight { step.drive.follow(way_m, place_mps) } else { by_cells_mps.xy() };
             status.is_off_place = way_m.norm() > step.drive.halt_m();
             // A robot that is ahead or aside does not hold up the others.
             if !step.drive.is_far_behind(way_m, place_mps) {
-                radio.retract(RequestKind::Stop);
+                radio.retain(|message| !matches!(message, GridMessage::Stop { .. }));
             }
             status.is_at_goal = has_arrived && self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
             self.wish_mps = input.body.velocity_mps.xy();
@@ -181,7 +179,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
         if is_straight {
             status.is_stuck = false;
-            radio.retract(RequestKind::Redirect);
+            radio.retain(|message| *message != GridMessage::Redirect);
         }
         decision.action = Action::Velocity { wish_mps: wish_mps.extend(S::ZERO), way_m: None };
         Ok(())
@@ -191,7 +189,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     /// must let another one pass first.
     fn comes_to_rest(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         way_m: Vec2<S>,
         drive: &Drive<S>,
         status: &mut Status,
@@ -212,7 +210,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 
     /// Metres; 0 if patience is exhausted or the robot travels alone.
-    fn lag_to_wait_for(&mut self, input: &View<'_, S>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
+    fn lag_to_wait_for(&mut self, input: &View<'_, S, Grid>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
         if self.inside().leader.is_some() {
             return S::ZERO;
         }
@@ -229,12 +227,12 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 }
 
-fn lag_m<S: Scalar, const F: usize>(input: &View<'_, S>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
+fn lag_m<S: Scalar, const F: usize>(input: &View<'_, S, Grid>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
     let lag = |entry: &TemplateEntry| {
         let other = input.neighbor(entry.id)?;
         let is_under_way = other.mode.gives_way() && other.mode != Mode::Arrived;
-        let follows = is_under_way && comes_after(input, other.id, other.leader);
-        follows.then(|| behind(step.beside(input, other, Cell::default() - entry.offset), ahead))
+        let follows = is_under_way && comes_after(input, other.id, other.payload?.leader);
+        follows.then(|| behind(step.beside(input, &other, Cell::default() - entry.offset), ahead))
     };
     view.entries.iter().filter_map(lag).fold(S::ZERO, S::max)
 }
@@ -248,7 +246,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
 
     fn decide(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         here: &InCells<'_, S>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -263,15 +261,15 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         Ok(decision)
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
-        Law::<S>::payload(&mut self.cells, radio);
+    fn payload(&mut self, here: &InCells<'_, S>, heading: Dir, radio: &mut Radio<'_, Grid>) -> GridPayload {
+        self.cells.payload(here, heading, radio)
     }
 
-    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
-        self.cells.receive(from, message)
+    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
+        self.cells.receive(from, message, radio);
     }
 
-    fn order(&mut self, order: GridOrder) -> bool {
+    fn order(&mut self, order: &GridOrder) -> bool {
         self.cells.order(order)
     }
 

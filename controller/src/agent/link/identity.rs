@@ -2,15 +2,15 @@
 
 use super::super::duplicate_id::{is_ahead, is_within, place};
 use super::super::io::{Event, Outputs};
-use super::{Link, ReceiveContext, report};
+use super::{Link, Protocol, ReceiveContext, report};
 use crate::geom::Position;
 use crate::neighbor::{Claim, Neighbor, PlausibilityLimits, Verdict};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Duration;
-use crate::wire::{Frame, Header, Payload, Wire};
+use crate::wire::{Frame, Header, Wire};
 
-impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
+impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     /// Returns the sender's id, or [`RobotId::duplicate`] for a second robot. `None` for an own
     /// echo and for a beacon with an implausible id or position.
     pub(super) fn known_as(
@@ -24,7 +24,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             let is_other = self.said.is_other(own, header, &frame.message);
             if is_other && is_ahead(own, header) {
                 (self.header.boot, self.header.sequence) = (header.boot, header.sequence.wrapping_add(1));
-                self.requests.set_boot(header.boot);
+                self.outgoing.set_boot(header.boot);
             }
             return is_other.then_some(own.sender.duplicate());
         }
@@ -43,13 +43,13 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.is_believed(id, header, place, listener, out).then_some(id)
     }
 
-    fn known(&self, id: RobotId) -> Option<&Neighbor<S, P>> {
+    fn known(&self, id: RobotId) -> Option<&Neighbor<S, Q::Payload>> {
         let all = self.table.as_slice();
         all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at))
     }
 
     /// By the clock, or by its sequence numbers if its packets were delayed.
-    fn time_since(&self, known: &Neighbor<S, P>, header: Header, listener: &ReceiveContext<'_, S>) -> Duration {
+    fn time_since(&self, known: &Neighbor<S, Q::Payload>, header: Header, listener: &ReceiveContext<'_, S>) -> Duration {
         let window = self.windows.iter().find(|(id, _)| *id == known.id);
         let frames = window.map_or(0, |(_, window)| window.distance(header));
         let counted = listener.period.saturating_mul(frames.into());
@@ -71,7 +71,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             ),
             (Some(known), Some(double)) => {
                 let longest = self.table.ages().stale_after;
-                let distance = |known: &Neighbor<S, P>| {
+                let distance = |known: &Neighbor<S, Q::Payload>| {
                     let place = self.image(place, known.position);
                     known.offset_at(place, at, longest).length_key()
                 };
@@ -112,7 +112,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 
     /// Reduces radius and speed to the limits. Reports the first of consecutive violations.
-    pub(super) fn cut(&self, said: &mut Neighbor<S, P>, plausibility: &PlausibilityLimits<S>, out: &mut Outputs<S>) {
+    pub(super) fn cut(&self, said: &mut Neighbor<S, Q::Payload>, plausibility: &PlausibilityLimits<S>, out: &mut Outputs<S>) {
         let (is_large, is_fast) = plausibility.cut(said);
         if !is_large && !is_fast {
             return;

@@ -1,11 +1,11 @@
 //! Lost robots, told to robots that never heard them.
 
-use super::{Link, Outputs, ReceiveContext};
+use super::{Link, Outputs, Protocol, ReceiveContext};
 use crate::neighbor::{Neighbor, Trace};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::{Beacon, LostRobot, Payload, Wire};
+use crate::wire::{Beacon, LostRobot, Wire};
 use serde::{Deserialize, Serialize};
 
 /// Least time between two lost robots in the frames of one sender.
@@ -29,7 +29,7 @@ impl LostNews {
     pub(super) const NEW: Self = Self { told: RobotId::NONE, refuted: RobotId::NONE, due: Instant::from_micros(0) };
 }
 
-impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
+impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     /// The newest state counts: adds, moves or clears a lost robot. Another robot's error about a
     /// robot in contact is corrected with the next beacon. O(N).
     pub(super) fn hear_lost(
@@ -53,7 +53,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             return;
         }
         let known = self.table.lost().iter().find(|lost| lost.id == id);
-        let is_old = |known: &Neighbor<S, P>| heard.since(known.heard) <= UNIT;
+        let is_old = |known: &Neighbor<S, Q::Payload>| heard.since(known.heard) <= UNIT;
         if now.since(heard) < Duration::ZERO || known.is_some_and(is_old) {
             return;
         }
@@ -61,7 +61,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         if told.is_lost {
             let LostRobot { position_mm, radius_mm, .. } = *told;
             let beacon = Beacon { position_mm, radius_mm, mode: Mode::Fault, ..Beacon::default() };
-            let mut lost = Neighbor { trace: Trace::Lost, ..Neighbor::from_beacon(id, &beacon, heard) };
+            let mut lost = Neighbor { trace: Trace::Lost, ..Neighbor::from_beacon(id, &beacon, Q::ID, heard) };
             lost.position = self.image(lost.position, listener.position);
             let _ = listener.plausibility.cut(&mut lost);
             let put = self.table.put(lost, listener.position, now, listener.needs);

@@ -2,15 +2,15 @@
 
 use super::super::contact_loss::ContactState;
 use super::super::io::{Event, Outputs};
-use super::{Link, report};
+use super::{Link, Protocol, report};
 use crate::geom::Position;
 use crate::neighbor::{Put, Tracker};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use crate::wire::{Payload, SequenceWindow, Wire};
+use crate::wire::{SequenceWindow, Wire};
 
-impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
+impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     /// Runs after the frames of a step. A detection counts as contact only for a robot that was in
     /// contact by radio; one that never was moves freely when no robot is in sight.
     pub(in super::super) fn see(

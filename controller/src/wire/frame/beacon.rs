@@ -3,10 +3,8 @@
 
 use super::{Header, Message};
 use crate::fixint::Fixed;
-use crate::grid::{Cell, Dir};
 use crate::robot::{Mode, RobotId};
-use crate::time::Instant;
-use crate::wire::Beacon;
+use crate::wire::{Beacon, Bytes, ProtocolId};
 
 /// Indexed by their number on the wire.
 const MODES: [Mode; 7] =
@@ -22,23 +20,16 @@ pub(super) fn read(body: &[u8]) -> Option<(Header, Message)> {
     let [BEACON] = take(&mut rest)? else {
         return None;
     };
-    let time = fixed::<Instant, 4>(&mut rest)?;
     let position_mm = [fixed::<i32, 4>(&mut rest)?, fixed::<i32, 4>(&mut rest)?, fixed::<i32, 4>(&mut rest)?];
     let velocity_mmps = [fixed::<i16, 2>(&mut rest)?, fixed::<i16, 2>(&mut rest)?, fixed::<i16, 2>(&mut rest)?];
     let radius_mm = fixed::<u16, 2>(&mut rest)?;
-    let cell = cell(&mut rest)?;
-    let [heading] = take(&mut rest)?;
-    let busy_ms = fixed::<u16, 2>(&mut rest)?;
-    let leader = number(&mut rest)?;
-    let [slot, mode] = take(&mut rest)?;
+    let [mode, flock, protocol, len] = take(&mut rest)?;
     let mode = *MODES.get(usize::from(mode))?;
-    let target = self::cell(&mut rest)?;
-    if !rest.is_empty() || !sender.is_some() || usize::from(heading) > Dir::Stay.index() {
+    if usize::from(len) != rest.len() || !sender.is_some() {
         return None;
     }
-    let heading = Dir::from_index(heading);
-    let beacon =
-        Beacon { time, position_mm, velocity_mmps, radius_mm, cell, heading, busy_ms, leader, slot, mode, target };
+    let (protocol, payload) = (ProtocolId(protocol), Bytes::from_slice(rest).ok()?);
+    let beacon = Beacon { position_mm, velocity_mmps, radius_mm, mode, flock, protocol, payload };
     Some((Header { boot, sender, sequence }, Message::Beacon(beacon)))
 }
 
@@ -50,10 +41,6 @@ fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
 
 fn fixed<T: Fixed<Bytes = [u8; N]>, const N: usize>(rest: &mut &[u8]) -> Option<T> {
     take(rest).map(T::from_bytes)
-}
-
-fn cell(rest: &mut &[u8]) -> Option<Cell> {
-    Some(Cell::new(fixed::<i16, 2>(rest)?, fixed::<i16, 2>(rest)?))
 }
 
 /// Groups of 7 bits, at most four of them.

@@ -1,16 +1,43 @@
 //! Splits a formation template into parts for transmission and reassembles it.
 
-use super::{Newest, TEMPLATE_PART, TemplateAssignment};
 use crate::grid::Cell;
+use super::{GridOrder, OfAnotherLaw};
+use crate::fixint;
 use crate::list;
 use crate::robot::RobotId;
 use crate::template::{Template, TemplateEntry};
+use crate::wire::Newest;
 use heapless::Vec;
 use serde::{Deserialize, Serialize, Serializer};
 
+/// Entries in one [`TemplatePart`]: as many as fit into a frame of 60 bytes.
+pub const TEMPLATE_PART: usize = 2;
+
+/// One part of a formation template, sent by the swarm's operator to one robot.
+///
+/// All parts except the last are full, so the number of a part determines where its entries belong.
+/// See [`TemplatePart::split`] and [`TemplateAssembler`].
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TemplatePart {
+    /// Counts the templates of this sender, wraps. Parts of different versions never mix.
+    pub version: u8,
+    /// The number of this part, 0..`parts`.
+    pub part: u8,
+    /// The number of parts in the template.
+    pub parts: u8,
+    /// The robot's place in the formation.
+    pub slot: u8,
+    /// Cell difference from the place of the top leader to the place of this robot.
+    #[serde(with = "fixint")]
+    pub offset: Cell,
+    /// The neighbours within the geodesic radius that this part lists.
+    pub entries: Vec<TemplateEntry, TEMPLATE_PART>,
+}
+
 const MAX_PARTS: usize = u64::BITS as usize;
 
-/// Entries in the largest template that [`TemplateAssignment::split`] accepts.
+/// Entries in the largest template that [`TemplatePart::split`] accepts.
 pub const MAX_TEMPLATE: usize = MAX_PARTS * TEMPLATE_PART;
 
 const NO_ENTRY: TemplateEntry = TemplateEntry { offset: Cell::new(0, 0), id: RobotId::NONE, hops: 0 };
@@ -45,14 +72,13 @@ impl core::fmt::Display for PartError {
 
 impl core::error::Error for PartError {}
 
-impl TemplateAssignment {
+impl TemplatePart {
     /// Splits a template into parts of one frame each, to be sent in any order.
     ///
     /// # Errors
     /// [`PartError::TooLarge`] for more than [`MAX_TEMPLATE`] entries, [`PartError::NoHops`] if an
     /// entry is 0 hops away.
     pub fn split(
-        to: RobotId,
         version: u8,
         slot: u8,
         offset: Cell,
@@ -68,7 +94,6 @@ impl TemplateAssignment {
         let parts = u8::try_from(parts).map_err(|_| PartError::TooLarge)?;
         let mut chunks = entries.chunks(TEMPLATE_PART);
         Ok((0..parts).map(move |part| Self {
-            to,
             version,
             part,
             parts,
@@ -173,7 +198,7 @@ impl<const F: usize> TemplateAssembler<F> {
     /// # Errors
     /// Why the part was rejected, see [`PartError`]. A rejected part changes nothing.
     #[expect(clippy::arithmetic_side_effects, reason = "as in `total`")]
-    pub fn put(&mut self, part: &TemplateAssignment) -> Result<Option<Template<F>>, PartError> {
+    pub fn put(&mut self, part: &TemplatePart) -> Result<Option<Template<F>>, PartError> {
         part.check(F)?;
         if self.newest.admit(part.version) {
             *self =
@@ -202,9 +227,16 @@ impl<const F: usize> TemplateAssembler<F> {
         Ok(self.complete())
     }
 
-    /// Discards everything, so that any next version is accepted, after a restart of the sender.
-    pub fn forget(&mut self) {
-        *self = Self::new();
+    /// Takes in an order. Returns the template once it is complete; `Err` if the order is of no use.
+    ///
+    /// # Errors
+    /// The order is no part of a template, or a rejected one.
+    pub fn order(&mut self, order: &GridOrder) -> Result<Option<Template<F>>, OfAnotherLaw> {
+        let GridOrder::Template { part, is_restarted } = order else { return Err(OfAnotherLaw) };
+        if *is_restarted {
+            *self = Self::new();
+        }
+        self.put(part).map_err(|_| OfAnotherLaw)
     }
 
     fn complete(&self) -> Option<Template<F>> {
