@@ -17,15 +17,14 @@
 use crate::criteria::{Kept, PublishedParams, smallest_below, sum_of_deviations, sums, sums_of_other};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Decision, Grid, GridMessage, GridOrder, GridTask, GridWorkspace, Law, OnGrid, Report, Status,
-    Tools, View, Wait,
+    Action, BadInput, Decision, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace, Law,
+    OnGrid, Radio, Report, Status, TemplateAssembler, Tools, View, Wait,
 };
 use staya_controller::cost::{Gain, Weights};
 use staya_controller::formation::{
     Found, GraphDistance, Member, Prediction, Seen, def, find_neighbors, graph_distance,
 };
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
-use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::Parameters;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::{CostField, RouteParams, VisitMemory};
@@ -33,7 +32,6 @@ use staya_controller::scalar::Scalar;
 use staya_controller::shuffle::{Sharpness, weighted_shuffle};
 use staya_controller::template::Template;
 use staya_controller::time::Duration;
-use staya_controller::wire::{RequestKind, TemplateAssembler};
 
 /// Moving in formation as published, with the visits of `M` cells and a template of `F` neighbours.
 /// Work of a decision: one search, plus one per neighbour found with [`Prediction::Reflexive`].
@@ -88,15 +86,19 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
 
     /// Returns how far the neighbours are from their places in the template. O(F N).
     #[must_use]
-    pub fn graph_distance<S>(&self, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
-        let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
+    pub fn graph_distance(
+        &self,
+        cell: Cell,
+        neighbors: impl Iterator<Item = GridNeighbor> + Clone,
+    ) -> GraphDistance {
+        let robots = neighbors.map(|other| seen_at(&other, other.cell));
         graph_distance(cell, &find_neighbors(&self.template, cell, self.formation.eps, robots))
     }
 
     /// Algorithm 5 with `predict`.
     #[inline(never)]
-    fn found<S>(&self, input: &View<'_, S>, window: &Window<'_>, cell: Cell, field: &mut CostField<CELLS>) -> Found<F> {
-        let robots = input.neighbors.iter().map(|other| seen_at(other, other.cell));
+    fn found<S: Copy>(&self, input: &View<'_, S, Grid>, window: &Window<'_>, cell: Cell, field: &mut CostField<CELLS>) -> Found<F> {
+        let robots = input.on_grid().map(|other| seen_at(&other, other.cell));
         let mut found = find_neighbors(&self.template, cell, self.formation.eps, robots);
         for member in &mut found.members {
             if let Some(next) = self.predict(input, window, cell, member, field) {
@@ -107,16 +109,16 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
     }
 
     /// Position of another robot at the next tick (section 7, item 1); `None` if it does not move.
-    fn predict<S>(
+    fn predict<S: Copy>(
         &self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         window: &Window<'_>,
         own: Cell,
         member: &Member,
         field: &mut CostField<CELLS>,
     ) -> Option<Cell> {
         let seen = &member.seen;
-        let neighbor = input.neighbor(seen.id)?;
+        let neighbor = input.grid_neighbor(seen.id)?;
         let is_free = (input.now + input.tick).since(neighbor.busy_until) >= Duration::ZERO;
         if !is_free || !matches!(seen.mode, Mode::Cruise | Mode::Forming) || neighbor.target == seen.cell {
             return None;
@@ -129,18 +131,19 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         let params = RouteParams { a2: Gain::ZERO, ..self.route };
         let no_robots = core::iter::empty();
         let ways = field.weights::<0>(&params, window, seen.cell, neighbor.target, no_robots, None).ok()?;
-        let cell_of = |id: RobotId| input.neighbor(id).map(|third| third.cell);
+        let cell_of = |id: RobotId| input.grid_neighbor(id).map(|third| third.cell);
         let price = sums_of_other(self.formation.gain, (member, own), &self.template.entries, cell_of);
         ways.plus(&price).best().map(|dir| seen.cell + dir.offset())
     }
 
-    /// Lines 10 to 23. Returns a request to the own leader, and whether to continue despite a stop.
+    /// Lines 10 to 23. Returns a message to the own leader, and whether to continue despite a stop.
     fn keep(
         &mut self,
+        (own, valid): (RobotId, Duration),
         (cell, target): (Cell, Cell),
         (is_leader, sum): (bool, u32),
         found: &Found<F>,
-    ) -> (Option<RequestKind>, bool) {
+    ) -> (Option<GridMessage>, bool) {
         let kept = self.formation.judge(sum);
         match kept {
             Kept::Lost if is_leader => self.detour = Some(cell + def(cell, &found.members).offset()),
@@ -153,8 +156,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         }
         let is_asked_for = kept == Kept::Lost;
         let ask = match kept {
-            Kept::Lost => Some(RequestKind::Stop),
-            Kept::Well if self.has_asked => Some(RequestKind::Resume),
+            Kept::Lost => Some(GridMessage::stop(own, valid)),
+            Kept::Well if self.has_asked => Some(GridMessage::Resume { origin: own }),
             Kept::Well | Kept::Fairly => None,
         };
         self.has_asked = is_asked_for || (self.has_asked && ask.is_none());
@@ -163,7 +166,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
     }
 
     /// Line 24 and item 6: the robots to redirect.
-    fn ask_others<S>(&self, input: &View<'_, S>, found: &Found<F>) -> [Option<RobotId>; 2] {
+    fn ask_others<S: Copy>(&self, input: &View<'_, S, Grid>, found: &Found<F>) -> [Option<RobotId>; 2] {
         if !self.formation.is_crowded(found) {
             return [None; 2];
         }
@@ -175,7 +178,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
     }
 }
 
-const fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
+const fn seen_at(other: &GridNeighbor, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
 
@@ -186,7 +189,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
 
     fn decide(
         &mut self,
-        input: &View<'_, S>,
+        input: &View<'_, S, Grid>,
         here: &OnGrid<'_>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
@@ -201,8 +204,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         let target = window.reachable(goal);
         let is_redirected = core::mem::take(&mut self.is_redirected);
         let mut decision = Decision::default();
-        self.task.shown =
-            Report { goal: Some(goal), target: Some(target), leader: self.leader, slot: self.template.slot };
+        self.task.show(goal, target);
+        (self.task.shown.leader, self.task.shown.slot) = (self.leader, self.template.slot);
         if cell == target {
             decision.status.is_at_goal = true;
             return Ok(decision);
@@ -221,7 +224,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
             // Algorithm 3, line 6.
             Some(Weights::CLOSED)
         } else {
-            let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
+            let others = input.on_grid().map(|neighbor| neighbor.cell);
             field.weights(&self.route, &window, cell, heads_for, others, Some(&self.visits)).ok()
         };
         decision.status.is_stuck = ways.is_none();
@@ -237,15 +240,16 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         self.choice = moves.first().copied().unwrap_or_default();
         // Lines 9 to 23.
         let sum = sum_of_deviations(cell + self.choice.offset(), &found.members);
-        let is_leader = input.neighbors.iter().any(|other| other.leader == input.id);
-        let (ask, continues) = self.keep((cell, target), (is_leader, sum), &found);
-        if let Some(kind) = ask.filter(|_| self.leader.is_some()) {
-            radio.send(self.leader, &GridMessage::Request(kind));
+        let is_leader = input.on_grid().any(|other| other.leader == input.id);
+        let valid = radio.valid;
+        let (ask, continues) = self.keep((input.id, valid), (cell, target), (is_leader, sum), &found);
+        if let Some(message) = ask.filter(|_| self.leader.is_some()) {
+            radio.send(self.leader, &message, valid);
         }
         for to in self.ask_others(input, &found).into_iter().flatten() {
-            radio.send(to, &GridMessage::Request(RequestKind::Redirect));
+            radio.send(to, &GridMessage::Redirect, valid);
         }
-        let stands = input.is_stopped && !continues;
+        let stands = self.task.is_stopped(input.now) && !continues;
         decision.status = Status {
             waits_for: stands.then_some(Wait::Stopped),
             recovers: !stands,
@@ -256,20 +260,20 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         Ok(decision)
     }
 
-    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
-        let redirects = message == GridMessage::Request(RequestKind::Redirect);
-        self.is_redirected |= redirects;
-        redirects
+    fn payload(&mut self, here: &OnGrid<'_>, heading: Dir, _: &mut Radio<'_, Grid>) -> GridPayload {
+        self.task.payload(here, heading)
     }
 
-    fn order(&mut self, order: GridOrder) -> bool {
-        let GridOrder::Template { part, is_restarted } = &order else {
-            return self.task.order(&order, self.template.offset);
-        };
-        if *is_restarted {
-            self.assembler.forget();
+    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
+        self.task.receive(from, message, radio);
+        self.is_redirected |= *message == GridMessage::Redirect;
+    }
+
+    fn order(&mut self, order: &GridOrder) -> bool {
+        if self.task.order(order, self.template.offset) {
+            return true;
         }
-        let Ok(whole) = self.assembler.put(part) else { return false };
+        let Ok(whole) = self.assembler.order(order) else { return false };
         if let Some(template) = whole {
             self.template = template;
             (self.leader, self.has_chosen) = (RobotId::NONE, false);
@@ -283,7 +287,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
     }
 
     fn report(&self) -> Report {
-        self.task.shown
+        self.task.report()
     }
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {

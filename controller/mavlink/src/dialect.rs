@@ -3796,7 +3796,7 @@ impl MessageData for STATUSTEXT_DATA {
         }
     }
 }
-///Answer to STAYA_REQUEST.
+///Answer to a STAYA_MESSAGE to one robot.
 ///
 ///ID: 9500003
 #[derive(Debug, Clone, PartialEq)]
@@ -3805,24 +3805,21 @@ pub struct STAYA_ACK_DATA {
     pub sequence: u16,
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///System that sent the request.
+    ///System that sent the message.
     pub target_system: u8,
-    ///Boot of that system, as in its request.
-    pub request_boot: u8,
-    ///The request's number.
+    ///Boot of that system, as in its message.
+    pub message_boot: u8,
+    ///The message's number.
     pub number: u8,
-    ///1: yes; 0: no.
-    pub accepted: u8,
 }
 impl STAYA_ACK_DATA {
-    pub const ENCODED_LEN: usize = 7usize;
+    pub const ENCODED_LEN: usize = 6usize;
     pub const DEFAULT: Self = Self {
         sequence: 0_u16,
         boot: 0_u8,
         target_system: 0_u8,
-        request_boot: 0_u8,
+        message_boot: 0_u8,
         number: 0_u8,
-        accepted: 0_u8,
     };
 }
 impl Default for STAYA_ACK_DATA {
@@ -3834,8 +3831,8 @@ impl MessageData for STAYA_ACK_DATA {
     type Message = MavMessage;
     const ID: u32 = 9500003u32;
     const NAME: &'static str = "STAYA_ACK";
-    const EXTRA_CRC: u8 = 151u8;
-    const ENCODED_LEN: usize = 7usize;
+    const EXTRA_CRC: u8 = 192u8;
+    const ENCODED_LEN: usize = 6usize;
     fn deser(
         _version: MavlinkVersion,
         __input: &[u8],
@@ -3853,9 +3850,8 @@ impl MessageData for STAYA_ACK_DATA {
         __struct.sequence = buf.get_u16_le()?;
         __struct.boot = buf.get_u8()?;
         __struct.target_system = buf.get_u8()?;
-        __struct.request_boot = buf.get_u8()?;
+        __struct.message_boot = buf.get_u8()?;
         __struct.number = buf.get_u8()?;
-        __struct.accepted = buf.get_u8()?;
         Ok(__struct)
     }
     fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
@@ -3869,9 +3865,8 @@ impl MessageData for STAYA_ACK_DATA {
         __tmp.put_u16_le(self.sequence);
         __tmp.put_u8(self.boot);
         __tmp.put_u8(self.target_system);
-        __tmp.put_u8(self.request_boot);
+        __tmp.put_u8(self.message_boot);
         __tmp.put_u8(self.number);
-        __tmp.put_u8(self.accepted);
         if matches!(version, MavlinkVersion::V2) {
             let len = __tmp.len();
             ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
@@ -3880,13 +3875,11 @@ impl MessageData for STAYA_ACK_DATA {
         }
     }
 }
-///Position, velocity, destination and formation of a robot. Sent once per period.
+///Position, velocity and state of a robot, and what its law says. Sent once per period.
 ///
 ///ID: 9500000
 #[derive(Debug, Clone, PartialEq)]
 pub struct STAYA_BEACON_DATA {
-    ///The sender's clock; wraps.
-    pub time_us: u32,
     ///East.
     pub x_mm: i32,
     ///North.
@@ -3901,33 +3894,24 @@ pub struct STAYA_BEACON_DATA {
     pub vz_mmps: i16,
     ///Radius of the ball around the body.
     pub radius_mm: u16,
-    ///Cell of the grid, east.
-    pub cell_x: i16,
-    ///Cell of the grid, north.
-    pub cell_y: i16,
-    ///Cell that it is heading for, east.
-    pub target_x: i16,
-    ///Cell that it is heading for, north.
-    pub target_y: i16,
-    ///Time until it may leave its cell.
-    pub busy_ms: u16,
     ///Counts the sender's Staya messages; wraps.
     pub sequence: u16,
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///0: stays; 1 to 8: the neighbouring cells.
-    pub heading: u8,
-    ///System of its leader; 0: none.
-    pub leader: u8,
-    ///Its place in the formation, or the number of its flock.
-    pub slot: u8,
     ///0 idle, 1 forming, 2 cruise, 3 hold, 4 arrived, 5 fault, 6 passive (motors off, or steered externally).
     pub mode: u8,
+    ///Number of its flock.
+    pub flock: u8,
+    ///Protocol of its law: 0 none, 1 grid, 2 waypoints, 64 to 255 of users.
+    pub protocol: u8,
+    ///Number of bytes used.
+    pub count: u8,
+    ///What its law says. Protocol 1, little-endian: cell x, y and target x, y (int16), busy_ms (uint16), heading (0 to 7: neighbouring cells, 8: stays), slot (uint8), leader (in groups of 7 bits, the lowest first; 0: none).
+    pub bytes: [u8; 16],
 }
 impl STAYA_BEACON_DATA {
-    pub const ENCODED_LEN: usize = 41usize;
+    pub const ENCODED_LEN: usize = 43usize;
     pub const DEFAULT: Self = Self {
-        time_us: 0_u32,
         x_mm: 0_i32,
         y_mm: 0_i32,
         z_mm: 0_i32,
@@ -3935,17 +3919,13 @@ impl STAYA_BEACON_DATA {
         vy_mmps: 0_i16,
         vz_mmps: 0_i16,
         radius_mm: 0_u16,
-        cell_x: 0_i16,
-        cell_y: 0_i16,
-        target_x: 0_i16,
-        target_y: 0_i16,
-        busy_ms: 0_u16,
         sequence: 0_u16,
         boot: 0_u8,
-        heading: 0_u8,
-        leader: 0_u8,
-        slot: 0_u8,
         mode: 0_u8,
+        flock: 0_u8,
+        protocol: 0_u8,
+        count: 0_u8,
+        bytes: [0_u8; 16usize],
     };
 }
 impl Default for STAYA_BEACON_DATA {
@@ -3957,8 +3937,8 @@ impl MessageData for STAYA_BEACON_DATA {
     type Message = MavMessage;
     const ID: u32 = 9500000u32;
     const NAME: &'static str = "STAYA_BEACON";
-    const EXTRA_CRC: u8 = 240u8;
-    const ENCODED_LEN: usize = 41usize;
+    const EXTRA_CRC: u8 = 212u8;
+    const ENCODED_LEN: usize = 43usize;
     fn deser(
         _version: MavlinkVersion,
         __input: &[u8],
@@ -3973,7 +3953,6 @@ impl MessageData for STAYA_BEACON_DATA {
             Bytes::new(__input)
         };
         let mut __struct = Self::default();
-        __struct.time_us = buf.get_u32_le()?;
         __struct.x_mm = buf.get_i32_le()?;
         __struct.y_mm = buf.get_i32_le()?;
         __struct.z_mm = buf.get_i32_le()?;
@@ -3981,17 +3960,16 @@ impl MessageData for STAYA_BEACON_DATA {
         __struct.vy_mmps = buf.get_i16_le()?;
         __struct.vz_mmps = buf.get_i16_le()?;
         __struct.radius_mm = buf.get_u16_le()?;
-        __struct.cell_x = buf.get_i16_le()?;
-        __struct.cell_y = buf.get_i16_le()?;
-        __struct.target_x = buf.get_i16_le()?;
-        __struct.target_y = buf.get_i16_le()?;
-        __struct.busy_ms = buf.get_u16_le()?;
         __struct.sequence = buf.get_u16_le()?;
         __struct.boot = buf.get_u8()?;
-        __struct.heading = buf.get_u8()?;
-        __struct.leader = buf.get_u8()?;
-        __struct.slot = buf.get_u8()?;
         __struct.mode = buf.get_u8()?;
+        __struct.flock = buf.get_u8()?;
+        __struct.protocol = buf.get_u8()?;
+        __struct.count = buf.get_u8()?;
+        for v in &mut __struct.bytes {
+            let val = buf.get_u8()?;
+            *v = val;
+        }
         Ok(__struct)
     }
     fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
@@ -4002,7 +3980,6 @@ impl MessageData for STAYA_BEACON_DATA {
                 __tmp.remaining(),
             )
         }
-        __tmp.put_u32_le(self.time_us);
         __tmp.put_i32_le(self.x_mm);
         __tmp.put_i32_le(self.y_mm);
         __tmp.put_i32_le(self.z_mm);
@@ -4010,17 +3987,15 @@ impl MessageData for STAYA_BEACON_DATA {
         __tmp.put_i16_le(self.vy_mmps);
         __tmp.put_i16_le(self.vz_mmps);
         __tmp.put_u16_le(self.radius_mm);
-        __tmp.put_i16_le(self.cell_x);
-        __tmp.put_i16_le(self.cell_y);
-        __tmp.put_i16_le(self.target_x);
-        __tmp.put_i16_le(self.target_y);
-        __tmp.put_u16_le(self.busy_ms);
         __tmp.put_u16_le(self.sequence);
         __tmp.put_u8(self.boot);
-        __tmp.put_u8(self.heading);
-        __tmp.put_u8(self.leader);
-        __tmp.put_u8(self.slot);
         __tmp.put_u8(self.mode);
+        __tmp.put_u8(self.flock);
+        __tmp.put_u8(self.protocol);
+        __tmp.put_u8(self.count);
+        for val in &self.bytes {
+            __tmp.put_u8(*val);
+        }
         if matches!(version, MavlinkVersion::V2) {
             let len = __tmp.len();
             ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
@@ -4105,90 +4080,6 @@ impl MessageData for STAYA_GOAL_DATA {
         __tmp.put_u8(self.boot);
         __tmp.put_u8(self.target_system);
         __tmp.put_u8(self.version);
-        if matches!(version, MavlinkVersion::V2) {
-            let len = __tmp.len();
-            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
-        } else {
-            __tmp.len()
-        }
-    }
-}
-///A part of a robot's map of the land, 32 x 16 cells as 8 x 4 tiles, for all.
-///
-///ID: 9500007
-#[derive(Debug, Clone, PartialEq)]
-pub struct STAYA_LAND_DATA {
-    ///Counts the sender's Staya messages; wraps.
-    pub sequence: u16,
-    ///The south-west tile, east, in tiles of 4 cells.
-    pub corner_x: i16,
-    ///The same, north.
-    pub corner_y: i16,
-    ///Changes with each start of the sender.
-    pub boot: u8,
-    ///Row by row from there: the number of the price in the low four bits, 0 for unknown; the age above them.
-    pub tiles: [u8; 32],
-}
-impl STAYA_LAND_DATA {
-    pub const ENCODED_LEN: usize = 39usize;
-    pub const DEFAULT: Self = Self {
-        sequence: 0_u16,
-        corner_x: 0_i16,
-        corner_y: 0_i16,
-        boot: 0_u8,
-        tiles: [0_u8; 32usize],
-    };
-}
-impl Default for STAYA_LAND_DATA {
-    fn default() -> Self {
-        Self::DEFAULT.clone()
-    }
-}
-impl MessageData for STAYA_LAND_DATA {
-    type Message = MavMessage;
-    const ID: u32 = 9500007u32;
-    const NAME: &'static str = "STAYA_LAND";
-    const EXTRA_CRC: u8 = 218u8;
-    const ENCODED_LEN: usize = 39usize;
-    fn deser(
-        _version: MavlinkVersion,
-        __input: &[u8],
-    ) -> Result<Self, ::mavlink_core::error::ParserError> {
-        let avail_len = __input.len();
-        let mut payload_buf;
-        let mut buf = if avail_len < Self::ENCODED_LEN {
-            payload_buf = [0; Self::ENCODED_LEN];
-            payload_buf[0..avail_len].copy_from_slice(__input);
-            Bytes::new(&payload_buf)
-        } else {
-            Bytes::new(__input)
-        };
-        let mut __struct = Self::default();
-        __struct.sequence = buf.get_u16_le()?;
-        __struct.corner_x = buf.get_i16_le()?;
-        __struct.corner_y = buf.get_i16_le()?;
-        __struct.boot = buf.get_u8()?;
-        for v in &mut __struct.tiles {
-            let val = buf.get_u8()?;
-            *v = val;
-        }
-        Ok(__struct)
-    }
-    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
-        let mut __tmp = BytesMut::new(bytes);
-        if __tmp.remaining() < Self::ENCODED_LEN {
-            panic!(
-                "buffer is too small (need {} bytes, but got {})", Self::ENCODED_LEN,
-                __tmp.remaining(),
-            )
-        }
-        __tmp.put_u16_le(self.sequence);
-        __tmp.put_i16_le(self.corner_x);
-        __tmp.put_i16_le(self.corner_y);
-        __tmp.put_u8(self.boot);
-        for val in &self.tiles {
-            __tmp.put_u8(*val);
-        }
         if matches!(version, MavlinkVersion::V2) {
             let len = __tmp.len();
             ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
@@ -4296,40 +4187,52 @@ impl MessageData for STAYA_LOST_DATA {
         }
     }
 }
-///Data of a robot's guidance law for robots with the same law, sent after each beacon.
+///What a law tells one robot, up to 12 bytes, or all robots; or an order to a law with a protocol of users.
 ///
-///ID: 9500008
+///ID: 9500002
 #[derive(Debug, Clone, PartialEq)]
-pub struct STAYA_PAYLOAD_DATA {
+pub struct STAYA_MESSAGE_DATA {
     ///Counts the sender's Staya messages; wraps.
     pub sequence: u16,
     ///Changes with each start of the sender.
     pub boot: u8,
+    ///System addressed; 0: all.
+    pub target_system: u8,
+    ///0 message to one robot, 1 message to all, 2 order.
+    pub kind: u8,
+    ///Distinguishes the sender's messages; of orders, a newer one replaces all before.
+    pub number: u8,
+    ///Protocol of the bytes.
+    pub protocol: u8,
     ///Number of bytes used.
     pub count: u8,
-    ///Encoded by the law; 0 after those used.
-    pub bytes: [u8; 16],
+    ///The message in postcard. Protocol 1: 0 stop, origin, valid_ms (uint16); 1 resume, origin; 2 redirect; 3 land, corner x, y (int16), 32 tiles.
+    pub bytes: [u8; 38],
 }
-impl STAYA_PAYLOAD_DATA {
-    pub const ENCODED_LEN: usize = 20usize;
+impl STAYA_MESSAGE_DATA {
+    pub const ENCODED_LEN: usize = 46usize;
     pub const DEFAULT: Self = Self {
         sequence: 0_u16,
         boot: 0_u8,
+        target_system: 0_u8,
+        kind: 0_u8,
+        number: 0_u8,
+        protocol: 0_u8,
         count: 0_u8,
-        bytes: [0_u8; 16usize],
+        bytes: [0_u8; 38usize],
     };
 }
-impl Default for STAYA_PAYLOAD_DATA {
+impl Default for STAYA_MESSAGE_DATA {
     fn default() -> Self {
         Self::DEFAULT.clone()
     }
 }
-impl MessageData for STAYA_PAYLOAD_DATA {
+impl MessageData for STAYA_MESSAGE_DATA {
     type Message = MavMessage;
-    const ID: u32 = 9500008u32;
-    const NAME: &'static str = "STAYA_PAYLOAD";
-    const EXTRA_CRC: u8 = 45u8;
-    const ENCODED_LEN: usize = 20usize;
+    const ID: u32 = 9500002u32;
+    const NAME: &'static str = "STAYA_MESSAGE";
+    const EXTRA_CRC: u8 = 245u8;
+    const ENCODED_LEN: usize = 46usize;
     fn deser(
         _version: MavlinkVersion,
         __input: &[u8],
@@ -4346,6 +4249,10 @@ impl MessageData for STAYA_PAYLOAD_DATA {
         let mut __struct = Self::default();
         __struct.sequence = buf.get_u16_le()?;
         __struct.boot = buf.get_u8()?;
+        __struct.target_system = buf.get_u8()?;
+        __struct.kind = buf.get_u8()?;
+        __struct.number = buf.get_u8()?;
+        __struct.protocol = buf.get_u8()?;
         __struct.count = buf.get_u8()?;
         for v in &mut __struct.bytes {
             let val = buf.get_u8()?;
@@ -4363,6 +4270,10 @@ impl MessageData for STAYA_PAYLOAD_DATA {
         }
         __tmp.put_u16_le(self.sequence);
         __tmp.put_u8(self.boot);
+        __tmp.put_u8(self.target_system);
+        __tmp.put_u8(self.kind);
+        __tmp.put_u8(self.number);
+        __tmp.put_u8(self.protocol);
         __tmp.put_u8(self.count);
         for val in &self.bytes {
             __tmp.put_u8(*val);
@@ -4476,95 +4387,6 @@ impl MessageData for STAYA_PLACE_DATA {
         __tmp.put_u8(self.target_system);
         __tmp.put_u8(self.version);
         __tmp.put_u8(self.index);
-        if matches!(version, MavlinkVersion::V2) {
-            let len = __tmp.len();
-            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
-        } else {
-            __tmp.len()
-        }
-    }
-}
-///A robot asks another one, up the chain of leaders, to stop, resume or choose another direction.
-///
-///ID: 9500002
-#[derive(Debug, Clone, PartialEq)]
-pub struct STAYA_REQUEST_DATA {
-    ///How long it is valid if it is not renewed.
-    pub valid_ms: u16,
-    ///Counts the sender's Staya messages; wraps.
-    pub sequence: u16,
-    ///Changes with each start of the sender.
-    pub boot: u8,
-    ///System that is asked.
-    pub target_system: u8,
-    ///System that made the request first.
-    pub origin: u8,
-    ///Distinguishes the sender's requests.
-    pub number: u8,
-    ///0 stop, 1 resume, 2 redirect.
-    pub kind: u8,
-}
-impl STAYA_REQUEST_DATA {
-    pub const ENCODED_LEN: usize = 9usize;
-    pub const DEFAULT: Self = Self {
-        valid_ms: 0_u16,
-        sequence: 0_u16,
-        boot: 0_u8,
-        target_system: 0_u8,
-        origin: 0_u8,
-        number: 0_u8,
-        kind: 0_u8,
-    };
-}
-impl Default for STAYA_REQUEST_DATA {
-    fn default() -> Self {
-        Self::DEFAULT.clone()
-    }
-}
-impl MessageData for STAYA_REQUEST_DATA {
-    type Message = MavMessage;
-    const ID: u32 = 9500002u32;
-    const NAME: &'static str = "STAYA_REQUEST";
-    const EXTRA_CRC: u8 = 106u8;
-    const ENCODED_LEN: usize = 9usize;
-    fn deser(
-        _version: MavlinkVersion,
-        __input: &[u8],
-    ) -> Result<Self, ::mavlink_core::error::ParserError> {
-        let avail_len = __input.len();
-        let mut payload_buf;
-        let mut buf = if avail_len < Self::ENCODED_LEN {
-            payload_buf = [0; Self::ENCODED_LEN];
-            payload_buf[0..avail_len].copy_from_slice(__input);
-            Bytes::new(&payload_buf)
-        } else {
-            Bytes::new(__input)
-        };
-        let mut __struct = Self::default();
-        __struct.valid_ms = buf.get_u16_le()?;
-        __struct.sequence = buf.get_u16_le()?;
-        __struct.boot = buf.get_u8()?;
-        __struct.target_system = buf.get_u8()?;
-        __struct.origin = buf.get_u8()?;
-        __struct.number = buf.get_u8()?;
-        __struct.kind = buf.get_u8()?;
-        Ok(__struct)
-    }
-    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
-        let mut __tmp = BytesMut::new(bytes);
-        if __tmp.remaining() < Self::ENCODED_LEN {
-            panic!(
-                "buffer is too small (need {} bytes, but got {})", Self::ENCODED_LEN,
-                __tmp.remaining(),
-            )
-        }
-        __tmp.put_u16_le(self.valid_ms);
-        __tmp.put_u16_le(self.sequence);
-        __tmp.put_u8(self.boot);
-        __tmp.put_u8(self.target_system);
-        __tmp.put_u8(self.origin);
-        __tmp.put_u8(self.number);
-        __tmp.put_u8(self.kind);
         if matches!(version, MavlinkVersion::V2) {
             let len = __tmp.len();
             ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
@@ -5292,11 +5114,11 @@ pub enum MavMessage {
     ///
     ///ID: 253
     STATUSTEXT(STATUSTEXT_DATA),
-    ///Answer to STAYA_REQUEST.
+    ///Answer to a STAYA_MESSAGE to one robot.
     ///
     ///ID: 9500003
     STAYA_ACK(STAYA_ACK_DATA),
-    ///Position, velocity, destination and formation of a robot. Sent once per period.
+    ///Position, velocity and state of a robot, and what its law says. Sent once per period.
     ///
     ///ID: 9500000
     STAYA_BEACON(STAYA_BEACON_DATA),
@@ -5304,26 +5126,18 @@ pub enum MavMessage {
     ///
     ///ID: 9500005
     STAYA_GOAL(STAYA_GOAL_DATA),
-    ///A part of a robot's map of the land, 32 x 16 cells as 8 x 4 tiles, for all.
-    ///
-    ///ID: 9500007
-    STAYA_LAND(STAYA_LAND_DATA),
     ///A robot that fell silent, for robots that never heard it; sent in turn behind beacons. A ground station clears a place with is_lost 0 and age 0.
     ///
     ///ID: 9500009
     STAYA_LOST(STAYA_LOST_DATA),
-    ///Data of a robot's guidance law for robots with the same law, sent after each beacon.
+    ///What a law tells one robot, up to 12 bytes, or all robots; or an order to a law with a protocol of users.
     ///
-    ///ID: 9500008
-    STAYA_PAYLOAD(STAYA_PAYLOAD_DATA),
+    ///ID: 9500002
+    STAYA_MESSAGE(STAYA_MESSAGE_DATA),
     ///A waypoint, one of several that may move.
     ///
     ///ID: 9500006
     STAYA_PLACE(STAYA_PLACE_DATA),
-    ///A robot asks another one, up the chain of leaders, to stop, resume or choose another direction.
-    ///
-    ///ID: 9500002
-    STAYA_REQUEST(STAYA_REQUEST_DATA),
     ///One part of a robot's place in a formation: the place and its neighbours.
     ///
     ///ID: 9500004
@@ -5357,8 +5171,7 @@ impl MavMessage {
             48u32, 49u32, 51u32, 66u32, 69u32, 73u32, 74u32, 75u32, 76u32, 77u32, 84u32,
             85u32, 86u32, 87u32, 110u32, 111u32, 124u32, 147u32, 148u32, 193u32, 230u32,
             242u32, 244u32, 245u32, 253u32, 256u32, 385u32, 9500000u32, 9500002u32,
-            9500003u32, 9500004u32, 9500005u32, 9500006u32, 9500007u32, 9500008u32,
-            9500009u32,
+            9500003u32, 9500004u32, 9500005u32, 9500006u32, 9500009u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -5419,13 +5232,11 @@ impl MavMessage {
             (SETUP_SIGNING_DATA::NAME, SETUP_SIGNING_DATA::ID),
             (TUNNEL_DATA::NAME, TUNNEL_DATA::ID),
             (STAYA_BEACON_DATA::NAME, STAYA_BEACON_DATA::ID),
-            (STAYA_REQUEST_DATA::NAME, STAYA_REQUEST_DATA::ID),
+            (STAYA_MESSAGE_DATA::NAME, STAYA_MESSAGE_DATA::ID),
             (STAYA_ACK_DATA::NAME, STAYA_ACK_DATA::ID),
             (STAYA_TEMPLATE_DATA::NAME, STAYA_TEMPLATE_DATA::ID),
             (STAYA_GOAL_DATA::NAME, STAYA_GOAL_DATA::ID),
             (STAYA_PLACE_DATA::NAME, STAYA_PLACE_DATA::ID),
-            (STAYA_LAND_DATA::NAME, STAYA_LAND_DATA::ID),
-            (STAYA_PAYLOAD_DATA::NAME, STAYA_PAYLOAD_DATA::ID),
             (STAYA_LOST_DATA::NAME, STAYA_LOST_DATA::ID),
         ]
     }
@@ -5599,20 +5410,14 @@ impl Message for MavMessage {
             STAYA_GOAL_DATA::ID => {
                 STAYA_GOAL_DATA::deser(version, payload).map(Self::STAYA_GOAL)
             }
-            STAYA_LAND_DATA::ID => {
-                STAYA_LAND_DATA::deser(version, payload).map(Self::STAYA_LAND)
-            }
             STAYA_LOST_DATA::ID => {
                 STAYA_LOST_DATA::deser(version, payload).map(Self::STAYA_LOST)
             }
-            STAYA_PAYLOAD_DATA::ID => {
-                STAYA_PAYLOAD_DATA::deser(version, payload).map(Self::STAYA_PAYLOAD)
+            STAYA_MESSAGE_DATA::ID => {
+                STAYA_MESSAGE_DATA::deser(version, payload).map(Self::STAYA_MESSAGE)
             }
             STAYA_PLACE_DATA::ID => {
                 STAYA_PLACE_DATA::deser(version, payload).map(Self::STAYA_PLACE)
-            }
-            STAYA_REQUEST_DATA::ID => {
-                STAYA_REQUEST_DATA::deser(version, payload).map(Self::STAYA_REQUEST)
             }
             STAYA_TEMPLATE_DATA::ID => {
                 STAYA_TEMPLATE_DATA::deser(version, payload).map(Self::STAYA_TEMPLATE)
@@ -5688,11 +5493,9 @@ impl Message for MavMessage {
             Self::STAYA_ACK(..) => STAYA_ACK_DATA::NAME,
             Self::STAYA_BEACON(..) => STAYA_BEACON_DATA::NAME,
             Self::STAYA_GOAL(..) => STAYA_GOAL_DATA::NAME,
-            Self::STAYA_LAND(..) => STAYA_LAND_DATA::NAME,
             Self::STAYA_LOST(..) => STAYA_LOST_DATA::NAME,
-            Self::STAYA_PAYLOAD(..) => STAYA_PAYLOAD_DATA::NAME,
+            Self::STAYA_MESSAGE(..) => STAYA_MESSAGE_DATA::NAME,
             Self::STAYA_PLACE(..) => STAYA_PLACE_DATA::NAME,
-            Self::STAYA_REQUEST(..) => STAYA_REQUEST_DATA::NAME,
             Self::STAYA_TEMPLATE(..) => STAYA_TEMPLATE_DATA::NAME,
             Self::SYSTEM_TIME(..) => SYSTEM_TIME_DATA::NAME,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::NAME,
@@ -5754,11 +5557,9 @@ impl Message for MavMessage {
             Self::STAYA_ACK(..) => STAYA_ACK_DATA::ID,
             Self::STAYA_BEACON(..) => STAYA_BEACON_DATA::ID,
             Self::STAYA_GOAL(..) => STAYA_GOAL_DATA::ID,
-            Self::STAYA_LAND(..) => STAYA_LAND_DATA::ID,
             Self::STAYA_LOST(..) => STAYA_LOST_DATA::ID,
-            Self::STAYA_PAYLOAD(..) => STAYA_PAYLOAD_DATA::ID,
+            Self::STAYA_MESSAGE(..) => STAYA_MESSAGE_DATA::ID,
             Self::STAYA_PLACE(..) => STAYA_PLACE_DATA::ID,
-            Self::STAYA_REQUEST(..) => STAYA_REQUEST_DATA::ID,
             Self::STAYA_TEMPLATE(..) => STAYA_TEMPLATE_DATA::ID,
             Self::SYSTEM_TIME(..) => SYSTEM_TIME_DATA::ID,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::ID,
@@ -5824,11 +5625,9 @@ impl Message for MavMessage {
             STAYA_ACK_DATA::NAME => Some(STAYA_ACK_DATA::ID),
             STAYA_BEACON_DATA::NAME => Some(STAYA_BEACON_DATA::ID),
             STAYA_GOAL_DATA::NAME => Some(STAYA_GOAL_DATA::ID),
-            STAYA_LAND_DATA::NAME => Some(STAYA_LAND_DATA::ID),
             STAYA_LOST_DATA::NAME => Some(STAYA_LOST_DATA::ID),
-            STAYA_PAYLOAD_DATA::NAME => Some(STAYA_PAYLOAD_DATA::ID),
+            STAYA_MESSAGE_DATA::NAME => Some(STAYA_MESSAGE_DATA::ID),
             STAYA_PLACE_DATA::NAME => Some(STAYA_PLACE_DATA::ID),
-            STAYA_REQUEST_DATA::NAME => Some(STAYA_REQUEST_DATA::ID),
             STAYA_TEMPLATE_DATA::NAME => Some(STAYA_TEMPLATE_DATA::ID),
             SYSTEM_TIME_DATA::NAME => Some(SYSTEM_TIME_DATA::ID),
             SYS_STATUS_DATA::NAME => Some(SYS_STATUS_DATA::ID),
@@ -5971,15 +5770,11 @@ impl Message for MavMessage {
                 Some(Self::STAYA_BEACON(STAYA_BEACON_DATA::default()))
             }
             STAYA_GOAL_DATA::ID => Some(Self::STAYA_GOAL(STAYA_GOAL_DATA::default())),
-            STAYA_LAND_DATA::ID => Some(Self::STAYA_LAND(STAYA_LAND_DATA::default())),
             STAYA_LOST_DATA::ID => Some(Self::STAYA_LOST(STAYA_LOST_DATA::default())),
-            STAYA_PAYLOAD_DATA::ID => {
-                Some(Self::STAYA_PAYLOAD(STAYA_PAYLOAD_DATA::default()))
+            STAYA_MESSAGE_DATA::ID => {
+                Some(Self::STAYA_MESSAGE(STAYA_MESSAGE_DATA::default()))
             }
             STAYA_PLACE_DATA::ID => Some(Self::STAYA_PLACE(STAYA_PLACE_DATA::default())),
-            STAYA_REQUEST_DATA::ID => {
-                Some(Self::STAYA_REQUEST(STAYA_REQUEST_DATA::default()))
-            }
             STAYA_TEMPLATE_DATA::ID => {
                 Some(Self::STAYA_TEMPLATE(STAYA_TEMPLATE_DATA::default()))
             }
@@ -6040,11 +5835,9 @@ impl Message for MavMessage {
             Self::STAYA_ACK(body) => body.ser(version, bytes),
             Self::STAYA_BEACON(body) => body.ser(version, bytes),
             Self::STAYA_GOAL(body) => body.ser(version, bytes),
-            Self::STAYA_LAND(body) => body.ser(version, bytes),
             Self::STAYA_LOST(body) => body.ser(version, bytes),
-            Self::STAYA_PAYLOAD(body) => body.ser(version, bytes),
+            Self::STAYA_MESSAGE(body) => body.ser(version, bytes),
             Self::STAYA_PLACE(body) => body.ser(version, bytes),
-            Self::STAYA_REQUEST(body) => body.ser(version, bytes),
             Self::STAYA_TEMPLATE(body) => body.ser(version, bytes),
             Self::SYSTEM_TIME(body) => body.ser(version, bytes),
             Self::SYS_STATUS(body) => body.ser(version, bytes),
@@ -6110,11 +5903,9 @@ impl Message for MavMessage {
             STAYA_ACK_DATA::ID => STAYA_ACK_DATA::EXTRA_CRC,
             STAYA_BEACON_DATA::ID => STAYA_BEACON_DATA::EXTRA_CRC,
             STAYA_GOAL_DATA::ID => STAYA_GOAL_DATA::EXTRA_CRC,
-            STAYA_LAND_DATA::ID => STAYA_LAND_DATA::EXTRA_CRC,
             STAYA_LOST_DATA::ID => STAYA_LOST_DATA::EXTRA_CRC,
-            STAYA_PAYLOAD_DATA::ID => STAYA_PAYLOAD_DATA::EXTRA_CRC,
+            STAYA_MESSAGE_DATA::ID => STAYA_MESSAGE_DATA::EXTRA_CRC,
             STAYA_PLACE_DATA::ID => STAYA_PLACE_DATA::EXTRA_CRC,
-            STAYA_REQUEST_DATA::ID => STAYA_REQUEST_DATA::EXTRA_CRC,
             STAYA_TEMPLATE_DATA::ID => STAYA_TEMPLATE_DATA::EXTRA_CRC,
             SYSTEM_TIME_DATA::ID => SYSTEM_TIME_DATA::EXTRA_CRC,
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::EXTRA_CRC,
@@ -6152,8 +5943,8 @@ impl Message for MavMessage {
             Self::SET_POSITION_TARGET_LOCAL_NED(inner) => Some(inner.target_system),
             Self::STAYA_ACK(inner) => Some(inner.target_system),
             Self::STAYA_GOAL(inner) => Some(inner.target_system),
+            Self::STAYA_MESSAGE(inner) => Some(inner.target_system),
             Self::STAYA_PLACE(inner) => Some(inner.target_system),
-            Self::STAYA_REQUEST(inner) => Some(inner.target_system),
             Self::STAYA_TEMPLATE(inner) => Some(inner.target_system),
             Self::TUNNEL(inner) => Some(inner.target_system),
             _ => None,
@@ -6187,8 +5978,8 @@ impl Message for MavMessage {
             Self::SET_POSITION_TARGET_LOCAL_NED(inner) => Some(&mut inner.target_system),
             Self::STAYA_ACK(inner) => Some(&mut inner.target_system),
             Self::STAYA_GOAL(inner) => Some(&mut inner.target_system),
+            Self::STAYA_MESSAGE(inner) => Some(&mut inner.target_system),
             Self::STAYA_PLACE(inner) => Some(&mut inner.target_system),
-            Self::STAYA_REQUEST(inner) => Some(&mut inner.target_system),
             Self::STAYA_TEMPLATE(inner) => Some(&mut inner.target_system),
             Self::TUNNEL(inner) => Some(&mut inner.target_system),
             _ => None,

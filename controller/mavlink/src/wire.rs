@@ -1,6 +1,6 @@
 //! The swarm's messages as MAVLink 2 frames: [`Mavlink`], a [`Wire`] like postcard.
 //!
-//! Each message of the controller is one `STAYA_*` message of the dialect, with boot and sequence
+//! Each message of the controller is a `STAYA_*` message of the dialect, with boot and sequence
 //! of its [`Header`] in the payload: MAVLink's 8-bit sequence is too short to detect repeated
 //! frames. A robot's number is its system: 1 to 254, and 255 for a ground station. Its component is
 //! [`COMPONENT`].
@@ -10,21 +10,25 @@
 //! bytes between frames as one piece, which [`Wire::decode`] rejects, so that it is counted.
 
 use crate::dialect::{
-    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_LOST_DATA, STAYA_PAYLOAD_DATA,
-    STAYA_PLACE_DATA, STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LOST_DATA, STAYA_MESSAGE_DATA, STAYA_PLACE_DATA,
+    STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
 use mavlink_core::MessageData;
 use serde::{Deserialize, Serialize};
-use staya_controller::grid::{Cell, Dir};
-use staya_controller::land::LandPatch;
+use staya_controller::agent::{
+    AnyOrder, Grid, GridOrder, Protocol as _, TEMPLATE_PART, TemplatePart, Waypoint, WaypointOrder, Waypoints,
+};
+use staya_controller::geom::{Position, Vec3};
+use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
+use staya_controller::scalar::Scalar as _;
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, LostRobot, MAX_PAYLOAD, Message,
-    PayloadBytes, Request, RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
+    Ack, Addressed, Beacon, Broadcast, Bytes, Content, DecodeError, EncodeError, Frame, Header, LostRobot, MAX_CONTENT,
+    MAX_PAYLOAD, Message, ProtocolId, Wire,
 };
 
 /// The component of robots: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -96,8 +100,8 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
         Message::Beacon(beacon) => {
             let [x_mm, y_mm, z_mm] = beacon.position_mm;
             let [vx_mmps, vy_mmps, vz_mmps] = beacon.velocity_mmps;
+            let (count, bytes) = padded(&beacon.payload);
             let data = STAYA_BEACON_DATA {
-                time_us: beacon.time.as_micros(),
                 x_mm,
                 y_mm,
                 z_mm,
@@ -105,91 +109,28 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
                 vy_mmps,
                 vz_mmps,
                 radius_mm: beacon.radius_mm,
-                cell_x: beacon.cell.x,
-                cell_y: beacon.cell.y,
-                target_x: beacon.target.x,
-                target_y: beacon.target.y,
-                busy_ms: beacon.busy_ms,
                 sequence,
                 boot,
-                heading: heading(beacon.heading),
-                leader: system(beacon.leader)?,
-                slot: beacon.slot,
                 mode: beacon.mode as u8,
+                flock: beacon.flock,
+                protocol: beacon.protocol.0,
+                count,
+                bytes,
             };
             frame::encode(sender, &data, out)
         }
-        Message::Request(request) => {
-            let data = STAYA_REQUEST_DATA {
-                valid_ms: request.valid_ms,
-                sequence,
-                boot,
-                target_system: system(request.to)?,
-                origin: system(request.origin)?,
-                number: request.number,
-                kind: match request.kind {
-                    RequestKind::Stop => 0,
-                    RequestKind::Resume => 1,
-                    RequestKind::Redirect => 2,
-                },
-            };
-            frame::encode(sender, &data, out)
+        Message::Law(Addressed { to, number, protocol, content }) => {
+            let to_one = ToLaw { to: *to, kind: TO_ONE, number: *number, protocol: *protocol };
+            frame::encode(sender, &to_one.with(content, header)?, out)
         }
+        Message::Broadcast(Broadcast { protocol, content }) => {
+            let to_all = ToLaw { to: RobotId::NONE, kind: TO_ALL, number: 0, protocol: *protocol };
+            frame::encode(sender, &to_all.with(content, header)?, out)
+        }
+        Message::Order(order) => return encode_order(sender, header, order, out),
         Message::Ack(ack) => {
-            let data = STAYA_ACK_DATA {
-                sequence,
-                boot,
-                target_system: system(ack.to)?,
-                request_boot: ack.boot,
-                number: ack.number,
-                accepted: ack.accepted.into(),
-            };
-            frame::encode(sender, &data, out)
-        }
-        Message::Template(part) => {
-            let data = template(part, boot, sequence)?;
-            frame::encode(sender, &data, out)
-        }
-        Message::Goal(goal) => {
-            let data = STAYA_GOAL_DATA {
-                sequence,
-                target_x: goal.target.x,
-                target_y: goal.target.y,
-                boot,
-                target_system: system(goal.to)?,
-                version: goal.version,
-            };
-            frame::encode(sender, &data, out)
-        }
-        Message::Waypoint(place) => {
-            let [x_mm, y_mm, z_mm] = place.position_mm;
-            let [vx_mmps, vy_mmps, vz_mmps] = place.velocity_mmps;
-            let data = STAYA_PLACE_DATA {
-                x_mm,
-                y_mm,
-                z_mm,
-                vx_mmps,
-                vy_mmps,
-                vz_mmps,
-                sequence,
-                boot,
-                target_system: system(place.to)?,
-                version: place.version,
-                index: place.index,
-            };
-            frame::encode(sender, &data, out)
-        }
-        Message::Land(patch) => {
-            let Cell { x: corner_x, y: corner_y } = patch.corner;
-            let data = STAYA_LAND_DATA { sequence, corner_x, corner_y, boot, tiles: patch.bytes() };
-            frame::encode(sender, &data, out)
-        }
-        Message::Payload(payload) => {
-            let mut data = STAYA_PAYLOAD_DATA { sequence, boot, ..STAYA_PAYLOAD_DATA::DEFAULT };
-            for (byte, told) in data.bytes.iter_mut().zip(payload.as_slice()) {
-                *byte = *told;
-                data.count = data.count.saturating_add(1);
-            }
+            let target_system = system(ack.to)?;
+            let data = STAYA_ACK_DATA { sequence, boot, target_system, message_boot: ack.boot, number: ack.number };
             frame::encode(sender, &data, out)
         }
         Message::Lost(lost) => {
@@ -213,6 +154,87 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
     written.map_err(|Full| EncodeError::Full)
 }
 
+/// Number of a message to one robot, to all, and of an order in `STAYA_MESSAGE`.
+const TO_ONE: u8 = 0;
+const TO_ALL: u8 = 1;
+const ORDER: u8 = 2;
+
+struct ToLaw {
+    to: RobotId,
+    kind: u8,
+    number: u8,
+    protocol: ProtocolId,
+}
+
+impl ToLaw {
+    fn with(self, content: &[u8], header: Header) -> Result<STAYA_MESSAGE_DATA, EncodeError> {
+        let Self { to, kind, number, protocol: ProtocolId(protocol) } = self;
+        let (count, bytes) = padded(content);
+        let Header { boot, sequence, .. } = header;
+        Ok(STAYA_MESSAGE_DATA { sequence, boot, target_system: system(to)?, kind, number, protocol, count, bytes })
+    }
+}
+
+/// Orders of the built-in protocols have messages of their own, which clients fill in by name.
+fn encode_order<const N: usize>(
+    sender: Sender,
+    header: Header,
+    order: &Addressed,
+    out: &mut Vec<u8, N>,
+) -> Result<usize, EncodeError> {
+    let Header { boot, sequence, .. } = header;
+    let Addressed { to, number, protocol, content } = order;
+    let (target_system, version) = (system(*to)?, *number);
+    let written = match AnyOrder::decode(*protocol, *protocol, content) {
+        Some(AnyOrder::Grid(GridOrder::FormationGoal(Cell { x: target_x, y: target_y }))) => {
+            frame::encode(sender, &STAYA_GOAL_DATA { sequence, target_x, target_y, boot, target_system, version }, out)
+        }
+        Some(AnyOrder::Grid(GridOrder::Template { part, .. })) => {
+            frame::encode(sender, &template(&part, target_system, boot, sequence)?, out)
+        }
+        Some(AnyOrder::Waypoint(WaypointOrder { index, waypoint })) => {
+            let [x_mm, y_mm, z_mm] = waypoint.position.mm;
+            let Vec3 { x, y, z } = waypoint.velocity_mps;
+            let [vx_mmps, vy_mmps, vz_mmps] = [x, y, z].map(milli);
+            let data = STAYA_PLACE_DATA {
+                x_mm,
+                y_mm,
+                z_mm,
+                vx_mmps,
+                vy_mmps,
+                vz_mmps,
+                sequence,
+                boot,
+                target_system,
+                version,
+                index,
+            };
+            frame::encode(sender, &data, out)
+        }
+        Some(AnyOrder::Grid(GridOrder::Goal(_))) | None => {
+            let order = ToLaw { to: *to, kind: ORDER, number: *number, protocol: *protocol };
+            frame::encode(sender, &order.with(content, header)?, out)
+        }
+    };
+    written.map_err(|Full| EncodeError::Full)
+}
+
+/// The bytes, followed by zeros, and their number.
+fn padded<const N: usize>(content: &[u8]) -> (u8, [u8; N]) {
+    let mut bytes = [0; N];
+    let mut count = 0_u8;
+    for (byte, told) in bytes.iter_mut().zip(content) {
+        *byte = *told;
+        count = count.saturating_add(1);
+    }
+    (count, bytes)
+}
+
+fn filled<const N: usize>(count: u8, bytes: &[u8]) -> Result<Bytes<N>, DecodeError> {
+    let content = bytes.get(..usize::from(count)).and_then(|content| Bytes::from_slice(content).ok());
+    content.ok_or(DecodeError::Body)
+}
+
 /// Decodes one MAVLink 2 frame, ignoring any signature. Bounded work: O(frame bytes).
 ///
 /// # Errors
@@ -226,39 +248,30 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let raw = RawFrame::new(bytes).ok_or(DecodeError::Crc)?;
     let (boot, sequence, message) = match raw.message_id() {
         STAYA_BEACON_DATA::ID => beacon(&body(&raw)?)?,
-        STAYA_REQUEST_DATA::ID => request(&body(&raw)?)?,
-        STAYA_ACK_DATA::ID => ack(&body(&raw)?)?,
+        STAYA_MESSAGE_DATA::ID => to_law(&body(&raw)?)?,
+        STAYA_ACK_DATA::ID => {
+            let data: STAYA_ACK_DATA = body(&raw)?;
+            let ack = Ack { to: robot(data.target_system), boot: data.message_boot, number: data.number };
+            (data.boot, data.sequence, Message::Ack(ack))
+        }
         STAYA_TEMPLATE_DATA::ID => template_part(&body(&raw)?)?,
         STAYA_GOAL_DATA::ID => {
             let data: STAYA_GOAL_DATA = body(&raw)?;
-            let goal = GoalAssignment {
-                to: robot(data.target_system),
-                version: data.version,
-                target: Cell::new(data.target_x, data.target_y),
-            };
-            (data.boot, data.sequence, Message::Goal(goal))
+            let goal = GridOrder::FormationGoal(Cell::new(data.target_x, data.target_y));
+            let order = Grid::order(robot(data.target_system), data.version, &goal);
+            (data.boot, data.sequence, order.ok_or(DecodeError::Body)?)
         }
         STAYA_PLACE_DATA::ID => {
             let data: STAYA_PLACE_DATA = body(&raw)?;
-            let place = WaypointAssignment {
-                to: robot(data.target_system),
-                version: data.version,
-                index: data.index,
-                position_mm: [data.x_mm, data.y_mm, data.z_mm],
-                velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
+            let velocity_mmps = [data.vx_mmps, data.vy_mmps, data.vz_mmps];
+            let waypoint = Waypoint {
+                position: Position::from_mm([data.x_mm, data.y_mm, data.z_mm]),
+                velocity_mps: Vec3::from_milli(velocity_mmps.map(i32::from)),
+                at: Instant::default(),
             };
-            (data.boot, data.sequence, Message::Waypoint(place))
-        }
-        STAYA_LAND_DATA::ID => {
-            let data: STAYA_LAND_DATA = body(&raw)?;
-            let corner = Cell::new(data.corner_x, data.corner_y);
-            (data.boot, data.sequence, Message::Land(LandPatch::from_bytes(corner, data.tiles)))
-        }
-        STAYA_PAYLOAD_DATA::ID => {
-            let data: STAYA_PAYLOAD_DATA = body(&raw)?;
-            let bytes = data.bytes.get(..usize::from(data.count));
-            let payload = bytes.and_then(PayloadBytes::new).ok_or(DecodeError::Body)?;
-            (data.boot, data.sequence, Message::Payload(payload))
+            let order = WaypointOrder { index: data.index, waypoint };
+            let order = Waypoints::order(robot(data.target_system), data.version, &order);
+            (data.boot, data.sequence, order.ok_or(DecodeError::Body)?)
         }
         STAYA_LOST_DATA::ID => {
             let data: STAYA_LOST_DATA = body(&raw)?;
@@ -292,59 +305,42 @@ fn body<D: MessageData>(raw: &RawFrame<'_>) -> Result<D, DecodeError> {
 
 fn beacon(data: &STAYA_BEACON_DATA) -> Parts {
     let beacon = Beacon {
-        time: Instant::from_micros(data.time_us),
         position_mm: [data.x_mm, data.y_mm, data.z_mm],
         velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
         radius_mm: data.radius_mm,
-        cell: Cell::new(data.cell_x, data.cell_y),
-        heading: dir(data.heading).ok_or(DecodeError::Body)?,
-        busy_ms: data.busy_ms,
-        leader: robot(data.leader),
-        slot: data.slot,
         mode: mode(data.mode).ok_or(DecodeError::Body)?,
-        target: Cell::new(data.target_x, data.target_y),
+        flock: data.flock,
+        protocol: ProtocolId(data.protocol),
+        payload: filled(data.count, &data.bytes)?,
     };
     Ok((data.boot, data.sequence, Message::Beacon(beacon)))
 }
 
-fn request(data: &STAYA_REQUEST_DATA) -> Parts {
-    let request = Request {
-        to: robot(data.target_system),
-        origin: robot(data.origin),
-        number: data.number,
-        kind: match data.kind {
-            0 => RequestKind::Stop,
-            1 => RequestKind::Resume,
-            2 => RequestKind::Redirect,
-            _ => return Err(DecodeError::Body),
-        },
-        valid_ms: data.valid_ms,
+fn to_law(data: &STAYA_MESSAGE_DATA) -> Parts {
+    let (to, protocol) = (robot(data.target_system), ProtocolId(data.protocol));
+    let addressed = || Ok(Addressed { to, number: data.number, protocol, content: filled(data.count, &data.bytes)? });
+    let message = match data.kind {
+        TO_ONE => Message::Law(addressed()?),
+        TO_ALL => Message::Broadcast(Broadcast { protocol, content: filled(data.count, &data.bytes)? }),
+        ORDER => Message::Order(addressed()?),
+        _ => return Err(DecodeError::Body),
     };
-    Ok((data.boot, data.sequence, Message::Request(request)))
-}
-
-fn ack(data: &STAYA_ACK_DATA) -> Parts {
-    let ack = Ack {
-        to: robot(data.target_system),
-        boot: data.request_boot,
-        number: data.number,
-        accepted: match data.accepted {
-            0 => false,
-            1 => true,
-            _ => return Err(DecodeError::Body),
-        },
-    };
-    Ok((data.boot, data.sequence, Message::Ack(ack)))
+    Ok((data.boot, data.sequence, message))
 }
 
 #[expect(clippy::arithmetic_side_effects, reason = "at most as many as a part has entries")]
-fn template(part: &TemplateAssignment, boot: u8, sequence: u16) -> Result<STAYA_TEMPLATE_DATA, EncodeError> {
+fn template(
+    part: &TemplatePart,
+    target_system: u8,
+    boot: u8,
+    sequence: u16,
+) -> Result<STAYA_TEMPLATE_DATA, EncodeError> {
     let mut data = STAYA_TEMPLATE_DATA {
         sequence,
         offset_x: part.offset.x,
         offset_y: part.offset.y,
         boot,
-        target_system: system(part.to)?,
+        target_system,
         version: part.version,
         part: part.part,
         parts: part.parts,
@@ -361,8 +357,9 @@ fn template(part: &TemplateAssignment, boot: u8, sequence: u16) -> Result<STAYA_
     Ok(data)
 }
 
-// A part of the controller's template fits one message, and so does the payload of a law.
-const _: () = assert!(MAX_PAYLOAD == STAYA_PAYLOAD_DATA::DEFAULT.bytes.len());
+// A part of the controller's template fits one message, and so does what a law says.
+const _: () = assert!(MAX_PAYLOAD == STAYA_BEACON_DATA::DEFAULT.bytes.len());
+const _: () = assert!(MAX_CONTENT == STAYA_MESSAGE_DATA::DEFAULT.bytes.len());
 const _: () = assert!(TEMPLATE_PART == STAYA_TEMPLATE_DATA::DEFAULT.entry_id.len());
 
 fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
@@ -377,8 +374,7 @@ fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
         let entry = TemplateEntry { offset: Cell::new(*x, *y), id: robot(*id), hops: *hops };
         entries.push(entry).map_err(|_| DecodeError::Body)?;
     }
-    let part = TemplateAssignment {
-        to: robot(data.target_system),
+    let part = TemplatePart {
         version: data.version,
         part: data.part,
         parts: data.parts,
@@ -386,7 +382,9 @@ fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
         offset: Cell::new(data.offset_x, data.offset_y),
         entries,
     };
-    Ok((data.boot, data.sequence, Message::Template(part)))
+    let order = GridOrder::Template { part, is_restarted: false };
+    let order = Grid::order(robot(data.target_system), data.version, &order);
+    Ok((data.boot, data.sequence, order.ok_or(DecodeError::Body)?))
 }
 
 fn system(id: RobotId) -> Result<u8, EncodeError> {
@@ -397,22 +395,9 @@ fn robot(system: u8) -> RobotId {
     RobotId(system.into())
 }
 
-/// 0: stays; 1 to 8: the move of that number minus one.
-#[expect(clippy::arithmetic_side_effects, reason = "an index is at most 7")]
-const fn heading(dir: Dir) -> u8 {
-    match dir {
-        Dir::Stay => 0,
-        dir => dir.index() as u8 + 1,
-    }
-}
-
-#[expect(clippy::arithmetic_side_effects, reason = "1 to 8")]
-fn dir(heading: u8) -> Option<Dir> {
-    match heading {
-        0 => Some(Dir::Stay),
-        1..=8 => Some(Dir::from_index(heading - 1)),
-        _ => None,
-    }
+/// In thousandths, saturating.
+fn milli(mps: f32) -> i16 {
+    mps.to_milli().unwrap_or(0).clamp(i16::MIN.into(), i16::MAX.into()) as i16
 }
 
 fn mode(number: u8) -> Option<Mode> {

@@ -311,6 +311,12 @@ impl GridTask {
         self.stops.until()
     }
 
+    /// Whether a stop is in force.
+    #[must_use]
+    pub fn is_stopped(&self, now: Instant) -> bool {
+        self.stopped_until().is_some_and(|until| !is_over(until, now))
+    }
+
     /// The cell to go to; `None` without a goal.
     #[must_use]
     pub fn goal<S, P: Protocol>(&self, view: &View<'_, S, P>, offset: Cell) -> Option<Cell> {

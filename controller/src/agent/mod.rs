@@ -197,9 +197,9 @@ pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
-const _: () = assert!(BYTES[0] <= 4456 && BYTES[1] <= 4728 && BYTES[2] <= 2056 && BYTES[3] <= 2720);
+const _: () = assert!(BYTES[0] <= 4624 && BYTES[1] <= 4896 && BYTES[2] <= 1856 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4464, 4736, 2064, 2720]));
+const _: () = assert!(matches!(BYTES, [4632, 4904, 1864, 2720]));
 
 /// The controller of one robot: law `L`, at most `N` known neighbours, safety layer `A`, wire
 /// format `W`, perception `P`.
@@ -208,9 +208,9 @@ const _: () = assert!(matches!(BYTES, [4464, 4736, 2064, 2720]));
 ///
 /// | type | 32-bit part | 64-bit host |
 /// | --- | --- | --- |
-/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4456 | 4464 |
-/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4728 | 4736 |
-/// | [`OrcaAgent`] | at most 2056 | 2064 |
+/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4624 | 4632 |
+/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4896 | 4904 |
+/// | [`OrcaAgent`] | at most 1856 | 1864 |
 /// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
 ///
 /// With the feature `host`, lists take only the memory of their entries.
