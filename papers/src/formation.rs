@@ -86,18 +86,20 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
 
     /// Returns how far the neighbours are from their places in the template. O(F N).
     #[must_use]
-    pub fn graph_distance(
-        &self,
-        cell: Cell,
-        neighbors: impl Iterator<Item = GridNeighbor> + Clone,
-    ) -> GraphDistance {
+    pub fn graph_distance(&self, cell: Cell, neighbors: impl Iterator<Item = GridNeighbor> + Clone) -> GraphDistance {
         let robots = neighbors.map(|other| seen_at(&other, other.cell));
         graph_distance(cell, &find_neighbors(&self.template, cell, self.formation.eps, robots))
     }
 
     /// Algorithm 5 with `predict`.
     #[inline(never)]
-    fn found<S: Copy>(&self, input: &View<'_, S, Grid>, window: &Window<'_>, cell: Cell, field: &mut CostField<CELLS>) -> Found<F> {
+    fn found<S: Copy>(
+        &self,
+        input: &View<'_, S, Grid>,
+        window: &Window<'_>,
+        cell: Cell,
+        field: &mut CostField<CELLS>,
+    ) -> Found<F> {
         let robots = input.on_grid().map(|other| seen_at(&other, other.cell));
         let mut found = find_neighbors(&self.template, cell, self.formation.eps, robots);
         for member in &mut found.members {

@@ -1,8 +1,8 @@
 //! Splits a formation template into parts for transmission and reassembles it.
 
-use crate::grid::Cell;
 use super::{GridOrder, OfAnotherLaw};
 use crate::fixint;
+use crate::grid::Cell;
 use crate::list;
 use crate::robot::RobotId;
 use crate::template::{Template, TemplateEntry};

@@ -241,7 +241,13 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         Some(weights.plus(&price))
     }
 
-    fn guide<S: Copy>(&mut self, input: &View<'_, S, Grid>, view: &Template<F>, cell: Cell, seen: &[Seen]) -> Option<Guide> {
+    fn guide<S: Copy>(
+        &mut self,
+        input: &View<'_, S, Grid>,
+        view: &Template<F>,
+        cell: Cell,
+        seen: &[Seen],
+    ) -> Option<Guide> {
         let top = self.top(input, view);
         let top = top.and_then(|(top, offset)| Some((seen.iter().find(|seen| seen.id == top)?, offset)));
         self.steering.note(top.map_or((input.id, cell), |(seen, _)| (seen.id, seen.cell)));

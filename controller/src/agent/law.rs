@@ -262,7 +262,8 @@ pub struct Report {
 
 impl Report {
     /// Nothing to show.
-    pub(super) const NONE: Self = Self { goal: None, target: None, leader: RobotId::NONE, slot: 0, stopped_until: None };
+    pub(super) const NONE: Self =
+        Self { goal: None, target: None, leader: RobotId::NONE, slot: 0, stopped_until: None };
 }
 
 /// The decision of a guidance law.

@@ -1,10 +1,10 @@
 //! The radio link of an agent: decodes received frames, encodes frames to send.
 
+use super::AgentConfig;
 use super::contact_loss::{ContactState, Listening};
 use super::duplicate_id::EchoFilter;
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
 use super::protocol::{Outgoing, Protocol, Queued, Radio};
-use super::AgentConfig;
 use crate::body::Body;
 use crate::geom::{Position, Torus, Vec3};
 use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put};
@@ -43,10 +43,7 @@ pub(super) struct Receipt {
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound(
-    serialize = "S: Serialize, W: Serialize",
-    deserialize = "S: Deserialize<'de>, W: Deserialize<'de>"
-))]
+#[serde(bound(serialize = "S: Serialize, W: Serialize", deserialize = "S: Deserialize<'de>, W: Deserialize<'de>"))]
 pub(super) struct Link<S, const N: usize, W, Q: Protocol> {
     wire: W,
     header: Header,

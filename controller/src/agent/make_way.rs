@@ -1,7 +1,7 @@
 //! A robot makes way for a robot that it blocks in a narrow place.
 
-use super::{Protocol, View};
 use super::goal_occupancy::SLOW;
+use super::{Protocol, View};
 use crate::body::Body;
 use crate::geom::{Vec2, Vec3};
 use crate::neighbor::Nearby;

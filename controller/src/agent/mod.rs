@@ -133,8 +133,10 @@ mod waypoint_guidance;
 #[cfg(all(test, feature = "auth"))]
 mod tests;
 
-pub use any::{AnyHalfPlanes, AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySafety, Narrow, OfAnotherLaw, decide_as,
-    order_as, payload_as, receive_as};
+pub use any::{
+    AnyHalfPlanes, AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySafety, Narrow, OfAnotherLaw, decide_as,
+    order_as, payload_as, receive_as,
+};
 pub use assembly::{MAX_TEMPLATE, PartError, TEMPLATE_PART, TemplateAssembler, TemplatePart};
 pub use cell_follower::CellFollower;
 pub use config::AgentConfig;

@@ -55,7 +55,13 @@ impl MoveHistory {
 
     /// Stores the choice. Returns a robot to redirect, which has been in the way for too long.
     /// `idle`: moves since the robot was nearest to its target.
-    pub(super) fn note<S: Copy>(&mut self, input: &View<'_, S, Grid>, cell: Cell, choice: Dir, idle: u8) -> Option<RobotId> {
+    pub(super) fn note<S: Copy>(
+        &mut self,
+        input: &View<'_, S, Grid>,
+        cell: Cell,
+        choice: Dir,
+        idle: u8,
+    ) -> Option<RobotId> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
         self.cell = Some(cell);

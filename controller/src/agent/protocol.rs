@@ -10,7 +10,7 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// The vocabulary of one or more laws. Laws that share a protocol understand each other.
-pub trait Protocol {
+pub trait Protocol: Clone + core::fmt::Debug {
     /// Its number in each frame.
     const ID: ProtocolId;
     /// A part of each beacon, at most [`MAX_PAYLOAD`](crate::wire::MAX_PAYLOAD) bytes: a state

@@ -2,8 +2,8 @@
 
 use super::law::{Action, BadInput, Decision, Law, Report, Status, Tools, View};
 use super::move_history::{MoveHistory, avoid_crossing};
-use super::{Grid, GridMessage, GridOrder, GridPayload, GridTask, Radio};
 use super::{FarMap, OnGrid};
+use super::{Grid, GridMessage, GridOrder, GridPayload, GridTask, Radio};
 use crate::cost::{Gain, Weights};
 use crate::grid::{Cell, Dir, Window};
 use crate::list;

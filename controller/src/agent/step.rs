@@ -1,10 +1,10 @@
 //! One step of an agent: [`Agent::step_into`]. Phases are not inlined, so each frees its stack.
 
 use super::contact_loss::ContactState;
-use super::link::{ReceiveContext, Received, beacon, report};
-use super::wait::is_hindered;
 use super::grid_protocol::is_over;
+use super::link::{ReceiveContext, Received, beacon, report};
 use super::protocol::{Outgoing, Radio};
+use super::wait::is_hindered;
 use super::{
     Action, Agent, Command, Decision, Event, Inputs, KinematicState, Last, Law, OrderOf, Outputs, Perception, Report,
     Safety, SafetyInput, Surroundings, Tools, View, Wait,

@@ -19,7 +19,6 @@ pub const TRACKS: usize = 16;
 /// Detections of a step that are processed; further ones are counted in [`Sighted::no_room`].
 pub const SIGHTINGS: usize = 32;
 
-
 /// Assigns detections and beacons to tracks, and writes each track into the neighbour table.
 ///
 /// | input | assigned to the first of these that exists |

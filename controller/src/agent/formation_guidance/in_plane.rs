@@ -210,7 +210,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 
     /// Metres; 0 if patience is exhausted or the robot travels alone.
-    fn lag_to_wait_for(&mut self, input: &View<'_, S, Grid>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
+    fn lag_to_wait_for(
+        &mut self,
+        input: &View<'_, S, Grid>,
+        view: &Template<F>,
+        step: &Step<'_, S>,
+        ahead: Vec2<S>,
+    ) -> S {
         if self.inside().leader.is_some() {
             return S::ZERO;
         }
@@ -227,7 +233,12 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 }
 
-fn lag_m<S: Scalar, const F: usize>(input: &View<'_, S, Grid>, view: &Template<F>, step: &Step<'_, S>, ahead: Vec2<S>) -> S {
+fn lag_m<S: Scalar, const F: usize>(
+    input: &View<'_, S, Grid>,
+    view: &Template<F>,
+    step: &Step<'_, S>,
+    ahead: Vec2<S>,
+) -> S {
     let lag = |entry: &TemplateEntry| {
         let other = input.neighbor(entry.id)?;
         let is_under_way = other.mode.gives_way() && other.mode != Mode::Arrived;

@@ -49,7 +49,12 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     }
 
     /// By the clock, or by its sequence numbers if its packets were delayed.
-    fn time_since(&self, known: &Neighbor<S, Q::Payload>, header: Header, listener: &ReceiveContext<'_, S>) -> Duration {
+    fn time_since(
+        &self,
+        known: &Neighbor<S, Q::Payload>,
+        header: Header,
+        listener: &ReceiveContext<'_, S>,
+    ) -> Duration {
         let window = self.windows.iter().find(|(id, _)| *id == known.id);
         let frames = window.map_or(0, |(_, window)| window.distance(header));
         let counted = listener.period.saturating_mul(frames.into());
@@ -112,7 +117,12 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     }
 
     /// Reduces radius and speed to the limits. Reports the first of consecutive violations.
-    pub(super) fn cut(&self, said: &mut Neighbor<S, Q::Payload>, plausibility: &PlausibilityLimits<S>, out: &mut Outputs<S>) {
+    pub(super) fn cut(
+        &self,
+        said: &mut Neighbor<S, Q::Payload>,
+        plausibility: &PlausibilityLimits<S>,
+        out: &mut Outputs<S>,
+    ) {
         let (is_large, is_fast) = plausibility.cut(said);
         if !is_large && !is_fast {
             return;

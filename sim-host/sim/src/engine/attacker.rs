@@ -4,13 +4,12 @@ use crate::radio::{self, HostWire};
 use crate::scenario::{Attack, AttackKind, Lie, Scenario};
 use heapless::Vec as Bounded;
 use serde::Serialize;
+use staya_controller::agent::{Grid, GridOrder, GridPayload, Protocol, Waypoint, WaypointOrder, Waypoints};
 use staya_controller::auth::Key;
+use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
-use staya_controller::time::Instant;
-use staya_controller::wire::{
-    Beacon, Frame, GoalAssignment, Header, KeyHeld, MAX_FRAME_LEN, Message, Ring, WaypointAssignment, Wire,
-};
+use staya_controller::wire::{Beacon, Content as _, Frame, Header, KeyHeld, MAX_FRAME_LEN, Message, Ring, Wire};
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
@@ -23,7 +22,6 @@ const RING_M: f64 = 1.5;
 pub struct Attacker {
     attack: Attack,
     cell_m: f64,
-    tick_us: u32,
     /// Ids of invented robots start after this one.
     last: u32,
     radius_mm: u16,
@@ -50,7 +48,6 @@ impl Attacker {
         Self {
             attack: attack.clone(),
             cell_m: scenario.terrain.cell_m,
-            tick_us: scenario.tick_us,
             last: scenario.usual_claims().last.0,
             radius_mm: libm::round(radius_m * 1000.0) as u16,
             wire: radio::wire(scenario.radio.format, key, starts),
@@ -135,36 +132,37 @@ impl Attacker {
     fn lie(&mut self, lie: Lie, tick: u32) {
         let Attack { place_m, lure_m, claims, ghosts, .. } = self.attack;
         let [x_m, y_m] = lure_m;
-        let honest = self.beacon(place_m, tick);
+        let honest = self.beacon(place_m);
         match lie {
             Lie::Orders => self.lure(),
-            Lie::Radius => self.say(claims, Beacon { radius_mm: u16::MAX, ..self.beacon(lure_m, tick) }),
+            Lie::Radius => self.say(claims, Beacon { radius_mm: u16::MAX, ..self.beacon(lure_m) }),
             Lie::Speed => {
                 let way = [0, 1].map(|axis| lure_m[axis] - place_m[axis]);
                 let length = libm::hypot(way[0], way[1]).max(1e-9);
                 let [vx, vy] = way.map(|way| libm::round(way / length * 32_000.0) as i16);
                 self.say(claims, Beacon { velocity_mmps: [vx, vy, 0], ..honest });
             }
-            Lie::Jump => self.say(claims, if tick.is_multiple_of(2) { honest } else { self.beacon(lure_m, tick) }),
+            Lie::Jump => self.say(claims, if tick.is_multiple_of(2) { honest } else { self.beacon(lure_m) }),
             Lie::Ghosts => {
                 for number in 0..ghosts {
                     let angle = TAU * f64::from(number) / f64::from(ghosts);
                     let at_m = [x_m + RING_M * libm::cos(angle), y_m + RING_M * libm::sin(angle)];
-                    self.say(RobotId(self.last + 1 + u32::from(number)), self.beacon(at_m, tick));
+                    self.say(RobotId(self.last + 1 + u32::from(number)), self.beacon(at_m));
                 }
             }
         }
     }
 
-    fn beacon(&self, [x_m, y_m]: [f64; 2], tick: u32) -> Beacon {
+    fn beacon(&self, [x_m, y_m]: [f64; 2]) -> Beacon {
         let cell = self.cell([x_m, y_m]);
+        let payload = GridPayload { cell, target: cell, ..GridPayload::default() };
+        let (protocol, payload) = payload.encode(Grid::ID).expect("a payload of the grid fits a beacon");
         Beacon {
-            time: Instant::from_micros(tick.wrapping_mul(self.tick_us)),
             position_mm: [millis(x_m), millis(y_m), 0],
             radius_mm: self.radius_mm,
-            cell,
-            target: cell,
             mode: Mode::Hold,
+            protocol,
+            payload,
             ..Beacon::default()
         }
     }
@@ -172,11 +170,14 @@ impl Attacker {
     fn lure(&mut self) {
         self.version = self.version.wrapping_add(1);
         let [x_m, y_m] = self.attack.lure_m;
-        let (to, version, target) = (RobotId::NONE, self.version, self.cell([x_m, y_m]));
-        self.tell(self.attack.claims, &Message::Goal(GoalAssignment { to, version, target }));
-        let position_mm = [millis(x_m), millis(y_m), 0];
-        let place = WaypointAssignment { to, version, index: 0, position_mm, velocity_mmps: [0; 3] };
-        self.tell(self.attack.claims, &Message::Waypoint(place));
+        self.order::<Grid>(&GridOrder::FormationGoal(self.cell([x_m, y_m])));
+        let position = Position::from_mm([millis(x_m), millis(y_m), 0]);
+        self.order::<Waypoints>(&WaypointOrder::first(Waypoint::fixed(position)));
+    }
+
+    fn order<P: Protocol>(&mut self, order: &P::Order) {
+        let message = P::order(RobotId::NONE, self.version, order).expect("an order fits a frame");
+        self.tell(self.attack.claims, &message);
     }
 
     fn cell(&self, place_m: [f64; 2]) -> Cell {

@@ -9,8 +9,7 @@ use crate::world::Refusal;
 use crate::world::plane::{Clearance, Disc, Solid};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use staya_controller::agent::{AgentConfig, AnyInputs, Command, Law, Task, WAYPOINTS};
-use staya_controller::grid::Cell;
+use staya_controller::agent::{AgentConfig, AnyInputs, AnyOrder, Command, Law, Protocol, Task, WAYPOINTS};
 use staya_controller::neighbor::Sighting;
 use staya_controller::time::Duration;
 use thiserror::Error;
@@ -175,7 +174,7 @@ pub trait Ground: Send + Sync {
     }
 
     /// Foreign bodies that send beacons, with their cells.
-    fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {
+    fn heard(&self) -> impl Iterator<Item = &Disc> {
         core::iter::empty()
     }
 
@@ -199,10 +198,11 @@ pub enum WrongWorld {
     Land,
 }
 
-/// A law that can change threads and whose scratch memory displays can show.
-pub trait HostLaw: Law<f32, Workspace: Scratchpad> + Send {}
+/// A law that can change threads, whose scratch memory displays can show, and whose orders can be
+/// made of the goals in scenario files.
+pub trait HostLaw: Law<f32, Workspace: Scratchpad, Protocol: Protocol<Order: TryFrom<AnyOrder>>> + Send {}
 
-impl<L: Law<f32, Workspace: Scratchpad> + Send> HostLaw for L {}
+impl<L> HostLaw for L where L: Law<f32, Workspace: Scratchpad, Protocol: Protocol<Order: TryFrom<AnyOrder>>> + Send {}
 
 /// State of a body as 64-bit words.
 pub type StateWords = heapless::Vec<u64, 8>;

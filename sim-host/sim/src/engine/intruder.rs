@@ -5,12 +5,8 @@ use crate::world::plane::Disc;
 use heapless::Vec as Bounded;
 use serde::Serialize;
 use staya_controller::agent::OUTBOX;
-use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
-use staya_controller::time::Instant;
 use staya_controller::wire::{Beacon, Format, Header, Message, Wire as _};
-
-const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 pub struct Intruder {
     pub id: RobotId,
@@ -42,18 +38,14 @@ impl Intruder {
     }
 
     /// Prepares a beacon with position and velocity, of a robot that does not give way.
-    pub fn speak(&mut self, disc: &Disc, cell: Option<Cell>, time: Instant) {
+    pub fn speak(&mut self, disc: &Disc) {
         let milli = |x: f64| libm::round(x * 1000.0);
-        let cell = cell.unwrap_or(NO_CELL);
         let [x, y, _] = disc.position_m;
         self.position_m = [x, y];
         let beacon = Beacon {
-            time,
             position_mm: disc.position_m.map(|x| milli(x) as i32),
             velocity_mmps: disc.velocity_mps.map(|v| milli(v) as i16),
             radius_mm: milli(disc.radius_m) as u16,
-            cell,
-            target: cell,
             mode: Mode::Passive,
             ..Beacon::default()
         };

@@ -3,10 +3,11 @@
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, AnyOrder, AnyProtocol, AnySurroundings, BadInput, Decision, FormationGuidance, GridMessage, GridWorkspace,
-    GuidanceSetup, LEARNED, Law, MAP_TILES, Radio, Report, SharedMap, TEMPLATE, Tools, VISITS, View, decide_as,
-    order_as, receive_as,
+    AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, FormationGuidance,
+    GridWorkspace, GuidanceSetup, LEARNED, Law, MAP_TILES, Radio, Report, SharedMap, TEMPLATE, Tools, VISITS, View,
+    decide_as, order_as, payload_as, receive_as,
 };
+use staya_controller::grid::Dir;
 use staya_controller::parameters::Parameters;
 use staya_controller::robot::RobotId;
 use staya_papers::criteria::PublishedParams;
@@ -90,7 +91,7 @@ impl Law<f32> for ScenarioLaw {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32>,
+        view: &View<'_, f32, AnyProtocol>,
         here: &AnySurroundings<'_, f32>,
         tools: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
@@ -98,16 +99,21 @@ impl Law<f32> for ScenarioLaw {
         each!(self, law => decide_as(law, view, here, (rng, &mut radio), workspace))
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
-        each!(self, law => Law::<f32>::payload(law, radio));
+    fn payload(
+        &mut self,
+        here: &AnySurroundings<'_, f32>,
+        heading: Dir,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> AnyPayload {
+        each!(self, law => payload_as(law, here, heading, radio))
     }
 
-    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
-        each!(self, law => receive_as::<f32, _>(law, from, message))
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
+        each!(self, law => receive_as::<f32, _, _>(law, from, message, radio));
     }
 
-    fn order(&mut self, order: AnyOrder) -> bool {
-        each!(self, law => order_as::<f32, _>(law, order))
+    fn order(&mut self, order: &AnyOrder) -> bool {
+        each!(self, law => order_as::<f32, _, _>(law, order))
     }
 
     fn needs(&self, id: RobotId) -> bool {

@@ -231,7 +231,7 @@ where
         let attackers: Vec<_> = attackers.collect();
         let ids = here.iter().map(|&number| robots[number as usize].id);
         let intruders = ground.heard().filter(|_| has_others);
-        let intruders: Vec<_> = intruders.map(|(disc, _)| Intruder::new(disc, format)).collect();
+        let intruders: Vec<_> = intruders.map(|disc| Intruder::new(disc, format)).collect();
         let ids = ids.chain((0..attackers.len()).map(Attacker::id));
         let ids = ids.chain(intruders.iter().map(|intruder| intruder.id));
         let keeper = KeyServer::new(scenario).filter(|_| has_others);

@@ -1,22 +1,21 @@
 //! Scenarios with a law supplied by the caller, on the grid, in the plane or in space.
 
 use super::ground::WrongWorld;
-use super::inspect::Scratchpad;
 use super::operator::{Operated, boxed};
 use super::simulate::{SafetyOf, go, resume};
 use super::state::State;
 use super::witness::Witness;
-use super::{Engine, ExternalController, Grid, Ground as _, Moment, Outcome, PlaneGround, StartError, Watch};
+use super::{Engine, ExternalController, Grid, Ground as _, HostLaw, Moment, Outcome, PlaneGround, StartError, Watch};
 use crate::record::RobotRow;
 use crate::scenario::Scenario;
-use staya_controller::agent::{AnySurroundings, CellState, Guided, InCell, InCells, InPlane, Law, OnGrid};
+use staya_controller::agent::{AnySurroundings, CellState, Guided, InCell, InCells, InPlane, OnGrid};
 use staya_controller::geom::Vec2;
 use std::ops::ControlFlow;
 
 /// A law supplied by the caller. Its state is serialized in checkpoints.
-pub trait OwnLaw: Law<f32, Workspace: Scratchpad> + State + Clone + Send + 'static {}
+pub trait OwnLaw: HostLaw + State + Clone + 'static {}
 
-impl<L> OwnLaw for L where L: Law<f32, Workspace: Scratchpad> + State + Clone + Send + 'static {}
+impl<L> OwnLaw for L where L: HostLaw + State + Clone + 'static {}
 
 /// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the law of robot `i`
 /// in [`Scenario::robots`] at each of its starts. The scenario determines the bodies, safety

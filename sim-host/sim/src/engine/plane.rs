@@ -491,9 +491,8 @@ impl Ground for PlaneGround {
         }
     }
 
-    fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {
-        let heard = self.plane.intruders().iter().filter(|intruder| intruder.id.is_some());
-        heard.map(|disc| (disc, self.plane.cell(disc.position_m)))
+    fn heard(&self) -> impl Iterator<Item = &Disc> {
+        self.plane.intruders().iter().filter(|intruder| intruder.id.is_some())
     }
 
     fn orders(&self, tick: u32) -> Option<&[u8]> {

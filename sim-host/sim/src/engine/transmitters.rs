@@ -4,7 +4,6 @@ use super::{Engine, Ground, HostLaw};
 use crate::radio::HostWire;
 use staya_controller::agent::Safety;
 use staya_controller::robot::RobotId;
-use staya_controller::time::Instant;
 use staya_controller::wire::Ring;
 
 impl<W, G, A> Engine<W, G, A>
@@ -42,13 +41,10 @@ where
 
     /// Lets intruders prepare beacons.
     pub fn intrude(&mut self) {
-        let now = Instant::from_micros(self.tick.wrapping_mul(self.tick_us));
         let first = self.computers.len() + self.attackers.len();
         let positions_m = self.positions_m.iter_mut().skip(first);
-        for ((intruder, position_m), (disc, cell)) in
-            self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard())
-        {
-            intruder.speak(disc, cell, now);
+        for ((intruder, position_m), disc) in self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard()) {
+            intruder.speak(disc);
             *position_m = intruder.position_m;
         }
     }

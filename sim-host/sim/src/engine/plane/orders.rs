@@ -2,12 +2,12 @@
 
 use crate::radio;
 use crate::scenario::{Order, Target};
-use staya_controller::agent::{WAYPOINTS, Waypoint};
+use staya_controller::agent::{Protocol as _, WAYPOINTS, Waypoint, WaypointOrder, Waypoints};
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
-use staya_controller::wire::{Format, Header, Message, WaypointAssignment, Wire};
+use staya_controller::wire::{Format, Header, Wire};
 
 pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec<(u32, Vec<u8>)> {
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
@@ -19,17 +19,17 @@ pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&K
         let version = &mut versions[usize::from(order.index)];
         *version = version.wrapping_add(1);
         let milli = |x: f64| libm::round(x * 1000.0);
-        let place = WaypointAssignment {
-            to: RobotId::NONE,
-            version: *version,
-            index: order.index,
-            position_mm: order.target.position_m.map(|x| milli(x) as i32),
-            velocity_mmps: order.target.velocity_mps.map(|x| milli(x) as i16),
+        let waypoint = Waypoint {
+            position: Position::from_mm(order.target.position_m.map(|x| milli(x) as i32)),
+            velocity_mps: Vec3::from_milli(order.target.velocity_mps.map(|x| i32::from(milli(x) as i16))),
+            at: Instant::default(),
         };
+        let place = WaypointOrder { index: order.index, waypoint };
+        let message = Waypoints::order(RobotId::NONE, *version, &place).expect("a waypoint fits a frame");
         let header = Header { boot: 0, sender, sequence };
         sequence = sequence.wrapping_add(1);
         let mut bytes = heapless::Vec::<u8, 64>::new();
-        wire.encode(header, &Message::Waypoint(place), &mut bytes).expect("a frame has at most 60 bytes");
+        wire.encode(header, &message, &mut bytes).expect("a frame has at most 60 bytes");
         match frames.last_mut() {
             Some((tick, frame)) if *tick == order.tick => frame.extend_from_slice(&bytes),
             _ => frames.push((order.tick, bytes.to_vec())),
