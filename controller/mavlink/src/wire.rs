@@ -211,7 +211,7 @@ fn encode_order<const N: usize>(
             };
             frame::encode(sender, &data, out)
         }
-        Some(AnyOrder::Grid(GridOrder::Goal(_))) | None => {
+        Some(AnyOrder::Grid(GridOrder::Goal(_)) | AnyOrder::Other(_)) | None => {
             let order = ToLaw { to: *to, kind: ORDER, number: *number, protocol: *protocol };
             frame::encode(sender, &order.with(content, header)?, out)
         }

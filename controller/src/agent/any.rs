@@ -21,7 +21,7 @@ use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use crate::wire::{Bytes, Content, Never, ProtocolId};
+use crate::wire::{Bytes, Content, MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD, Never, ProtocolId};
 use serde::{Deserialize, Serialize};
 
 /// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
@@ -91,14 +91,18 @@ impl Protocol for AnyProtocol {
     type Message = AnyMessage;
     type Order = AnyOrder;
 
-    fn subject(AnyMessage::Grid(message): &AnyMessage) -> u32 {
-        Grid::subject(message)
+    fn subject(message: &AnyMessage) -> u32 {
+        match message {
+            AnyMessage::Grid(message) => Grid::subject(message),
+            AnyMessage::Other(_) => 0,
+        }
     }
 
     fn order_subject(order: &AnyOrder) -> Option<u32> {
         match order {
             AnyOrder::Grid(order) => Grid::order_subject(order),
             AnyOrder::Waypoint(order) => Waypoints::order_subject(order),
+            AnyOrder::Other(_) => Some(0),
         }
     }
 
@@ -106,61 +110,153 @@ impl Protocol for AnyProtocol {
         match order {
             AnyOrder::Grid(order) => Grid::received(order, sent, is_restarted),
             AnyOrder::Waypoint(order) => Waypoints::received(order, sent, is_restarted),
+            AnyOrder::Other(_) => {}
         }
     }
 }
 
-/// The payload of any built-in law.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// The bytes of a value of a protocol of users.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(missing_docs, reason = "each variant's type says it")]
-pub enum AnyPayload {
-    #[default]
-    None,
-    Grid(GridPayload),
+pub struct Raw<const N: usize> {
+    /// The protocol.
+    pub id: ProtocolId,
+    /// The bytes.
+    pub bytes: Bytes<N>,
 }
 
-/// A message of any built-in law.
+/// The payload of any law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AnyPayload {
+    /// Nothing but the number of the protocol.
+    Empty(ProtocolId),
+    /// Of a law on the grid.
+    Grid(GridPayload),
+    /// Of a protocol of users.
+    Other(OtherPayload),
+}
+
+impl Default for AnyPayload {
+    fn default() -> Self {
+        Self::Empty(ProtocolId::NONE)
+    }
+}
+
+/// Made of the payload of one law of an enum.
+pub trait FromPayload<T> {
+    /// Wraps the payload of a law with protocol `own`.
+    fn from_payload(own: ProtocolId, payload: T) -> Self;
+}
+
+impl FromPayload<()> for AnyPayload {
+    fn from_payload(own: ProtocolId, (): ()) -> Self {
+        Self::Empty(own)
+    }
+}
+
+impl FromPayload<GridPayload> for AnyPayload {
+    fn from_payload(_: ProtocolId, payload: GridPayload) -> Self {
+        Self::Grid(payload)
+    }
+}
+
+impl FromPayload<Self> for AnyPayload {
+    fn from_payload(_: ProtocolId, payload: Self) -> Self {
+        payload
+    }
+}
+
+/// The payload of a protocol of users.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct OtherPayload {
+    id: ProtocolId,
+    len: u8,
+    bytes: [u8; MAX_PAYLOAD],
+}
+
+impl OtherPayload {
+    fn new(id: ProtocolId, payload: &[u8]) -> Option<Self> {
+        let mut other = Self { id, len: u8::try_from(payload.len()).ok()?, ..Self::default() };
+        other.bytes.get_mut(..payload.len())?.copy_from_slice(payload);
+        Some(other)
+    }
+
+    /// The protocol.
+    #[must_use]
+    pub const fn id(&self) -> ProtocolId {
+        self.id
+    }
+
+    /// The bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        self.bytes.get(..usize::from(self.len)).unwrap_or_default()
+    }
+}
+
+/// A message of any law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnyMessage {
     Grid(GridMessage),
+    Other(Raw<MAX_CONTENT>),
 }
 
-/// An order to any built-in law.
+/// An order to any law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnyOrder {
     Grid(GridOrder),
     Waypoint(WaypointOrder),
+    Other(Raw<MAX_ORDER>),
 }
 
 impl Content for AnyPayload {
     fn encode<const N: usize>(&self, _: ProtocolId) -> Option<(ProtocolId, Bytes<N>)> {
         match self {
-            Self::None => Some((ProtocolId::NONE, Bytes::new())),
+            Self::Empty(id) => Some((*id, Bytes::new())),
             Self::Grid(payload) => payload.encode(Grid::ID),
+            Self::Other(other) => Some((other.id, Bytes::from_slice(other.bytes()).ok()?)),
+        }
+    }
+
+    fn decode(_: ProtocolId, id: ProtocolId, bytes: &[u8]) -> Option<Self> {
+        match id {
+            _ if bytes.is_empty() => Some(Self::Empty(id)),
+            Grid::ID => Content::decode(id, id, bytes).map(Self::Grid),
+            _ => OtherPayload::new(id, bytes).map(Self::Other),
+        }
+    }
+}
+
+impl<const N: usize> Raw<N> {
+    fn new(id: ProtocolId, bytes: &[u8]) -> Option<Self> {
+        Some(Self { id, bytes: Bytes::from_slice(bytes).ok()? })
+    }
+
+    fn encode<const M: usize>(&self) -> Option<(ProtocolId, Bytes<M>)> {
+        Some((self.id, Bytes::from_slice(&self.bytes).ok()?))
+    }
+}
+
+impl Content for AnyMessage {
+    fn encode<const N: usize>(&self, _: ProtocolId) -> Option<(ProtocolId, Bytes<N>)> {
+        match self {
+            Self::Grid(message) => message.encode(Grid::ID),
+            Self::Other(raw) => raw.encode(),
         }
     }
 
     fn decode(_: ProtocolId, id: ProtocolId, bytes: &[u8]) -> Option<Self> {
         match id {
             Grid::ID => Content::decode(id, id, bytes).map(Self::Grid),
-            _ => Some(Self::None),
+            ProtocolId::NONE | Waypoints::ID => None,
+            _ => Raw::new(id, bytes).map(Self::Other),
         }
-    }
-}
-
-impl Content for AnyMessage {
-    fn encode<const N: usize>(&self, _: ProtocolId) -> Option<(ProtocolId, Bytes<N>)> {
-        let Self::Grid(message) = self;
-        message.encode(Grid::ID)
-    }
-
-    fn decode(_: ProtocolId, id: ProtocolId, bytes: &[u8]) -> Option<Self> {
-        Content::decode(Grid::ID, id, bytes).map(Self::Grid)
     }
 }
 
@@ -169,6 +265,7 @@ impl Content for AnyOrder {
         match self {
             Self::Grid(order) => order.encode(Grid::ID),
             Self::Waypoint(order) => order.encode(Waypoints::ID),
+            Self::Other(raw) => raw.encode(),
         }
     }
 
@@ -176,7 +273,8 @@ impl Content for AnyOrder {
         match id {
             Grid::ID => Content::decode(id, id, bytes).map(Self::Grid),
             Waypoints::ID => Content::decode(id, id, bytes).map(Self::Waypoint),
-            _ => None,
+            ProtocolId::NONE => None,
+            _ => Raw::new(id, bytes).map(Self::Other),
         }
     }
 }
@@ -196,7 +294,6 @@ macro_rules! one_of {
 
         impl TryFrom<$any> for $one {
             type Error = OfAnotherLaw;
-            #[allow(unreachable_patterns, reason = "an enum may have one variant")]
             fn try_from(any: $any) -> Result<Self, OfAnotherLaw> {
                 match any {
                     $any::$variant(one) => Ok(one),
@@ -206,20 +303,21 @@ macro_rules! one_of {
         }
     )+};
 }
-one_of!(AnyPayload { Grid(GridPayload) });
-one_of!(AnyMessage { Grid(GridMessage) });
-one_of!(AnyOrder { Grid(GridOrder), Waypoint(WaypointOrder) });
 
-impl From<()> for AnyPayload {
-    fn from((): ()) -> Self {
-        Self::None
+impl TryFrom<AnyPayload> for GridPayload {
+    type Error = OfAnotherLaw;
+    fn try_from(any: AnyPayload) -> Result<Self, OfAnotherLaw> {
+        if let AnyPayload::Grid(payload) = any { Ok(payload) } else { Err(OfAnotherLaw) }
     }
 }
+
+one_of!(AnyMessage { Grid(GridMessage) });
+one_of!(AnyOrder { Grid(GridOrder), Waypoint(WaypointOrder) });
 
 impl TryFrom<AnyPayload> for () {
     type Error = OfAnotherLaw;
     fn try_from(any: AnyPayload) -> Result<Self, OfAnotherLaw> {
-        if any == AnyPayload::None { Ok(()) } else { Err(OfAnotherLaw) }
+        if matches!(any, AnyPayload::Empty(_)) { Ok(()) } else { Err(OfAnotherLaw) }
     }
 }
 
@@ -289,10 +387,10 @@ pub fn payload_as<S: Scalar, L: Law<S>, P: Protocol>(
     radio: &mut Radio<'_, P>,
 ) -> P::Payload
 where
-    P::Payload: From<PayloadOf<L, S>>,
+    P::Payload: FromPayload<PayloadOf<L, S>>,
 {
     let Ok(here) = L::Surroundings::try_from(*here) else { return Default::default() };
-    law.payload(&here, heading, &mut radio.of()).into()
+    P::Payload::from_payload(<L::Protocol as Protocol>::ID, law.payload(&here, heading, &mut radio.of()))
 }
 
 /// Gives a message to one law of an enum of laws.

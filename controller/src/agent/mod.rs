@@ -134,8 +134,8 @@ mod waypoint_guidance;
 mod tests;
 
 pub use any::{
-    AnyHalfPlanes, AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySafety, Narrow, OfAnotherLaw, decide_as,
-    order_as, payload_as, receive_as,
+    AnyHalfPlanes, AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySafety, FromPayload, Narrow, OfAnotherLaw,
+    OtherPayload, Raw, decide_as, order_as, payload_as, receive_as,
 };
 pub use assembly::{MAX_TEMPLATE, PartError, TEMPLATE_PART, TemplateAssembler, TemplatePart};
 pub use cell_follower::CellFollower;

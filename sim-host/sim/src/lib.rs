@@ -19,6 +19,7 @@ pub mod file;
 pub mod key;
 pub mod metrics;
 pub mod nearby;
+mod own_law;
 pub mod radio;
 pub mod record;
 pub mod scenario;

@@ -254,6 +254,7 @@ impl Plan {
             parts: Vec::new(),
             route: RouteSetup { params: self.route, replan: Replan::EachCell, sharpness: self.sharpness },
             formation_params: self.formation,
+            law: None,
             published: None,
             looks_ahead: false,
             sensing: None,

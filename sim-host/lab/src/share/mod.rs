@@ -289,6 +289,7 @@ pub(crate) fn scenario(
         route: RouteSetup { params: route, replan: Replan::EachCell, sharpness: Sharpness::Greedy },
         maps: shared.map(|_| MapParams::default()),
         formation_params: FormationParams::default(),
+        law: None,
         published: None,
         looks_ahead: false,
         sensing: None,

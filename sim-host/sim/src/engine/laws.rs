@@ -1,5 +1,6 @@
-//! The laws that scenario files name: Staya's, and those of papers.
+//! The laws of robots in a scenario: Staya's, those of papers, and one of the caller.
 
+use crate::own_law::Own;
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
@@ -18,7 +19,7 @@ pub const WIDE: usize = 1225;
 
 type Map = Option<Box<SharedMap<MAP_TILES>>>;
 
-/// A law of a scenario file.
+/// A law of a robot in a scenario.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[expect(clippy::large_enum_variant, reason = "nearly all robots have a built-in law")]
 #[expect(missing_docs, reason = "each variant's type says it")]
@@ -26,6 +27,7 @@ pub enum ScenarioLaw {
     BuiltIn(AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Map>),
     Published(Box<PublishedFormation<WIDE, VISITS, TEMPLATE>>),
     LooksAhead(Box<FormationGuidance<WIDE, VISITS, TEMPLATE, LEARNED, Course, Map>>),
+    Own(Own),
 }
 
 /// Which law of a paper replaces Staya's formation.
@@ -67,6 +69,7 @@ macro_rules! each {
                 let $law = &mut **law;
                 $action
             }
+            ScenarioLaw::Own($law) => $action,
         }
     };
     (ref $any:expr, $law:ident => $action:expr) => {
@@ -80,6 +83,7 @@ macro_rules! each {
                 let $law = &**law;
                 $action
             }
+            ScenarioLaw::Own($law) => $action,
         }
     };
 }
@@ -96,7 +100,13 @@ impl Law<f32> for ScenarioLaw {
         tools: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
         let Tools { rng, mut radio, workspace } = tools;
-        each!(self, law => decide_as(law, view, here, (rng, &mut radio), workspace))
+        let sends = (rng, &mut radio);
+        match self {
+            Self::BuiltIn(law) => decide_as(law, view, here, sends, workspace),
+            Self::Published(law) => decide_as(&mut **law, view, here, sends, workspace),
+            Self::LooksAhead(law) => decide_as(&mut **law, view, here, sends, workspace),
+            Self::Own(law) => decide_as(law, view, here, sends, &mut ()),
+        }
     }
 
     fn payload(

@@ -30,6 +30,7 @@ mod status;
 mod transmitters;
 mod witness;
 
+pub use crate::own_law::{Own, OwnLaw, add_law};
 pub use checkpoint_interval::CheckpointInterval;
 use external::External;
 pub use external::{Decision, ExternalController};
@@ -39,7 +40,7 @@ pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, kn
 pub use intervene::Change;
 pub use laws::{ScenarioLaw, WIDE};
 pub use operator::{Observation, Operated, operated};
-pub use own::{OwnLaw, operated_own, own_agents, simulate_own, simulate_own_from, simulate_own_with};
+pub use own::{operated_own, own_agents, simulate_own, simulate_own_from, simulate_own_with};
 pub use plane::{PlaneGround, Sensor};
 #[doc(hidden)]
 pub use simulate::{LawOf, SafetyOf, agents};

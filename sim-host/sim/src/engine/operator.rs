@@ -109,10 +109,7 @@ pub trait Operated: Send {
 /// # Errors
 /// [`Misplaced`] when two robots start in one cell or one starts in a wall.
 pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
-    Ok(match AnyEngine::new(scenario)? {
-        AnyEngine::Plane(engine) => boxed(scenario, *engine),
-        AnyEngine::Cells(engine) => boxed(scenario, *engine),
-    })
+    Ok(AnyEngine::new(scenario)?.operated(scenario))
 }
 
 pub(super) fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Guided<f32, G>, SafetyOf>) -> Box<dyn Operated>

@@ -1,21 +1,17 @@
 //! Scenarios with a law supplied by the caller, on the grid, in the plane or in space.
 
 use super::ground::WrongWorld;
-use super::operator::{Operated, boxed};
-use super::simulate::{SafetyOf, go, resume};
-use super::state::State;
+use super::laws::ScenarioLaw;
+use super::operator::Operated;
+use super::simulate::{AnyEngine, LawOf, SafetyOf};
 use super::witness::Witness;
-use super::{Engine, ExternalController, Grid, Ground as _, HostLaw, Moment, Outcome, PlaneGround, StartError, Watch};
+use super::{ExternalController, Ground as _, Moment, Outcome, PlaneGround, StartError, Watch};
+use crate::own_law::{Own, OwnLaw};
 use crate::record::RobotRow;
 use crate::scenario::Scenario;
 use staya_controller::agent::{AnySurroundings, CellState, Guided, InCell, InCells, InPlane, OnGrid};
 use staya_controller::geom::Vec2;
 use std::ops::ControlFlow;
-
-/// A law supplied by the caller. Its state is serialized in checkpoints.
-pub trait OwnLaw: HostLaw + State + Clone + 'static {}
-
-impl<L> OwnLaw for L where L: HostLaw + State + Clone + 'static {}
 
 /// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the law of robot `i`
 /// in [`Scenario::robots`] at each of its starts. The scenario determines the bodies, safety
@@ -41,10 +37,7 @@ pub fn simulate_own_with<L: OwnLaw>(
     external: Option<Box<dyn ExternalController>>,
     watch: &mut Watch<'_>,
 ) -> Result<Outcome, StartError> {
-    Ok(match engine(scenario, law)? {
-        OwnEngine::Plane(engine) => go(scenario, *engine, external, watch),
-        OwnEngine::Cells(engine) => go(scenario, *engine, external, watch),
-    })
+    Ok(AnyEngine::with(scenario, own_agents(scenario, law)?)?.go(scenario, external, watch))
 }
 
 /// Resumes [`simulate_own`] from a checkpoint, as [`simulate_from`](super::simulate_from) does.
@@ -57,10 +50,7 @@ pub fn simulate_own_from<L: OwnLaw>(
     state: &[u8],
     watch: &mut Watch<'_>,
 ) -> Result<Outcome, StartError> {
-    Ok(match engine(scenario, law)? {
-        OwnEngine::Plane(engine) => resume(scenario, *engine, state, watch)?,
-        OwnEngine::Cells(engine) => resume(scenario, *engine, state, watch)?,
-    })
+    Ok(AnyEngine::with(scenario, own_agents(scenario, law)?)?.resume(scenario, state, watch)?)
 }
 
 /// Creates a run with the caller's law and an operator; for bridges and live views.
@@ -71,10 +61,7 @@ pub fn operated_own<L: OwnLaw>(
     scenario: &Scenario,
     law: impl Fn(usize) -> L + Send + Sync + 'static,
 ) -> Result<Box<dyn Operated>, StartError> {
-    Ok(match engine(scenario, law)? {
-        OwnEngine::Plane(engine) => boxed(scenario, *engine),
-        OwnEngine::Cells(engine) => boxed(scenario, *engine),
-    })
+    Ok(AnyEngine::with(scenario, own_agents(scenario, law)?)?.operated(scenario))
 }
 
 /// Returns a function that creates the caller's law, which an operator may override, and the safety
@@ -85,7 +72,7 @@ pub fn operated_own<L: OwnLaw>(
 pub fn own_agents<L: OwnLaw>(
     scenario: &Scenario,
     law: impl Fn(usize) -> L + Send + Sync + 'static,
-) -> Result<impl Fn(usize) -> (Guided<f32, L>, SafetyOf) + Send + Sync + 'static, WrongWorld> {
+) -> Result<impl Fn(usize) -> (LawOf, SafetyOf) + Send + Sync + 'static, WrongWorld> {
     fits::<L>(scenario)?;
     let robots = (0..scenario.robots.len()).map(|index| {
         let group = scenario.plane.as_ref().map(|setup| setup.group(index));
@@ -95,7 +82,8 @@ pub fn own_agents<L: OwnLaw>(
     let robots: Vec<_> = robots.collect();
     Ok(move |index: usize| {
         let (safety, [speed_mps, tolerance_m]) = &robots[index];
-        (Guided::new(law(index), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        let law = ScenarioLaw::Own(Own::new(law(index)));
+        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     })
 }
 
@@ -111,23 +99,6 @@ fn fits<L: OwnLaw>(scenario: &Scenario) -> Result<(), WrongWorld> {
         Some(_) => (AnySurroundings::InCells(InCells { grid, plane, in_cell }), WrongWorld::Land),
     };
     L::Surroundings::try_from(surroundings).map(|_| ()).map_err(|_| wrong)
-}
-
-enum OwnEngine<L: OwnLaw> {
-    Plane(Box<Engine<PlaneGround, Guided<f32, L>, SafetyOf>>),
-    Cells(Box<Engine<Grid, Guided<f32, L>, SafetyOf>>),
-}
-
-fn engine<L: OwnLaw>(
-    scenario: &Scenario,
-    law: impl Fn(usize) -> L + Send + Sync + 'static,
-) -> Result<OwnEngine<L>, StartError> {
-    let agents = own_agents(scenario, law)?;
-    Ok(if let Some(setup) = &scenario.plane {
-        OwnEngine::Plane(Box::new(Engine::new(scenario, PlaneGround::new(scenario, setup), agents)))
-    } else {
-        OwnEngine::Cells(Box::new(Engine::new(scenario, Grid::new(scenario)?, agents)))
-    })
 }
 
 #[cfg(test)]

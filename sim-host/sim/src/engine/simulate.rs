@@ -1,13 +1,14 @@
 //! Runs a whole scenario with the guidance law that it names.
 
 use super::laws::{Papers, ScenarioLaw};
+use super::operator::{Operated, boxed};
 use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround, WrongWorld};
 use crate::metrics::waits::WaitCount;
 use crate::metrics::{FormationKept, FormationQuality, PlaceError};
 use crate::record::{PacketCounts, RobotRow, TickRow};
-use crate::scenario::Scenario;
+use crate::scenario::{NamedLaw, Scenario};
 use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
@@ -103,10 +104,7 @@ pub fn simulate_with(
     external: Option<Box<dyn ExternalController>>,
     watch: &mut Watch<'_>,
 ) -> Result<Outcome, Misplaced> {
-    Ok(match AnyEngine::new(scenario)? {
-        AnyEngine::Plane(engine) => go(scenario, *engine, external, watch),
-        AnyEngine::Cells(engine) => go(scenario, *engine, external, watch),
-    })
+    Ok(AnyEngine::new(scenario)?.go(scenario, external, watch))
 }
 
 /// Why a run cannot begin.
@@ -129,10 +127,7 @@ pub enum StartError {
 /// # Errors
 /// See [`Grid::new`] and [`Engine::restore`].
 pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -> Result<Outcome, StartError> {
-    Ok(match AnyEngine::new(scenario)? {
-        AnyEngine::Plane(engine) => resume(scenario, *engine, state, watch)?,
-        AnyEngine::Cells(engine) => resume(scenario, *engine, state, watch)?,
-    })
+    Ok(AnyEngine::new(scenario)?.resume(scenario, state, watch)?)
 }
 
 /// Law of an agent: any law of scenario files, which an operator may override.
@@ -148,13 +143,51 @@ pub(super) enum AnyEngine {
 
 impl AnyEngine {
     pub(super) fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
+        Self::with(scenario, agents(scenario))
+    }
+
+    pub(super) fn with(
+        scenario: &Scenario,
+        agents: impl Fn(usize) -> (LawOf, SafetyOf) + Send + Sync + 'static,
+    ) -> Result<Self, Misplaced> {
         Ok(if let Some(setup) = &scenario.plane {
             let ground = PlaneGround::new(scenario, setup);
-            Self::Plane(Box::new(Engine::new(scenario, ground, agents(scenario))))
+            Self::Plane(Box::new(Engine::new(scenario, ground, agents)))
         } else {
             let ground = Grid::new(scenario)?;
-            Self::Cells(Box::new(Engine::new(scenario, ground, agents(scenario))))
+            Self::Cells(Box::new(Engine::new(scenario, ground, agents)))
         })
+    }
+
+    pub(super) fn go(
+        self,
+        scenario: &Scenario,
+        external: Option<Box<dyn ExternalController>>,
+        watch: &mut Watch<'_>,
+    ) -> Outcome {
+        match self {
+            Self::Plane(engine) => go(scenario, *engine, external, watch),
+            Self::Cells(engine) => go(scenario, *engine, external, watch),
+        }
+    }
+
+    pub(super) fn resume(
+        self,
+        scenario: &Scenario,
+        state: &[u8],
+        watch: &mut Watch<'_>,
+    ) -> Result<Outcome, StateError> {
+        match self {
+            Self::Plane(engine) => resume(scenario, *engine, state, watch),
+            Self::Cells(engine) => resume(scenario, *engine, state, watch),
+        }
+    }
+
+    pub(super) fn operated(self, scenario: &Scenario) -> Box<dyn Operated> {
+        match self {
+            Self::Plane(engine) => boxed(scenario, *engine),
+            Self::Cells(engine) => boxed(scenario, *engine),
+        }
     }
 }
 
@@ -181,16 +214,17 @@ pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (LawOf, SafetyOf) + Send
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, papers) = (scenario.maps, Papers::of(scenario));
+    let (maps, papers, own) = (scenario.maps, Papers::of(scenario), scenario.law.as_ref().map(NamedLaw::law));
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
         let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
-        (Guided::new(papers.law(guidance, map), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        let law = own.as_ref().map_or_else(|| papers.law(guidance, map), |own| ScenarioLaw::Own(own.clone()));
+        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     }
 }
 
-pub(super) fn go<W, G, A>(
+fn go<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
     external: Option<Box<dyn ExternalController>>,
@@ -213,7 +247,7 @@ where
     ticks(scenario, engine, watch)
 }
 
-pub(super) fn resume<W, G, A>(
+fn resume<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
     state: &[u8],

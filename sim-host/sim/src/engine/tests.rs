@@ -3,8 +3,8 @@ use crate::record::RobotRow;
 use crate::scenario::Overrides;
 use proptest::prelude::*;
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, Grid as OnCells, GridOrder, Report, Status as Standing,
-    Surroundings as _, Tools, Unguarded, View,
+    Action, AnySurroundings, BadInput, Decision, Grid as OnCells, GridOrder, GridPayload, Radio, Report,
+    Status as Standing, Surroundings as _, Tools, Unguarded, View,
 };
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::rand::Rng;
@@ -45,7 +45,7 @@ impl Law<f32> for Scout {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32>,
+        view: &View<'_, f32, OnCells>,
         here: &AnySurroundings<'_, f32>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
@@ -59,7 +59,7 @@ impl Law<f32> for Scout {
             cell,
             position_mm: position.mm,
             window: (window.origin(), window.width(), window.height()),
-            others: view.neighbors.iter().map(|n| (n.id.0, n.cell)).collect(),
+            others: view.on_grid().map(|n| (n.id.0, n.cell)).collect(),
         });
         Ok(Decision {
             action: Action::Moves([Dir::East].into_iter().collect()),
@@ -67,9 +67,14 @@ impl Law<f32> for Scout {
         })
     }
 
-    fn order(&mut self, order: GridOrder) -> bool {
+    fn payload(&mut self, here: &AnySurroundings<'_, f32>, heading: Dir, _: &mut Radio<'_, OnCells>) -> GridPayload {
+        let cell = here.on_grid().map(|grid| grid.cell.cell).unwrap_or_default();
+        GridPayload { cell, heading, ..GridPayload::default() }
+    }
+
+    fn order(&mut self, order: &GridOrder) -> bool {
         let GridOrder::Goal(goal) = order else { return false };
-        self.1 = Some(goal);
+        self.1 = Some(*goal);
         true
     }
 

@@ -51,6 +51,7 @@ impl Scenario {
             formations,
             parts: _,
             plane,
+            law,
             route,
             maps,
             formation_params,
@@ -83,6 +84,9 @@ impl Scenario {
             all.add(sight);
         }
         // Hashed only if set, so that fingerprints of scenarios without these features are stable.
+        if let Some(law) = law {
+            all.add(law);
+        }
         if *looks_ahead {
             all.add(looks_ahead);
         }

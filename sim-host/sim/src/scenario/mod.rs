@@ -11,6 +11,7 @@ mod fingerprint;
 mod formation;
 mod intervention;
 mod land;
+mod law;
 mod maps;
 mod params;
 mod plane;
@@ -26,6 +27,7 @@ mod source;
 pub use field::Field;
 pub use formation::FormationEntry;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
+pub use law::{LawTable, NamedLaw};
 pub use maps::MapsTable;
 pub use params::{FormationLaw, FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
@@ -169,6 +171,8 @@ pub struct Scenario {
     pub plane: Option<PlaneSetup>,
     /// Sensing of other robots in the plane; `None`: disabled.
     pub sensing: Option<Sensing>,
+    /// The law of all robots, if the program adds it.
+    pub law: Option<NamedLaw>,
     /// Route planning of the robots.
     pub route: RouteSetup,
     /// Exchange of terrain maps; `None`: disabled.
@@ -288,6 +292,7 @@ impl Scenario {
         let formation_params = params::formation(&source, &file.formation)?;
         let published = params::published(&source, &file.formation)?;
         let looks_ahead = params::looks_ahead(&file.formation);
+        let law = law::law(&source, &file, plane.as_ref())?;
         let mut scenario = Self {
             name: file.name.clone(),
             seed: file.seed,
@@ -307,6 +312,7 @@ impl Scenario {
             parts,
             plane,
             sensing,
+            law,
             route,
             maps,
             formation_params,

@@ -5,6 +5,7 @@
 
 use super::formation::FormationEntry;
 use super::intervention::InterventionTable;
+use super::law::LawTable;
 use super::maps::MapsTable;
 use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::PlaneTable;
@@ -44,6 +45,8 @@ pub struct ScenarioFile {
     pub robots: Option<RobotsTable>,
     /// Bodies that move in the plane or in space instead of from cell to cell.
     pub plane: Option<PlaneTable>,
+    /// A law that the program adds. Default: the laws of Staya.
+    pub law: Option<LawTable>,
     /// Route planning.
     #[serde(default)]
     pub route: RouteTable,

@@ -3,19 +3,21 @@ use crate::engine::{StartError, simulate};
 use crate::scenario::Overrides;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Decision, Never, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
+    Action, BadInput, Decision, Law, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
 };
 use staya_controller::grid::Dir;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::Format;
+use staya_controller::wire::{Format, Never, ProtocolId};
 use std::path::Path;
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Highest(u32);
 
+#[derive(Clone, Debug)]
 enum Numbers {}
 
 impl Protocol for Numbers {
+    const ID: ProtocolId = ProtocolId(64);
     type Payload = u32;
     type Message = Never;
     type Order = Never;
@@ -28,17 +30,17 @@ impl Law<f32> for Highest {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32, u32>,
+        view: &View<'_, f32, Numbers>,
         _: &InPlane<'_, f32>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        let heard = view.neighbors.iter().map(|other| other.payload);
+        let heard = view.peers().map(|(_, number)| number);
         self.0 = heard.fold(self.0.max(view.id.0), u32::max);
         let status = Status { is_at_goal: self.0 == ROBOTS, ..Status::default() };
         Ok(Decision { action: Action::Stay, status })
     }
 
-    fn payload(&mut self, _: &mut Radio<'_, Never>) -> u32 {
+    fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Numbers>) -> u32 {
         self.0
     }
 
@@ -135,19 +137,19 @@ impl Law<f32> for East {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32, u32>,
+        view: &View<'_, f32, Numbers>,
         here: &OnGrid<'_>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
         let (cell, _) = here.seen()?;
-        let heard = view.neighbors.iter().map(|other| other.payload);
+        let heard = view.peers().map(|(_, number)| number);
         self.0 = heard.fold(self.0.max(view.id.0), u32::max);
         let is_at_goal = cell.x >= 9;
         let action = Action::Moves([Dir::East].into_iter().collect());
         Ok(Decision { action, status: Status { is_at_goal, ..Status::default() } })
     }
 
-    fn payload(&mut self, _: &mut Radio<'_, Never>) -> u32 {
+    fn payload(&mut self, _: &OnGrid<'_>, _: Dir, _: &mut Radio<'_, Numbers>) -> u32 {
         self.0
     }
 

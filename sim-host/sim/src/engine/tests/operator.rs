@@ -1,7 +1,7 @@
 use super::*;
-use staya_controller::agent::{Waypoint, Wish};
+use staya_controller::agent::{Protocol as _, Waypoint, Wish};
 use staya_controller::geom::{Position, Vec3};
-use staya_controller::wire::{GoalAssignment, Header, Message};
+use staya_controller::wire::Header;
 
 const DISCS: &str = "name = \"t\"\nticks = 120\ntick_s = 0.05\n[radio]\nrange_m = 5\nloss = 0.1\n\
      [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [4, 0]\n\
@@ -90,9 +90,9 @@ fn a_goal_message_reaches_the_controller_and_events_return() {
 }
 
 fn tell_a_goal(swarm: &mut dyn Operated) {
-    let goal = GoalAssignment { to: RobotId(1), version: 1, target: Cell::new(3, 9) };
+    let goal = OnCells::order(RobotId(1), 1, &GridOrder::FormationGoal(Cell::new(3, 9)));
     let header = Header { boot: 0, sender: RobotId(255), sequence: 0 };
-    swarm.tell(0, header, &Message::Goal(goal));
+    swarm.tell(0, header, &goal.expect("a goal fits a frame"));
     swarm.advance();
     assert_eq!(swarm.observation(0).status.target, Cell::new(3, 9));
     let begins = Event::ModeChanged { from: Mode::Idle, to: Mode::Cruise };

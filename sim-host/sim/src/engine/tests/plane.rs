@@ -1,6 +1,7 @@
 use super::*;
 use crate::scenario::{Order, Target};
-use staya_controller::wire::{Format, Message, decode, frames};
+use staya_controller::agent::{Protocol as _, WaypointOrder, Waypoints};
+use staya_controller::wire::{Content as _, Format, Message, decode, frames};
 
 fn in_plane(plane: &str, rest: &str) -> Scenario {
     let text = format!(
@@ -115,12 +116,11 @@ fn each_goal_has_its_own_order_version() {
     for (_, bytes) in &sent {
         assert_eq!(frames(bytes).count(), 2);
         for frame in frames(bytes) {
-            let Message::Waypoint(waypoint) = decode(frame).expect("a sound frame").message else {
-                panic!("a waypoint")
-            };
+            let Message::Order(order) = decode(frame).expect("a sound frame").message else { panic!("an order") };
+            let waypoint = WaypointOrder::decode(Waypoints::ID, order.protocol, &order.content).expect("a waypoint");
             let version = &mut last[usize::from(waypoint.index)];
             *version = version.wrapping_add(1);
-            assert_eq!(waypoint.version, *version);
+            assert_eq!(order.number, *version);
         }
     }
 }

@@ -174,6 +174,7 @@ impl Scenario {
             plane: Some(setup),
             route: RouteSetup::default(),
             formation_params: FormationParams::default(),
+            law: None,
             published: None,
             looks_ahead: false,
             sensing: None,

@@ -1,0 +1,305 @@
+//! Laws of other crates beside those of Staya: payloads, messages and orders are bytes between the
+//! agent and the law. Scenario files name the laws that a program adds ([`add_law`]).
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use staya_controller::agent::{
+    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OrderOf,
+    Protocol, Radio, Report, Tools, View,
+};
+use staya_controller::grid::Dir;
+use staya_controller::neighbor::Neighbor;
+use staya_controller::parameters::Parameters;
+use staya_controller::rand::Rng;
+use staya_controller::robot::RobotId;
+use staya_controller::wire::{Content, MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD, ProtocolId};
+use std::any::{Any, type_name};
+use std::collections::{BTreeMap, HashMap};
+use std::fmt;
+use std::marker::PhantomData;
+use std::sync::{Mutex, PoisonError};
+
+/// A law of another crate. Its state is serialized in checkpoints.
+pub trait OwnLaw:
+    Law<f32, Workspace: Default + Send + Sync> + Serialize + DeserializeOwned + Clone + fmt::Debug + Send + Sync + 'static
+{
+}
+
+impl<L> OwnLaw for L where
+    L: Law<f32, Workspace: Default + Send + Sync>
+        + Serialize
+        + DeserializeOwned
+        + Clone
+        + fmt::Debug
+        + Send
+        + Sync
+        + 'static
+{
+}
+
+/// Any law of another crate.
+#[derive(Debug)]
+pub struct Own(Box<dyn Hosted>);
+
+/// Reads the state of a law from a checkpoint.
+type Read = fn(&[u8]) -> Option<Own>;
+
+/// The laws that this process has made, by the names of their types.
+static READERS: Mutex<Option<HashMap<&'static str, Read>>> = Mutex::new(None);
+
+/// Makes a law with its default parameters.
+type Make = fn() -> Own;
+
+/// The laws that scenario files can name.
+static NAMED: Mutex<BTreeMap<&'static str, Make>> = Mutex::new(BTreeMap::new());
+
+/// Makes a law known to scenario files, as `law.name = "..."`, with its default parameters. A
+/// program calls it before it reads scenarios: then files, sweeps, ranks, checkpoints and views
+/// have the law. A law with the same name is replaced.
+pub fn add_law<L: OwnLaw + Default>(name: &'static str) {
+    NAMED.lock().unwrap_or_else(PoisonError::into_inner).insert(name, || Own::new(L::default()));
+}
+
+/// A law that scenario files name; `Err` lists the known names.
+pub(crate) fn named(name: &str) -> Result<Own, Vec<&'static str>> {
+    let named = NAMED.lock().unwrap_or_else(PoisonError::into_inner);
+    match named.get(name) {
+        Some(make) => Ok(make()),
+        None => Err(named.keys().copied().collect()),
+    }
+}
+
+impl Own {
+    /// Wraps a law.
+    pub fn new<L: OwnLaw>(law: L) -> Self {
+        let mut readers = READERS.lock().unwrap_or_else(PoisonError::into_inner);
+        readers.get_or_insert_default().entry(type_name::<L>()).or_insert(read::<L>);
+        Self(Box::new(Held { law, workspace: L::Workspace::default() }))
+    }
+
+    /// Whether the law can use these surroundings.
+    pub(crate) fn fits(&self, here: &AnySurroundings<'_, f32>) -> bool {
+        self.0.fits(here)
+    }
+}
+
+fn read<L: OwnLaw>(bytes: &[u8]) -> Option<Own> {
+    postcard::from_bytes::<L>(bytes).ok().map(Own::new)
+}
+
+impl Clone for Own {
+    fn clone(&self) -> Self {
+        self.0.copy()
+    }
+}
+
+/// The name of the type, and its state.
+impl Serialize for Own {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (self.0.name(), self.0.state()).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Own {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (name, state) = <(String, Vec<u8>)>::deserialize(deserializer)?;
+        let readers = READERS.lock().unwrap_or_else(PoisonError::into_inner);
+        let read = readers.as_ref().and_then(|readers| readers.get(name.as_str()).copied());
+        drop(readers);
+        read.and_then(|read| read(&state)).ok_or_else(|| serde::de::Error::custom("a law of another program"))
+    }
+}
+
+struct Held<L: OwnLaw> {
+    law: L,
+    workspace: L::Workspace,
+}
+
+impl<L: OwnLaw> fmt::Debug for Held<L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.law.fmt(f)
+    }
+}
+
+trait Hosted: fmt::Debug + Send + Sync {
+    fn copy(&self) -> Own;
+    fn name(&self) -> &'static str;
+    fn state(&self) -> Vec<u8>;
+    fn fits(&self, here: &AnySurroundings<'_, f32>) -> bool;
+    fn decide(
+        &mut self,
+        view: &View<'_, f32, AnyProtocol>,
+        here: &AnySurroundings<'_, f32>,
+        rng: &mut Rng,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> Result<Decision<f32>, BadInput>;
+    fn payload(
+        &mut self,
+        here: &AnySurroundings<'_, f32>,
+        heading: Dir,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> AnyPayload;
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>);
+    fn order(&mut self, order: &AnyOrder) -> bool;
+    fn needs(&self, id: RobotId) -> bool;
+    fn report(&self) -> Report;
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters));
+}
+
+impl<L: OwnLaw> Hosted for Held<L> {
+    fn copy(&self) -> Own {
+        Own::new(self.law.clone())
+    }
+
+    fn name(&self) -> &'static str {
+        type_name::<L>()
+    }
+
+    fn state(&self) -> Vec<u8> {
+        // Cannot fail: states have a length.
+        postcard::to_allocvec(&self.law).unwrap_or_default()
+    }
+
+    fn fits(&self, here: &AnySurroundings<'_, f32>) -> bool {
+        L::Surroundings::try_from(*here).is_ok()
+    }
+
+    fn decide(
+        &mut self,
+        view: &View<'_, f32, AnyProtocol>,
+        here: &AnySurroundings<'_, f32>,
+        rng: &mut Rng,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> Result<Decision<f32>, BadInput> {
+        let here = L::Surroundings::try_from(*here).map_err(|_| BadInput)?;
+        let known = Decoded::<L::Protocol>(view.known, PhantomData);
+        let tools = Tools { rng, radio: radio.of(), workspace: &mut self.workspace };
+        self.law.decide(&view.with(&known), &here, tools)
+    }
+
+    fn payload(
+        &mut self,
+        here: &AnySurroundings<'_, f32>,
+        heading: Dir,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> AnyPayload {
+        let Ok(here) = L::Surroundings::try_from(*here) else { return AnyPayload::default() };
+        let payload = self.law.payload(&here, heading, &mut radio.of());
+        let encoded = payload.encode::<MAX_PAYLOAD>(<L::Protocol as Protocol>::ID);
+        encoded.and_then(|(id, bytes)| AnyPayload::decode(ProtocolId::NONE, id, &bytes)).unwrap_or_default()
+    }
+
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
+        let encoded = message.encode::<MAX_CONTENT>(ProtocolId::NONE);
+        let own = <L::Protocol as Protocol>::ID;
+        if let Some(message) = encoded.and_then(|(id, bytes)| MessageOf::<L, f32>::decode(own, id, &bytes)) {
+            self.law.receive(from, &message, &mut radio.of());
+        }
+    }
+
+    fn order(&mut self, order: &AnyOrder) -> bool {
+        if let Some(order) = exact::<OrderOf<L, f32>>(order) {
+            return self.law.order(order);
+        }
+        let encoded = order.encode::<MAX_ORDER>(ProtocolId::NONE);
+        let own = <L::Protocol as Protocol>::ID;
+        let order = encoded.and_then(|(id, bytes)| OrderOf::<L, f32>::decode(own, id, &bytes));
+        order.is_some_and(|order| self.law.order(&order))
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.law.needs(id)
+    }
+
+    fn report(&self) -> Report {
+        self.law.report()
+    }
+
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.law.parameters(visit);
+    }
+}
+
+/// An order of a built-in protocol, not rounded to the units of frames.
+fn exact<O: 'static>(order: &AnyOrder) -> Option<&O> {
+    let order: &dyn Any = match order {
+        AnyOrder::Grid(order) => order,
+        AnyOrder::Waypoint(order) => order,
+        AnyOrder::Other(_) => order,
+    };
+    order.downcast_ref()
+}
+
+/// The known robots as a law with protocol `P` reads them.
+struct Decoded<'a, P>(&'a dyn Known<f32, AnyPayload>, PhantomData<P>);
+
+impl<P: Protocol> Decoded<'_, P> {
+    fn decoded(robot: Neighbor<f32, AnyPayload>) -> Neighbor<f32, P::Payload> {
+        robot.map(|payload| {
+            let (id, bytes) = payload.encode::<MAX_PAYLOAD>(ProtocolId::NONE)?;
+            P::Payload::decode(P::ID, id, &bytes)
+        })
+    }
+}
+
+impl<P: Protocol> Known<f32, P::Payload> for Decoded<'_, P> {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn at(&self, index: usize) -> Option<Neighbor<f32, P::Payload>> {
+        self.0.at(index).map(Self::decoded)
+    }
+
+    fn find(&self, id: RobotId) -> Option<Neighbor<f32, P::Payload>> {
+        self.0.find(id).map(Self::decoded)
+    }
+}
+
+impl Law<f32> for Own {
+    type Surroundings<'a> = AnySurroundings<'a, f32>;
+    type Protocol = AnyProtocol;
+    type Workspace = ();
+
+    fn decide(
+        &mut self,
+        view: &View<'_, f32, AnyProtocol>,
+        here: &AnySurroundings<'_, f32>,
+        tools: Tools<'_, f32, Self>,
+    ) -> Result<Decision<f32>, BadInput> {
+        let Tools { rng, mut radio, .. } = tools;
+        self.0.decide(view, here, rng, &mut radio)
+    }
+
+    fn payload(
+        &mut self,
+        here: &AnySurroundings<'_, f32>,
+        heading: Dir,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> AnyPayload {
+        self.0.payload(here, heading, radio)
+    }
+
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
+        self.0.receive(from, message, radio);
+    }
+
+    fn order(&mut self, order: &AnyOrder) -> bool {
+        self.0.order(order)
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        self.0.needs(id)
+    }
+
+    fn report(&self) -> Report {
+        self.0.report()
+    }
+
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.0.parameters(visit);
+    }
+}
+
+#[cfg(test)]
+mod tests;
