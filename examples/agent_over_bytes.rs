@@ -27,7 +27,7 @@ fn robot(id: u32, from: Position, to: Position) -> Robot {
     let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
     let safety = OrcaSafety::new(AvoidParams::default(), inflation);
     let mut agent = OrcaAgent::new(&config, law, safety, Postcard);
-    agent.order(WaypointOrder::first(Waypoint::fixed(to)));
+    agent.order(&WaypointOrder::first(Waypoint::fixed(to)));
     let state = KinematicState { position: from, ..KinematicState::default() };
     Robot { agent, state, inbox: Vec::new() }
 }

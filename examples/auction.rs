@@ -8,7 +8,9 @@
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec3};
+use staya_controller::grid::Dir;
 use staya_controller::robot::RobotId;
+use staya_controller::wire::{Content, Never, ProtocolId};
 use staya_sim::engine::simulate_own;
 use staya_sim::scenario::{Overrides, Scenario};
 use std::{collections::BTreeSet, error::Error, ops::ControlFlow, path::Path};
@@ -38,21 +40,25 @@ fn place(task: u8) -> Position {
     Position::from_mm([along(task % 4), along(task / 4), 0])
 }
 
-/// At most five bytes in a packet.
+/// A part of each beacon: at most 7 bytes, with the byte of the `Option`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Bid {
     task: u8,
     distance_mm: u32,
 }
 
+impl Content for Bid {}
+
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Auction {
     bid: Option<Bid>,
 }
 
+#[derive(Clone, Debug)]
 struct Bids;
 
 impl Protocol for Bids {
+    const ID: ProtocolId = ProtocolId(64);
     type Payload = Option<Bid>;
     type Message = Never;
     type Order = Never;
@@ -65,7 +71,7 @@ impl Law<f32> for Auction {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32, Option<Bid>>,
+        view: &View<'_, f32, Bids>,
         _: &InPlane<'_, f32>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
@@ -74,7 +80,7 @@ impl Law<f32> for Auction {
         // Of two equal bids, the one of the lower robot id wins.
         let is_outbid = |own: &Bid| {
             let rank = |bid: &Bid, id: RobotId| (bid.distance_mm, id);
-            let bids = view.neighbors.iter().filter_map(|other| Some((other.payload?, other.id)));
+            let bids = view.peers().filter_map(|(other, bid)| Some((bid?, other.id)));
             bids.filter(|(bid, _)| bid.task == own.task).any(|(bid, id)| rank(&bid, id) < rank(own, view.id))
         };
         let kept = self.bid.map(|bid| own(bid.task)).filter(|bid| !is_outbid(bid));
@@ -87,7 +93,7 @@ impl Law<f32> for Auction {
         Ok(Decision { action, status })
     }
 
-    fn payload(&mut self, _: &mut Radio<'_, Never>) -> Option<Bid> {
+    fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Bids>) -> Option<Bid> {
         self.bid
     }
 }

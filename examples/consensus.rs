@@ -8,7 +8,9 @@
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec3};
+use staya_controller::grid::Dir;
 use staya_controller::time::Instant;
+use staya_controller::wire::{Content, Never, ProtocolId};
 use staya_sim::engine::simulate_own;
 use staya_sim::scenario::{Overrides, Scenario};
 use std::{error::Error, ops::ControlFlow, path::Path};
@@ -26,11 +28,18 @@ struct Meeting {
     belief_m: Option<[f32; 2]>,
 }
 
+/// A part of each beacon: 9 bytes, or 1 without an estimate.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Estimate(Option<[f32; 2]>);
+
+impl Content for Estimate {}
+
+#[derive(Clone, Debug)]
 struct Estimates;
 
 impl Protocol for Estimates {
-    /// At most 9 bytes, in a frame of at most 30 after each beacon.
-    type Payload = Option<[f32; 2]>;
+    const ID: ProtocolId = ProtocolId(64);
+    type Payload = Estimate;
     type Message = Never;
     type Order = Never;
 }
@@ -42,15 +51,15 @@ impl Law<f32> for Meeting {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32, Option<[f32; 2]>>,
+        view: &View<'_, f32, Estimates>,
         _: &InPlane<'_, f32>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
         let place = view.state.position.since::<f32>(Position::default());
         let [mut x, mut y] = self.belief_m.unwrap_or([place.x, place.y]);
         let own = [x, y];
-        let step = STEP.min(1.0 / (1 + view.neighbors.len()) as f32);
-        for [other_x, other_y] in view.neighbors.iter().filter_map(|other| other.payload) {
+        let step = STEP.min(1.0 / (1 + view.neighbors().count()) as f32);
+        for [other_x, other_y] in view.peers().filter_map(|(_, Estimate(belief_m))| belief_m) {
             x += step * (other_x - own[0]);
             y += step * (other_y - own[1]);
         }
@@ -64,8 +73,8 @@ impl Law<f32> for Meeting {
         })
     }
 
-    fn payload(&mut self, _: &mut Radio<'_, Never>) -> Option<[f32; 2]> {
-        self.belief_m
+    fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Estimates>) -> Estimate {
+        Estimate(self.belief_m)
     }
 }
 

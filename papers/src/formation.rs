@@ -266,9 +266,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         self.task.payload(here, heading)
     }
 
-    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
+    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) -> bool {
         self.task.receive(from, message, radio);
         self.is_redirected |= *message == GridMessage::Redirect;
+        true
     }
 
     fn order(&mut self, order: &GridOrder) -> bool {

@@ -1,6 +1,7 @@
 """The dialect: its public messages equal the public dialect's, and Rust and Python understand each
 other's frames."""
 
+import struct
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,16 @@ def test_frames_of_rust_round_trip_through_python(dialect, name, frame, fields):
     sender.seq = 777 & 0xFF
     again = dialect.mavlink_map[message.get_msgId()](**{key: getattr(message, key) for key in message.fieldnames})
     assert again.pack(sender) == frame
+
+
+def test_the_cell_of_a_robot_on_the_grid_needs_no_library_but_struct(dialect):
+    name, frame, _ = rust_frames()[0]
+    (beacon,) = dialect.MAVLink(None).parse_buffer(bytes.fromhex(frame))
+    assert (name, beacon.protocol) == ("STAYA_BEACON", 1)
+    cell_x, cell_y, target_x, target_y, busy_ms, heading, slot = struct.unpack_from("<4hH2B", bytes(beacon.bytes))
+    assert (cell_x, cell_y, target_x, target_y, busy_ms, heading, slot) == (98, -98, -32768, 70, 400, 7, 4)
+    # The leader has 7 bits per byte.
+    assert (beacon.bytes[12], beacon.count) == (1, 13)
 
 
 def test_every_message_of_the_dialect_exists(dialect):

@@ -1,64 +1,101 @@
 //! A MAVLink frame of each of the swarm's messages, for `tests/python/test_dialect.py`.
 
+use staya_controller::agent::{
+    Grid, GridMessage, GridOrder, GridPayload, Protocol as _, TemplatePart, Waypoint, WaypointOrder, Waypoints,
+};
+use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::land::LandPatch;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, Frame, GoalAssignment, Header, LostRobot, Message, PayloadBytes, Request, RequestKind,
-    TemplateAssignment, WaypointAssignment,
+    Ack, Addressed, Beacon, Broadcast, Bytes, Content as _, Frame, Header, LostRobot, Message, ProtocolId,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;
 
 const TO: RobotId = RobotId(254);
+/// A protocol of a user.
+const OWN: ProtocolId = ProtocolId(64);
 
-fn messages() -> [(&'static str, Message, &'static str); 10] {
+fn bytes<const N: usize>(bytes: &[u8]) -> Bytes<N> {
+    Bytes::from_slice(bytes).expect("fits")
+}
+
+fn messages() -> [(&'static str, Message, &'static str); 11] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {
-        Message::Template(TemplateAssignment {
-            to: TO,
-            version: 200,
-            part: 1,
-            parts: 3,
-            slot: 4,
-            offset: Cell::new(-6, 9),
-            entries: entries.iter().copied().collect(),
-        })
+        let (offset, entries) = (Cell::new(-6, 9), entries.iter().copied().collect());
+        let part = TemplatePart { version: 200, part: 1, parts: 3, slot: 4, offset, entries };
+        Grid::order(TO, 200, &GridOrder::Template { part, is_restarted: false }).expect("fits")
     };
+    let payload = GridPayload {
+        cell: Cell::new(98, -98),
+        target: Cell::new(-32_768, 70),
+        busy_ms: 400,
+        heading: Dir::SouthEast,
+        slot: 4,
+        leader: RobotId(1),
+    };
+    let (protocol, payload) = payload.encode(Grid::ID).expect("fits");
     let beacon = Beacon {
-        time: Instant::from_micros(4_000_000_001),
         position_mm: [12_345, -678_901, i32::MIN],
         velocity_mmps: [250, -3, i16::MAX],
         radius_mm: 150,
-        cell: Cell::new(98, -98),
-        heading: Dir::SouthEast,
-        busy_ms: 400,
-        leader: RobotId(1),
-        slot: 4,
         mode: Mode::Fault,
-        target: Cell::new(-32_768, 70),
+        flock: 9,
+        protocol,
+        payload,
     };
-    let request = Request { to: TO, origin: RobotId(9), number: 7, kind: RequestKind::Redirect, valid_ms: 2_000 };
-    let ack = Ack { to: TO, boot: 3, number: 7, accepted: true };
-    let goal = GoalAssignment { to: RobotId::NONE, version: 0, target: Cell::new(24, -21) };
-    let place = WaypointAssignment {
-        to: RobotId::NONE,
-        version: 1,
-        index: 2,
-        position_mm: [1, -2, 3],
-        velocity_mmps: [-4, 5, -6],
+    let own = Beacon { mode: Mode::Hold, protocol: OWN, payload: bytes(&[1; 16]), ..Beacon::default() };
+    let stop = GridMessage::Stop { origin: RobotId(9), valid_ms: 2_000 };
+    let (protocol, content) = stop.encode(Grid::ID).expect("fits");
+    let stop = Addressed { to: TO, number: 7, protocol, content };
+    let tiles = core::array::from_fn(|index| 255 - 8 * index as u8);
+    let land = GridMessage::Land(LandPatch::from_bytes(Cell::new(-3, 1_000), tiles));
+    let (protocol, content) = land.encode(Grid::ID).expect("fits");
+    let land = Broadcast { protocol, content };
+    let order = Addressed { to: TO, number: 8, protocol: OWN, content: bytes(&[7, 215, 4, 0, 0, 192, 63]) };
+    let ack = Ack { to: TO, boot: 3, number: 7 };
+    let goal = Grid::order(RobotId::NONE, 0, &GridOrder::FormationGoal(Cell::new(24, -21))).expect("fits");
+    let waypoint = Waypoint {
+        position: Position::from_mm([1, -2, 3]),
+        velocity_mps: Vec3::from_milli([-4, 5, -6]),
+        at: Instant::default(),
     };
+    let place = Waypoints::order(RobotId::NONE, 1, &WaypointOrder { index: 2, waypoint }).expect("fits");
     [
         (
             "STAYA_BEACON",
             Message::Beacon(beacon),
-            "time_us=4000000001 x_mm=12345 y_mm=-678901 z_mm=-2147483648 vx_mmps=250 vy_mmps=-3 vz_mmps=32767 radius_mm=150 \
-             cell_x=98 cell_y=-98 target_x=-32768 target_y=70 busy_ms=400 heading=8 leader=1 slot=4 mode=5",
+            "x_mm=12345 y_mm=-678901 z_mm=-2147483648 vx_mmps=250 vy_mmps=-3 vz_mmps=32767 radius_mm=150 mode=5 flock=9 \
+             protocol=1 count=13 bytes=98,0,158,255,0,128,70,0,144,1,7,4,1,0,0,0",
         ),
-        ("STAYA_REQUEST", Message::Request(request), "target_system=254 origin=9 number=7 kind=2 valid_ms=2000"),
-        ("STAYA_ACK", Message::Ack(ack), "target_system=254 request_boot=3 number=7 accepted=1"),
+        (
+            "STAYA_BEACON",
+            Message::Beacon(own),
+            "x_mm=0 radius_mm=0 mode=3 flock=0 protocol=64 count=16 bytes=1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1",
+        ),
+        (
+            "STAYA_MESSAGE",
+            Message::Law(stop),
+            "target_system=254 kind=0 number=7 protocol=1 count=4 \
+             bytes=0,9,208,7,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0",
+        ),
+        (
+            "STAYA_MESSAGE",
+            Message::Broadcast(land),
+            "target_system=0 kind=1 number=0 protocol=1 count=37 bytes=3,253,255,232,3,\
+             255,247,239,231,223,215,207,199,191,183,175,167,159,151,143,135,127,119,111,103,95,87,79,71,63,55,47,39,31,23,15,7,0",
+        ),
+        (
+            "STAYA_MESSAGE",
+            Message::Order(order),
+            "target_system=254 kind=2 number=8 protocol=64 count=7 \
+             bytes=7,215,4,0,0,192,63,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0",
+        ),
+        ("STAYA_ACK", Message::Ack(ack), "target_system=254 message_boot=3 number=7"),
         (
             "STAYA_TEMPLATE",
             template(&[entry(-3, 2, 1), entry(5, 0, 255)]),
@@ -70,25 +107,11 @@ fn messages() -> [(&'static str, Message, &'static str); 10] {
             template(&[]),
             "target_system=254 count=0 entry_x=0,0 entry_y=0,0 entry_id=0,0 entry_hops=0,0",
         ),
-        ("STAYA_GOAL", Message::Goal(goal), "target_system=0 version=0 target_x=24 target_y=-21"),
+        ("STAYA_GOAL", goal, "target_system=0 version=0 target_x=24 target_y=-21"),
         (
             "STAYA_PLACE",
-            Message::Waypoint(place),
+            place,
             "target_system=0 version=1 index=2 x_mm=1 y_mm=-2 z_mm=3 vx_mmps=-4 vy_mmps=5 vz_mmps=-6",
-        ),
-        (
-            "STAYA_LAND",
-            Message::Land(LandPatch::from_bytes(
-                Cell::new(-3, 1_000),
-                core::array::from_fn(|index| 255 - 8 * index as u8),
-            )),
-            "corner_x=-3 corner_y=1000 tiles=255,247,239,231,223,215,207,199,191,183,175,167,159,151,143,135,127,119,111,103,95,\
-             87,79,71,63,55,47,39,31,23,15,7",
-        ),
-        (
-            "STAYA_PAYLOAD",
-            Message::Payload(PayloadBytes::of(&(7_u8, -300_i16, 1.5_f32)).expect("fits")),
-            "count=7 bytes=7,215,4,0,0,192,63,0,0,0,0,0,0,0,0,0",
         ),
         (
             "STAYA_LOST",

@@ -195,9 +195,15 @@ fn compare(repo: &Repo, output: &str) -> Result<(), String> {
 /// Canned swarms in controller/c/tests/swarms.c.
 const CASES: usize = 8;
 
-/// Rows that the table does not have.
+/// Rows that the table does not have. Its next to last column, the digests of the agents, is left
+/// out: payloads have another form in C.
 fn foreign<'a>(table: &str, output: &'a str) -> Vec<&'a str> {
-    output.lines().filter(|row| !table.lines().any(|known| known == *row)).collect()
+    let without_digest = |row: &str| {
+        let (rest, steps) = row.rsplit_once(' ')?;
+        Some(format!("{} {steps}", rest.rsplit_once(' ')?.0))
+    };
+    let known: Vec<String> = table.lines().filter_map(without_digest).collect();
+    output.lines().filter(|row| !known.iter().any(|known| known == row)).collect()
 }
 
 fn folder(repo: &Repo) -> Result<PathBuf, String> {
@@ -212,8 +218,8 @@ mod tests {
 
     #[test]
     fn rows_that_differ_are_reported() {
-        let table = "a f32 1 2\nb f32 3 4\n";
-        assert!(foreign(table, "b f32 3 4\n").is_empty());
-        assert_eq!(foreign(table, "a f32 1 2\nb f32 3 5\n"), ["b f32 3 5"]);
+        let table = "a f32 1 2 8 3\nb f32 3 4 9 3\n";
+        assert!(foreign(table, "b f32 3 4 3\n").is_empty());
+        assert_eq!(foreign(table, "a f32 1 2 3\nb f32 3 5 3\n"), ["b f32 3 5 3"]);
     }
 }

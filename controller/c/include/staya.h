@@ -67,6 +67,26 @@
 #define STAYA_NEARBY 16
 
 /**
+ * Maximum length of a payload in bytes.
+ */
+#define STAYA_PAYLOAD 16
+
+/**
+ * Maximum length of a message to one robot in bytes.
+ */
+#define STAYA_MESSAGE 12
+
+/**
+ * Maximum length of a message to all robots, and of an order, in bytes.
+ */
+#define STAYA_CONTENT 38
+
+/**
+ * Maximum number of received messages that wait for `staya_received`.
+ */
+#define STAYA_INBOX 4
+
+/**
  * Maximum number of bytes that one step can send.
  */
 #define STAYA_OUTBOX 256
@@ -174,6 +194,10 @@ enum StayaStatus
      * The name or number does not exist.
      */
     STAYA_STATUS_UNKNOWN = 15,
+    /**
+     * `staya_act` needs a `staya_hear` before.
+     */
+    STAYA_STATUS_NOT_HEARD = 16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -223,12 +247,49 @@ enum StayaLaw
      * A formation across land in cells, with moves from cell to cell as commands.
      */
     STAYA_LAW_FORMATION_ON_GRID = 7,
+    /**
+     * A law of your own: `staya_decide` gives the decision of each step.
+     */
+    STAYA_LAW_EXTERNAL = 8,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
 typedef enum StayaLaw StayaLaw;
 #else
 typedef uint8_t StayaLaw;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What a law of your own decides.
+ */
+enum StayaAction
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Stand without a goal: STAYA_MODE_IDLE.
+     */
+    STAYA_ACTION_IDLE = 0,
+    /**
+     * Stand.
+     */
+    STAYA_ACTION_STAY = 1,
+    /**
+     * Move with `velocity_mps`.
+     */
+    STAYA_ACTION_VELOCITY = 2,
+    /**
+     * Take the first of `moves` that leads into a free cell; only for moves from cell to cell.
+     */
+    STAYA_ACTION_MOVES = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum StayaAction StayaAction;
+#else
+typedef uint8_t StayaAction;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -348,7 +409,7 @@ enum StayaMode
      */
     STAYA_MODE_CRUISE = 2,
     /**
-     * Stopped, because of a request or because no route is open.
+     * Stopped, because another robot asked it to or because no route is open.
      */
     STAYA_MODE_HOLD = 3,
     /**
@@ -389,7 +450,7 @@ enum StayaWait
      */
     STAYA_WAIT_TEAM = 1,
     /**
-     * A request to stop.
+     * Another robot asked it to stop.
      */
     STAYA_WAIT_STOPPED = 2,
     /**
@@ -495,9 +556,9 @@ enum StayaEventKind
      */
     STAYA_EVENT_KIND_TARGET_MOVED = 2,
     /**
-     * A request to `robot` ran out of retries; `after`: 0 stop, 1 resume, 2 redirect.
+     * `robot` did not acknowledge a message of the law in time.
      */
-    STAYA_EVENT_KIND_REQUEST_EXPIRED = 3,
+    STAYA_EVENT_KIND_MESSAGE_EXPIRED = 3,
     /**
      * `robot` became known.
      */
@@ -1008,15 +1069,16 @@ typedef struct StayaSetup {
      */
     int32_t listen_us;
     /**
-     * How long a stop lasts unless it is renewed, microseconds.
+     * How long a message of a law across land in cells is resent at most, and how long a stop
+     * lasts unless it is renewed, microseconds.
      */
-    int32_t stop_valid_us;
+    int32_t message_valid_us;
     /**
-     * Time between two attempts of a request, microseconds.
+     * Time between two attempts of a message, microseconds.
      */
     int32_t retry_interval_us;
     /**
-     * Number of attempts of a request.
+     * Number of attempts of a message.
      */
     uint8_t retry_attempts;
     /**
@@ -1043,6 +1105,10 @@ typedef struct StayaSetup {
      * Above 0: a robot that has not heard another one stands.
      */
     uint8_t expects_others;
+    /**
+     * With STAYA_LAW_EXTERNAL: the protocol of its payloads and messages, 64 to 255.
+     */
+    uint8_t protocol;
     /**
      * Radius of the ball around the body, metres.
      */
@@ -1169,7 +1235,8 @@ typedef struct StayaObstacle {
  *
  * Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
  * `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
- * The other fields are then ignored.
+ * The other fields are then ignored. With STAYA_LAW_EXTERNAL a `window` puts the robot into cells,
+ * and `cell_m` above 0 lets it move by velocities there.
  */
 typedef struct StayaInputs {
     /**
@@ -1418,7 +1485,9 @@ typedef struct StayaNeighbor {
      */
     float radius_m;
     /**
-     * The number of its leader; 0 if it has none.
+     * The number of its leader; 0 if it has none. Only robots that cross land in cells tell
+     * `leader`, `cell`, `target`, `slot` and `heading`. For other robots they are 0 and
+     * STAYA_DIR_STAY.
      */
     uint32_t leader;
     /**
@@ -1430,9 +1499,13 @@ typedef struct StayaNeighbor {
      */
     struct StayaCell target;
     /**
-     * Its place in the formation, or its flock.
+     * Its place in the formation.
      */
     uint8_t slot;
+    /**
+     * The number of its flock.
+     */
+    uint8_t flock;
     /**
      * Its activity: StayaMode.
      */
@@ -1445,6 +1518,18 @@ typedef struct StayaNeighbor {
      * Other than 0: silent for too long; only its last position still counts.
      */
     uint8_t is_lost;
+    /**
+     * The protocol of its law: 64 to 255 are those of users, 0 is none.
+     */
+    uint8_t protocol;
+    /**
+     * Length of `payload`.
+     */
+    uint8_t payload_count;
+    /**
+     * What its law says to laws with this protocol, `payload_count` bytes.
+     */
+    uint8_t payload[STAYA_PAYLOAD];
 } StayaNeighbor;
 
 /**
@@ -1525,6 +1610,74 @@ typedef struct StayaReference {
      */
     float velocity_mps[3];
 } StayaReference;
+
+/**
+ * The decision of a law of your own. All zeros: idle.
+ */
+typedef struct StayaDecision {
+    /**
+     * With STAYA_ACTION_VELOCITY: the preferred velocity, m/s; the safety layer may change it.
+     */
+    float velocity_mps[3];
+    /**
+     * With `has_way`: the vector to the point that the robot heads for, metres.
+     */
+    float way_m[3];
+    /**
+     * StayaAction.
+     */
+    uint8_t kind;
+    /**
+     * Other than 0: the robot heads straight for a point, and may turn aside to let others pass.
+     */
+    uint8_t has_way;
+    /**
+     * Other than 0: the robot is at its goal, and stands (STAYA_MODE_ARRIVED).
+     */
+    uint8_t is_at_goal;
+    /**
+     * Other than 0: no route is open, and the robot stands (STAYA_MODE_HOLD).
+     */
+    uint8_t is_stuck;
+    /**
+     * Why the robot stands and waits (STAYA_MODE_HOLD): StayaWait.
+     */
+    uint8_t wait;
+    /**
+     * Length of `moves`, at most 8.
+     */
+    uint8_t move_count;
+    /**
+     * With STAYA_ACTION_MOVES: the moves (StayaDir), best first.
+     */
+    uint8_t moves[8];
+} StayaDecision;
+
+/**
+ * A message or an order that the robot received.
+ */
+typedef struct StayaMessage {
+    /**
+     * The sender's number; 0 for an order.
+     */
+    uint32_t from;
+    /**
+     * Messages and orders that the robot has dropped so far, because others waited.
+     */
+    uint16_t dropped;
+    /**
+     * Other than 0: an order of the operator.
+     */
+    uint8_t is_order;
+    /**
+     * Length of `bytes`.
+     */
+    uint8_t count;
+    /**
+     * The content, `count` bytes.
+     */
+    uint8_t bytes[STAYA_CONTENT];
+} StayaMessage;
 
 /**
  * A parameter that `staya_set_parameter` can change while the robot runs. Texts end with a zero.
@@ -1718,6 +1871,62 @@ StayaStatus staya_push_out_velocity(const struct StayaPushOut *params,
                                     const struct StayaObstacle *obstacles,
                                     size_t obstacle_count,
                                     float velocity_mps[3]);
+
+/**
+ * The first half of a step: receives. `staya_neighbors` and `staya_received` then tell a law of
+ * your own what it needs for `staya_decide`. `staya_step` is both halves, for a decision that was
+ * made before. Bounded work; rejected inputs change nothing.
+ */
+StayaStatus staya_hear(struct StayaAgent *agent, const struct StayaInputs *inputs);
+
+/**
+ * The second half of a step, with the inputs of `staya_hear`, of which it does not read the inbox:
+ * decides, avoids, sends. `STAYA_STATUS_NOT_HEARD` without a `staya_hear` since the last step.
+ * Bounded work; rejected inputs change nothing.
+ */
+StayaStatus staya_act(struct StayaAgent *agent,
+                      const struct StayaInputs *inputs,
+                      struct StayaOutputs *outputs);
+
+/**
+ * Decides for the next step; before the first decision the robot is idle. A decision counts once:
+ * if it is not renewed, the robot stays, so a law that hangs stops its robot. An idle robot remains
+ * idle. A velocity needs `max_speed_mps`, moves need a `window` and no `cell_m`; without them the
+ * robot is in STAYA_MODE_FAULT. `STAYA_STATUS_TASK` if the agent's law is not STAYA_LAW_EXTERNAL,
+ * for this function and those below. `STAYA_STATUS_NUMBER`, `_CHOICE` or `_TOO_MANY` for an invalid
+ * decision, which changes nothing.
+ */
+StayaStatus staya_decide(struct StayaAgent *agent, const struct StayaDecision *decision);
+
+/**
+ * Sets the payload of each beacon from the next one on: the state of the law that others may know,
+ * since beacons get lost. `STAYA_STATUS_TOO_MANY` above STAYA_PAYLOAD bytes.
+ */
+StayaStatus staya_set_payload(struct StayaAgent *agent, const uint8_t *bytes, size_t count);
+
+/**
+ * Sends a message to robot `to` in the next step: at most STAYA_MESSAGE bytes, resent until it is
+ * acknowledged, for `valid_us` at most, then STAYA_EVENT_KIND_MESSAGE_EXPIRED. A newer message to
+ * the robot replaces it; those to more than four robots at a time are lost. `to` 0: to all, at most
+ * STAYA_CONTENT bytes, once, if it fits into the frames of the step. The messages of an idle robot
+ * wait. `STAYA_STATUS_TOO_MANY` for too many bytes, or if one message to all or four others wait;
+ * `STAYA_STATUS_NUMBER` if `valid_us` is not above 0 and `to` is.
+ */
+StayaStatus staya_send(struct StayaAgent *agent,
+                       uint32_t to,
+                       const uint8_t *bytes,
+                       size_t count,
+                       int32_t valid_us);
+
+/**
+ * Takes out the oldest received messages and orders with the protocol of the law, `message_room` at
+ * most, and returns their number in `*count`. STAYA_INBOX wait at most; another one replaces the
+ * oldest.
+ */
+StayaStatus staya_received(struct StayaAgent *agent,
+                           struct StayaMessage *messages,
+                           size_t message_room,
+                           size_t *count);
 
 /**
  * Writes parameter 0, 1, 2 and so on of an agent; `STAYA_STATUS_UNKNOWN` beyond the last one.

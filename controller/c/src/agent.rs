@@ -1,28 +1,30 @@
 //! The agent: creation in the caller's memory, orders, steps and queries.
 
-use crate::choices::StayaMode;
-use crate::io::{StayaInputs, StayaOutputs, array, vector};
+use crate::choices::{StayaLaw, StayaMode};
+use crate::external::STAYA_PAYLOAD;
+use crate::io::{StayaInputs, StayaOutputs, array, finite};
 use crate::law::{Law, Workspace};
 use crate::layer::Layer;
-use crate::memory::{self, Resident, plain, resident, resident_mut, room, shared, site, zeroed};
+use crate::memory::{Call, Resident, answers, check, plain};
 use crate::setup::{StayaCell, StayaSetup};
 use crate::speech::Speech;
-use crate::status::{Checked, StayaStatus, answer};
+use crate::status::{Checked, StayaStatus};
 use crate::{NEIGHBORS, Number, OBSTACLES};
 use core::ffi::c_void;
 use heapless::Vec;
-use staya_controller::agent::{Agent, Command, ImplausibleCounts, Outputs, Refused, Task, WAYPOINTS, Waypoint};
+use staya_controller::agent::{Agent, AnyPayload, GridPayload, Outputs, Task, WAYPOINTS, Waypoint};
 use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Neighbor;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::cast;
 use staya_controller::time::Instant;
+use staya_controller::wire::{Content, MAX_PAYLOAD, ProtocolId};
 
 /// Bytes that suffice for an agent in any build of the library, including its scratch memory.
 pub const STAYA_AGENT_SIZE: usize = 10240;
 /// Bytes that suffice for an agent if the library lacks the features `auth` and `grid`.
-pub const STAYA_AGENT_SIZE_IN_PLANE: usize = 3328;
+pub const STAYA_AGENT_SIZE_IN_PLANE: usize = 3584;
 /// Alignment of the memory for agents and avoiders, bytes.
 pub const STAYA_ALIGN: usize = 8;
 /// Maximum number of waypoints of an agent.
@@ -42,6 +44,9 @@ type AnyAgent = Agent<Number, Law, NEIGHBORS, Layer, Speech>;
 #[cfg_attr(all(), repr(C))]
 pub struct StayaAgent {
     mark: u32,
+    law: StayaLaw,
+    /// Whether the next call is the second half of a step.
+    has_heard: bool,
     agent: AnyAgent,
     workspace: Workspace,
     obstacles: Vec<Obstacle<Number>, OBSTACLES>,
@@ -53,48 +58,49 @@ unsafe impl Resident for StayaAgent {
     const MARK: u32 = u32::from_be_bytes(*b"agnt");
 }
 
-const fn no_outputs() -> Outputs<Number> {
-    Outputs {
-        command: Command::Hold,
-        wait: None,
-        received: 0,
-        rejected: 0,
-        refused: Refused { unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
-        implausible: ImplausibleCounts { numbers: 0, radii: 0, speeds: 0, jumps: 0 },
-        outbox: Vec::new(),
-        events: Vec::new(),
-        call_again: Instant::from_micros(0),
-    }
+/// The halves of a step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    Hear,
+    Act,
+    Both,
 }
 
 impl StayaAgent {
     /// Creates the agent in place and in parts: only law and layer pass through the stack.
     ///
     /// # Safety
-    /// `site` was returned by [`site`].
+    /// `site` was returned by [`Call::site`].
     #[inline(never)]
     unsafe fn make(site: *mut Self, setup: &StayaSetup) -> Checked<()> {
         let agent = AnyAgent::new(&setup.config()?, setup.law()?, setup.layer()?, setup.speech()?);
         // SAFETY: aligned space for the whole agent, not used elsewhere.
         unsafe {
             (&raw mut (*site).agent).write(agent);
-            #[cfg(feature = "grid")]
+            (&raw mut (*site).law).write(StayaLaw::of(setup.law)?);
+            (&raw mut (*site).has_heard).write(false);
             (&raw mut (*site).workspace).write(Workspace::new());
             (&raw mut (*site).obstacles).write(Vec::new());
-            (&raw mut (*site).outputs).write(no_outputs());
+            (&raw mut (*site).outputs).write(Outputs::default());
             (&raw mut (*site).mark).write(Self::MARK);
         }
         Ok(())
     }
 
-    /// # Safety
-    /// As for [`StayaInputs::inputs`].
-    unsafe fn step(&mut self, inputs: &StayaInputs) -> Checked<()> {
-        let law = self.agent.law().kind();
-        // SAFETY: the caller's contract.
-        let own = unsafe { inputs.inputs(law, &mut self.obstacles)? };
-        let now = Instant::from_micros(inputs.now_us);
-        self.agent.step_into(&own, now, &mut self.workspace, &mut self.outputs);
+    pub(crate) fn run(&mut self, call: Call<'_>, inputs: *const StayaInputs, part: Part) -> Checked<()> {
+        if part == Part::Act && !self.has_heard {
+            return Err(StayaStatus::NotHeard);
+        }
+        let inputs = call.shared(inputs)?;
+        let own = inputs.inputs(call, self.law, &mut self.obstacles)?;
+        let (now, out) = (Instant::from_micros(inputs.now_us), &mut self.outputs);
+        if part != Part::Act {
+            self.agent.hear_into(&own, now, out);
+        }
+        if part != Part::Hear {
+            self.agent.act_into(&own, now, &mut self.workspace, out);
+        }
+        self.has_heard = part == Part::Hear;
         Ok(())
     }
 
@@ -110,6 +116,21 @@ impl StayaAgent {
     pub(crate) const fn inside_mut(&mut self) -> &mut AnyAgent {
         &mut self.agent
     }
+}
+
+/// Runs a step, or its second half, if the inputs are valid.
+pub(crate) fn act(
+    call: Call<'_>,
+    (agent, part): (*mut StayaAgent, Part),
+    inputs: *const StayaInputs,
+    outputs: *mut StayaOutputs,
+) -> Checked<()> {
+    check(outputs)?;
+    let agent = call.resident_mut(agent)?;
+    agent.run(call, inputs, part)?;
+    // Inputs in the same memory have been read.
+    agent.tell(call.zeroed(outputs)?);
+    Ok(())
 }
 
 /// A destination, which may move.
@@ -138,39 +159,59 @@ pub struct StayaNeighbor {
     pub velocity_mps: [f32; 3],
     /// Radius of the ball around its body, metres.
     pub radius_m: f32,
-    /// The number of its leader; 0 if it has none.
+    /// The number of its leader; 0 if it has none. Only robots that cross land in cells tell
+    /// `leader`, `cell`, `target`, `slot` and `heading`. For other robots they are 0 and
+    /// STAYA_DIR_STAY.
     pub leader: u32,
     /// The cell that it was in.
     pub cell: StayaCell,
     /// The cell that it was heading for.
     pub target: StayaCell,
-    /// Its place in the formation, or its flock.
+    /// Its place in the formation.
     pub slot: u8,
+    /// The number of its flock.
+    pub flock: u8,
     /// Its activity: StayaMode.
     pub mode: u8,
     /// The move that it wanted to make next: StayaDir.
     pub heading: u8,
     /// Other than 0: silent for too long; only its last position still counts.
     pub is_lost: u8,
+    /// The protocol of its law: 64 to 255 are those of users, 0 is none.
+    pub protocol: u8,
+    /// Length of `payload`.
+    pub payload_count: u8,
+    /// What its law says to laws with this protocol, `payload_count` bytes.
+    pub payload: [u8; STAYA_PAYLOAD],
 }
 
 plain!(StayaWaypoint, StayaNeighbor);
 
-impl From<&Neighbor<Number>> for StayaNeighbor {
-    fn from(neighbor: &Neighbor<Number>) -> Self {
+impl From<&Neighbor<Number, AnyPayload>> for StayaNeighbor {
+    fn from(neighbor: &Neighbor<Number, AnyPayload>) -> Self {
+        let on_grid = neighbor.payload.and_then(|payload| payload.try_into().ok()).unwrap_or_default();
+        let GridPayload { cell, target, heading, slot, leader, .. } = on_grid;
+        let encode = |payload: AnyPayload| payload.encode::<MAX_PAYLOAD>(ProtocolId::NONE);
+        let (protocol, bytes) = neighbor.payload.and_then(encode).unwrap_or_default();
+        let mut payload = [0; STAYA_PAYLOAD];
+        payload.iter_mut().zip(&bytes).for_each(|(to, byte)| *to = *byte);
         Self {
             id: neighbor.id.0,
             heard_us: neighbor.heard.as_micros(),
             position_mm: neighbor.position.mm,
             velocity_mps: array(neighbor.velocity_mps),
             radius_m: cast(neighbor.radius_m),
-            leader: neighbor.leader.0,
-            cell: neighbor.cell.into(),
-            target: neighbor.target.into(),
-            slot: neighbor.slot,
+            leader: leader.0,
+            cell: cell.into(),
+            target: target.into(),
+            slot,
+            flock: neighbor.flock,
             mode: StayaMode::from(neighbor.mode) as u8,
-            heading: neighbor.heading.index() as u8,
+            heading: heading.index() as u8,
             is_lost: neighbor.is_lost().into(),
+            protocol: protocol.0,
+            payload_count: bytes.len() as u8,
+            payload,
         }
     }
 }
@@ -184,9 +225,6 @@ pub const extern "C" fn staya_agent_bytes() -> usize {
 /// Creates an idle agent in the caller's memory and points `*agent` to it; null if the setup is
 /// rejected. The agent lives as long as the memory, must not be moved, and need not be destroyed.
 /// Temporarily needs some kilobytes of stack (docs/c.md).
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_init(
     memory: *mut c_void,
@@ -194,120 +232,64 @@ pub unsafe extern "C" fn staya_init(
     setup: *const StayaSetup,
     agent: *mut *mut StayaAgent,
 ) -> StayaStatus {
-    let make = || {
-        // SAFETY: a valid pointer by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(agent, core::ptr::null_mut())? };
-        // SAFETY: this much memory by the caller's contract, or `site` rejects it.
-        let site = unsafe { site::<StayaAgent>(memory, memory_bytes)? };
-        // SAFETY: a valid setup by contract, or `shared` rejects it; the site is checked.
-        unsafe { StayaAgent::make(site, shared(setup)?)? };
-        // SAFETY: as above.
-        unsafe { memory::write(agent, site) }
-    };
-    answer(make())
+    answers!(|call| {
+        call.write(agent, core::ptr::null_mut())?;
+        let site = call.site::<StayaAgent>(memory, memory_bytes)?;
+        // SAFETY: `Call::site` returned it.
+        unsafe { StayaAgent::make(site, call.shared(setup)?)? };
+        call.write(agent, site)
+    })
 }
 
 /// Runs one step: receive, decide, send. Call it once per `tick_us` with the robot's present clock
 /// and state. Bounded work. If the inputs are rejected, the agent and `outputs` are unchanged.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_step(
     agent: *mut StayaAgent,
     inputs: *const StayaInputs,
     outputs: *mut StayaOutputs,
 ) -> StayaStatus {
-    let step = || {
-        if outputs.is_null() {
-            return Err(StayaStatus::Null);
-        }
-        if !outputs.is_aligned() {
-            return Err(StayaStatus::Alignment);
-        }
-        // SAFETY: an agent not used elsewhere by contract, or `resident_mut` rejects it.
-        let agent = unsafe { resident_mut(agent)? };
-        // SAFETY: inputs with valid pointers by the caller's contract, or they are rejected.
-        unsafe { agent.step(shared(inputs)?)? };
-        // SAFETY: valid space, or it is rejected. Inputs in the same memory have been read.
-        agent.tell(unsafe { zeroed(outputs)? });
-        Ok(())
-    };
-    answer(step())
+    answers!(|call| act(call, (agent, Part::Both), inputs, outputs))
 }
 
 /// Gives the robot the waypoint number `index`, below STAYA_WAYPOINTS. For the laws of the plane
 /// except boids. The goal flock uses several waypoints, the other laws only number 0.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_assign_waypoint(
     agent: *mut StayaAgent,
     index: u8,
     waypoint: *const StayaWaypoint,
 ) -> StayaStatus {
-    let assign = || {
-        // SAFETY: both are valid by the caller's contract, or they are rejected.
-        let (agent, waypoint) = unsafe { (resident_mut(agent)?, shared(waypoint)?) };
+    answers!(|call| {
+        let (agent, waypoint) = (call.resident_mut(agent)?, call.shared(waypoint)?);
         let waypoint = Waypoint::<f32> {
             position: Position::from_mm(waypoint.position_mm),
-            velocity_mps: waypoint.velocity_mps.into_vector()?,
+            velocity_mps: finite(waypoint.velocity_mps)?,
             at: Instant::from_micros(waypoint.at_us),
         };
         let mut waypoints = Vec::new();
         waypoints.push((index, waypoint)).map_err(|_| StayaStatus::TooMany)?;
         agent.agent.assign(&Task::Waypoints(waypoints)).map_err(|_| StayaStatus::Task)
-    };
-    answer(assign())
-}
-
-trait IntoVector {
-    fn into_vector(self) -> Checked<staya_controller::geom::Vec3<f32>>;
-}
-
-impl IntoVector for [f32; 3] {
-    fn into_vector(self) -> Checked<staya_controller::geom::Vec3<f32>> {
-        let [x, y, z] = self;
-        let vector = staya_controller::geom::Vec3::new(x, y, z);
-        if vector.is_finite() { Ok(vector) } else { Err(StayaStatus::Number) }
-    }
+    })
 }
 
 /// Gives the robot a target cell, for laws on land in cells. A formation only needs its leader's.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_assign_cell(agent: *mut StayaAgent, x: i16, y: i16) -> StayaStatus {
-    let assign = || {
-        // SAFETY: an agent not used elsewhere by contract, or `resident_mut` rejects it.
-        let agent = unsafe { resident_mut(agent)? };
-        agent.agent.assign(&Task::Cell(Cell::new(x, y))).map_err(|_| StayaStatus::Task)
-    };
-    answer(assign())
+    answers!(|call| {
+        let agent = &mut call.resident_mut(agent)?.agent;
+        agent.assign(&Task::Cell(Cell::new(x, y))).map_err(|_| StayaStatus::Task)
+    })
 }
 
 /// Returns the robot's activity: StayaMode.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_mode(agent: *const StayaAgent, mode: *mut u8) -> StayaStatus {
-    let ask = || {
-        // SAFETY: an agent by the caller's contract, or `resident` rejects it.
-        let known = unsafe { resident(agent)? }.agent.mode();
-        // SAFETY: valid space by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(mode, StayaMode::from(known) as u8) }
-    };
-    answer(ask())
+    answers!(|call| call.write(mode, StayaMode::from(call.resident(agent)?.agent.mode()) as u8))
 }
 
 /// Returns the first `room` neighbours in ascending order of their numbers, and in `*count` the
 /// number of all. A room of `STAYA_NEIGHBORS` always suffices.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_neighbors(
     agent: *const StayaAgent,
@@ -315,49 +297,30 @@ pub unsafe extern "C" fn staya_neighbors(
     neighbor_room: usize,
     count: *mut usize,
 ) -> StayaStatus {
-    let ask = || {
-        // SAFETY: an agent and this much space by the caller's contract, or they are rejected.
-        let (agent, places) = unsafe { (resident(agent)?, room(neighbors, neighbor_room)?) };
-        let known = agent.agent.neighbors();
-        // SAFETY: valid space by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(count, known.len())? };
+    answers!(|call| {
+        let known = call.resident(agent)?.agent.neighbors();
+        let places = call.room(neighbors, neighbor_room)?;
+        call.write(count, known.len())?;
         for (place, neighbor) in places.iter_mut().zip(known) {
             place.write(neighbor.into());
         }
         Ok(())
-    };
-    answer(ask())
+    })
 }
 
 /// A hash of the agent's whole state. Agents with equal hashes behave identically on any machine.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_digest(agent: *const StayaAgent, digest: *mut u64) -> StayaStatus {
-    let ask = || {
-        // SAFETY: an agent by the caller's contract, or `resident` rejects it.
-        let known = unsafe { resident(agent)? }.agent.digest();
-        // SAFETY: valid space by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(digest, known) }
-    };
-    answer(ask())
+    answers!(|call| call.write(digest, call.resident(agent)?.agent.digest()))
 }
 
 /// Moves a position by a vector in metres (odometry), rounded to millimetres, saturating.
 /// cbindgen:ptrs-as-arrays=[[position_mm; 3], [way_m; 3]]
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_move(position_mm: *mut i32, way_m: *const f32) -> StayaStatus {
-    let go = || {
-        // SAFETY: both are valid by the caller's contract, or `shared` rejects them.
-        let (from, way) = unsafe { (*shared(position_mm.cast::<[i32; 3]>())?, *shared(way_m.cast::<[f32; 3]>())?) };
-        way.into_vector()?;
-        let to = Position::from_mm(from).moved(vector(way)).ok_or(StayaStatus::Number)?;
-        // SAFETY: as above; the references have ended.
-        unsafe { memory::write(position_mm.cast(), to.mm) }
-    };
-    answer(go())
+    answers!(|call| {
+        let from = Position::from_mm(*call.shared(position_mm.cast::<[i32; 3]>())?);
+        let way = finite::<Number>(*call.shared(way_m.cast::<[f32; 3]>())?)?;
+        call.write(position_mm.cast(), from.moved(way).ok_or(StayaStatus::Number)?.mm)
+    })
 }

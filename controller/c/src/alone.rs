@@ -7,9 +7,9 @@ pub mod push_out;
 
 use crate::io::{StayaObstacle, array, read_obstacles, vector};
 use crate::layer::Source;
-use crate::memory::{self, Resident, optional, plain, resident_mut, row, shared, site};
+use crate::memory::{Call, Resident, answers, plain};
 use crate::setup::StayaOrca;
-use crate::status::{Checked, StayaStatus, answer};
+use crate::status::{Checked, StayaStatus};
 use crate::{HALF_PLANES, Number, OBSTACLES};
 use core::ffi::c_void;
 use heapless::Vec;
@@ -112,62 +112,39 @@ impl StayaNearby {
 /// The nearest robots, nearest first, of equally near ones the earlier. O(all * STAYA_NEARBY).
 fn nearest(all: &[StayaNearby]) -> Vec<Nearby<Number>, STAYA_NEARBY> {
     let mut kept = Vec::<(u64, Nearby<Number>), STAYA_NEARBY>::new();
-    for other in all {
-        // A position that is not a number would count as the nearest.
-        if !other.offset_m.iter().all(|component| component.is_finite()) {
-            continue;
-        }
+    // A position that is not a number would count as the nearest.
+    for other in all.iter().filter(|other| other.offset_m.iter().all(|component| component.is_finite())) {
         let other = other.nearby();
-        let key = other.offset_m.length_key();
-        if kept.is_full() && kept.last().is_some_and(|(farthest, _)| *farthest > key) {
-            kept.pop();
+        let mut moved = (other.offset_m.length_key(), other);
+        let mut is_nearer = false;
+        for place in &mut kept {
+            is_nearer |= moved.0 < place.0;
+            if is_nearer {
+                core::mem::swap(place, &mut moved);
+            }
         }
-        if kept.push((key, other)).is_ok() {
-            sink(&mut kept);
-        }
+        // The farthest one does not fit into a full list.
+        let _ = kept.push(moved);
     }
     let mut nearest = Vec::new();
-    for (_, other) in kept.as_slice() {
-        // There is space for all.
+    for (_, other) in &kept {
         let _ = nearest.push(*other);
     }
     nearest
 }
 
-fn sink(kept: &mut [(u64, Nearby<Number>)]) {
-    let mut rest = kept;
-    while let [.., before, last] = rest {
-        if before.0 <= last.0 {
-            return;
-        }
-        core::mem::swap(before, last);
-        let shorter = rest.len().saturating_sub(1);
-        match rest.get_mut(..shorter) {
-            Some(front) => rest = front,
-            None => return,
-        }
-    }
-}
-
 /// Reads the arguments that all behaviours share.
-///
-/// # Safety
-/// Each pointer is null, misaligned, or valid for the given number of elements, which are not
-/// modified during the call.
 #[expect(clippy::type_complexity, reason = "cbindgen reads no alias of it")]
-unsafe fn surroundings(
+fn surroundings(
+    call: Call<'_>,
     body: *const StayaBody,
-    nearby: *const StayaNearby,
-    nearby_count: usize,
-    obstacles: *const StayaObstacle,
-    obstacle_count: usize,
+    (nearby, nearby_count): (*const StayaNearby, usize),
+    (obstacles, obstacle_count): (*const StayaObstacle, usize),
 ) -> Checked<(Body<Number>, Vec<Nearby<Number>, STAYA_NEARBY>, Vec<Obstacle<Number>, OBSTACLES>)> {
-    // SAFETY: the caller's contract.
-    let (body, others, seen) =
-        unsafe { (shared(body)?.body(), row(nearby, nearby_count)?, row(obstacles, obstacle_count)?) };
-    let mut obstacles = Vec::new();
-    read_obstacles(seen, &mut obstacles)?;
-    Ok((body, nearest(others), obstacles))
+    let (body, others) = (call.shared(body)?.body(), call.row(nearby, nearby_count)?);
+    let mut known = Vec::new();
+    read_obstacles(call.row(obstacles, obstacle_count)?, &mut known)?;
+    Ok((body, nearest(others), known))
 }
 
 /// ORCA for one robot. Its contents are private to the library.
@@ -229,20 +206,13 @@ impl AnyAvoider {
 }
 
 /// Writes the parameters of ORCA that suit most robots.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_orca_defaults(orca: *mut StayaOrca) -> StayaStatus {
-    // SAFETY: valid space by the caller's contract, or `write` rejects it.
-    answer(unsafe { memory::write(orca, StayaOrca::defaults()) })
+    answers!(|call| call.write(orca, StayaOrca::defaults()))
 }
 
 /// Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN;
 /// in space if `in_space` is not 0. `seed` seeds random tie-breaks; robots may share it.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_orca_init(
     memory: *mut c_void,
@@ -252,19 +222,14 @@ pub unsafe extern "C" fn staya_orca_init(
     seed: u64,
     avoider: *mut *mut StayaAvoider,
 ) -> StayaStatus {
-    let make = || {
-        // SAFETY: a valid pointer by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(avoider, core::ptr::null_mut())? };
-        // SAFETY: this much memory by the caller's contract, or `site` rejects it.
-        let site = unsafe { site::<StayaAvoider>(memory, memory_bytes)? };
-        // SAFETY: valid parameters by the caller's contract, or `shared` rejects them.
-        let inside = AnyAvoider::new(unsafe { shared(orca)? }, in_space)?;
+    answers!(|call| {
+        call.write(avoider, core::ptr::null_mut())?;
+        let site = call.site::<StayaAvoider>(memory, memory_bytes)?;
+        let inside = AnyAvoider::new(call.shared(orca)?, in_space)?;
         // SAFETY: aligned space for the whole avoider, not used elsewhere.
         unsafe { site.write(StayaAvoider { mark: StayaAvoider::MARK, avoider: inside, rng: Rng::new(seed) }) };
-        // SAFETY: as above.
-        unsafe { memory::write(avoider, site) }
-    };
-    answer(make())
+        call.write(avoider, site)
+    })
 }
 
 /// Returns the velocity to take until the next step, m/s: the one nearest to `wish_mps` that robots
@@ -274,9 +239,6 @@ pub unsafe extern "C" fn staya_orca_init(
 /// Only the nearest STAYA_NEARBY robots count. The plane ignores heights and keeps that of the
 /// wish.
 /// cbindgen:ptrs-as-arrays=[[wish_mps; 3], [way_m; 3], [velocity_mps; 3]]
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_orca_velocity(
     avoider: *mut StayaAvoider,
@@ -289,16 +251,11 @@ pub unsafe extern "C" fn staya_orca_velocity(
     obstacle_count: usize,
     velocity_mps: *mut f32,
 ) -> StayaStatus {
-    let avoid = || {
-        // SAFETY: all are valid by the caller's contract, or they are rejected.
-        let (own, wish, way) =
-            unsafe { (resident_mut(avoider)?, vector(*shared::<[f32; 3]>(wish_mps.cast())?), optional(way_m.cast())?) };
-        // SAFETY: as above.
-        let (body, others, obstacles) = unsafe { surroundings(body, nearby, nearby_count, obstacles, obstacle_count)? };
-        let StayaAvoider { avoider, rng, .. } = own;
-        let best = avoider.velocity(&body, wish, way.map(|way| vector(*way)), &others, &obstacles, rng);
-        // SAFETY: valid space by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(velocity_mps.cast(), array(best)) }
-    };
-    answer(avoid())
+    answers!(|call| {
+        let StayaAvoider { avoider, rng, .. } = call.resident_mut(avoider)?;
+        let wish = vector(*call.shared::<[f32; 3]>(wish_mps.cast())?);
+        let way = call.optional::<[f32; 3]>(way_m.cast())?.map(|way| vector(*way));
+        let (body, others, obstacles) = surroundings(call, body, (nearby, nearby_count), (obstacles, obstacle_count))?;
+        call.write(velocity_mps.cast(), array(avoider.velocity(&body, wish, way, &others, &obstacles, rng)))
+    })
 }

@@ -3,10 +3,8 @@
 use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::{Event, Wait};
 use staya_controller::flock::lattice::Algorithm;
-use staya_controller::neighbor::Claim;
 use staya_controller::push_out::Model;
 use staya_controller::robot::Mode;
-use staya_controller::wire::RequestKind;
 
 /// Guidance law: how a robot moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +26,22 @@ pub enum StayaLaw {
     RouteOnGrid = 6,
     /// A formation across land in cells, with moves from cell to cell as commands.
     FormationOnGrid = 7,
+    /// A law of your own: `staya_decide` gives the decision of each step.
+    External = 8,
+}
+
+/// What a law of your own decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum StayaAction {
+    /// Stand without a goal: STAYA_MODE_IDLE.
+    Idle = 0,
+    /// Stand.
+    Stay = 1,
+    /// Move with `velocity_mps`.
+    Velocity = 2,
+    /// Take the first of `moves` that leads into a free cell; only for moves from cell to cell.
+    Moves = 3,
 }
 
 /// Safety layer: how a robot keeps clear of others. Robots that move from cell to cell have none.
@@ -80,7 +94,7 @@ pub enum StayaMode {
     Forming = 1,
     /// Moving to its goal.
     Cruise = 2,
-    /// Stopped, because of a request or because no route is open.
+    /// Stopped, because another robot asked it to or because no route is open.
     Hold = 3,
     /// At its target.
     Arrived = 4,
@@ -98,7 +112,7 @@ pub enum StayaWait {
     Nothing = 0,
     /// Its leader or its followers have not arrived yet.
     Team = 1,
-    /// A request to stop.
+    /// Another robot asked it to stop.
     Stopped = 2,
     /// Only land or walls block its route.
     Route = 3,
@@ -146,8 +160,8 @@ pub enum StayaEventKind {
     NoRoute = 1,
     /// The target lay in an impassable cell and was moved: `before_xy`, `after_xy`.
     TargetMoved = 2,
-    /// A request to `robot` ran out of retries; `after`: 0 stop, 1 resume, 2 redirect.
-    RequestExpired = 3,
+    /// `robot` did not acknowledge a message of the law in time.
+    MessageExpired = 3,
     /// `robot` became known.
     NeighborFound = 4,
     /// `robot` was silent for too long.
@@ -191,6 +205,16 @@ pub enum StayaLatticeTerms {
     All = 3,
 }
 
+/// How push-out changes a step that leads too near.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum StayaPushOutModel {
+    /// The step slides along the border and becomes shorter.
+    Radial = 0,
+    /// The step keeps its length and is turned.
+    Tangential = 1,
+}
+
 /// [`of`](StayaLaw::of) for enums that C passes as numbers.
 macro_rules! numbered {
     ($($name:ident { $($variant:ident),* $(,)? })*) => {
@@ -208,104 +232,57 @@ macro_rules! numbered {
 }
 
 numbered! {
-    StayaLaw { Waypoint, Lattice, GoalFlock, Boids, Route, Formation, RouteOnGrid, FormationOnGrid }
+    StayaLaw { Waypoint, Lattice, GoalFlock, Boids, Route, Formation, RouteOnGrid, FormationOnGrid, External }
+    StayaAction { Idle, Stay, Velocity, Moves }
     StayaSafety { None, Orca, OrcaTable, Fly, PushOut }
     StayaWire { Postcard, Mavlink, Sealed }
     StayaShape { Wall, Ball, Plane }
-    StayaLatticeTerms { Others, Reference, All }
-    StayaPushOutModel { Radial, Tangential }
 }
 
-impl From<StayaLatticeTerms> for Algorithm {
-    fn from(terms: StayaLatticeTerms) -> Self {
-        match terms {
-            StayaLatticeTerms::Others => Self::One,
-            StayaLatticeTerms::Reference => Self::Two,
-            StayaLatticeTerms::All => Self::Three,
-        }
+/// Enums with the variants of an enum of the controller.
+macro_rules! shown {
+    ($($name:ident from $other:ident { $($variant:ident),* $(,)? })*) => {
+        $(impl From<$other> for $name {
+            fn from(other: $other) -> Self {
+                match other {
+                    $($other::$variant { .. } => Self::$variant,)*
+                }
+            }
+        })*
+    };
+}
+
+shown! {
+    StayaMode from Mode { Idle, Forming, Cruise, Hold, Arrived, Fault, Passive }
+    StayaWait from Wait { Team, Stopped, Route, Radio, Turn, Robots, GoalTaken }
+    StayaEventKind from Event {
+        ModeChanged, NoRoute, TargetMoved, MessageExpired, NeighborFound, NeighborLost, NeighborEvicted,
+        NeighborRebooted, ContactLost, DuplicateId, Implausible, Muted,
     }
 }
 
-/// How push-out changes a step that leads too near.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum StayaPushOutModel {
-    /// The step slides along the border and becomes shorter.
-    Radial = 0,
-    /// The step keeps its length and is turned.
-    Tangential = 1,
+/// Enums whose numbers from C select a variant of an enum of the controller.
+macro_rules! chosen {
+    ($($name:ident to $other:ty { $($variant:ident = $value:expr),* $(,)? })*) => {
+        $(impl $name {
+            /// The controller's value for this number.
+            ///
+            /// # Errors
+            /// `STAYA_STATUS_CHOICE` if there is none.
+            pub fn chosen(number: u8) -> Checked<$other> {
+                let mut all = [$((Self::$variant, $value)),*].into_iter();
+                all.find(|(known, _)| *known as u8 == number).map(|(_, value)| value).ok_or(StayaStatus::Choice)
+            }
+        })*
+    };
 }
 
-impl From<StayaPushOutModel> for Model {
-    fn from(model: StayaPushOutModel) -> Self {
-        match model {
-            StayaPushOutModel::Radial => Self::Radial,
-            StayaPushOutModel::Tangential => Self::Tangential,
-        }
-    }
-}
-
-impl From<Mode> for StayaMode {
-    fn from(mode: Mode) -> Self {
-        match mode {
-            Mode::Idle => Self::Idle,
-            Mode::Forming => Self::Forming,
-            Mode::Cruise => Self::Cruise,
-            Mode::Hold => Self::Hold,
-            Mode::Arrived => Self::Arrived,
-            Mode::Fault => Self::Fault,
-            Mode::Passive => Self::Passive,
-        }
-    }
-}
-
-impl From<Option<Wait>> for StayaWait {
-    fn from(wait: Option<Wait>) -> Self {
-        match wait {
-            None => Self::Nothing,
-            Some(Wait::Team) => Self::Team,
-            Some(Wait::Stopped) => Self::Stopped,
-            Some(Wait::Route) => Self::Route,
-            Some(Wait::Radio) => Self::Radio,
-            Some(Wait::Turn) => Self::Turn,
-            Some(Wait::Robots) => Self::Robots,
-            Some(Wait::GoalTaken) => Self::GoalTaken,
-        }
-    }
-}
-
-pub(crate) const fn request(kind: RequestKind) -> u8 {
-    match kind {
-        RequestKind::Stop => 0,
-        RequestKind::Resume => 1,
-        RequestKind::Redirect => 2,
-    }
-}
-
-pub(crate) const fn claim(claim: Claim) -> u8 {
-    match claim {
-        Claim::Number => 0,
-        Claim::Radius => 1,
-        Claim::Speed => 2,
-        Claim::Jump => 3,
-    }
-}
-
-impl From<&Event> for StayaEventKind {
-    fn from(event: &Event) -> Self {
-        match event {
-            Event::ModeChanged { .. } => Self::ModeChanged,
-            Event::NoRoute => Self::NoRoute,
-            Event::TargetMoved { .. } => Self::TargetMoved,
-            Event::RequestExpired { .. } => Self::RequestExpired,
-            Event::NeighborFound(_) => Self::NeighborFound,
-            Event::NeighborLost(_) => Self::NeighborLost,
-            Event::NeighborEvicted(_) => Self::NeighborEvicted,
-            Event::NeighborRebooted(_) => Self::NeighborRebooted,
-            Event::ContactLost => Self::ContactLost,
-            Event::DuplicateId(_) => Self::DuplicateId,
-            Event::Implausible { .. } => Self::Implausible,
-            Event::Muted => Self::Muted,
-        }
+chosen! {
+    StayaLatticeTerms to Algorithm { Others = Algorithm::One, Reference = Algorithm::Two, All = Algorithm::Three }
+    StayaPushOutModel to Model { Radial = Model::Radial, Tangential = Model::Tangential }
+    StayaWait to Option<Wait> {
+        Nothing = None, Team = Some(Wait::Team), Stopped = Some(Wait::Stopped), Route = Some(Wait::Route),
+        Radio = Some(Wait::Radio), Turn = Some(Wait::Turn), Robots = Some(Wait::Robots),
+        GoalTaken = Some(Wait::GoalTaken),
     }
 }

@@ -1,7 +1,7 @@
 //! Inputs and outputs of a step, as plain structures.
 
-use crate::choices::{self, StayaCommand, StayaEventKind, StayaLaw, StayaMode, StayaShape, StayaWait};
-use crate::memory::{plain, row};
+use crate::choices::{StayaCommand, StayaEventKind, StayaLaw, StayaMode, StayaShape, StayaWait};
+use crate::memory::{Call, plain};
 use crate::setup::StayaCell;
 use crate::status::{Checked, StayaStatus};
 use crate::{Number, OBSTACLES};
@@ -12,8 +12,9 @@ use staya_controller::agent::{
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::Window;
+use staya_controller::neighbor::Claim;
 use staya_controller::obstacle::Obstacle;
-use staya_controller::scalar::cast;
+use staya_controller::scalar::{Scalar, cast};
 use staya_controller::time::Duration;
 
 /// Maximum number of bytes that one step can send.
@@ -25,6 +26,8 @@ pub const STAYA_EVENTS: usize = 8;
 pub const STAYA_OUTPUTS_SIZE: usize = 444;
 
 const _: () = assert!(STAYA_OUTBOX == OUTBOX && STAYA_EVENTS == EVENTS);
+const _: () =
+    assert!(matches!([Claim::Number as u8, Claim::Radius as u8, Claim::Speed as u8, Claim::Jump as u8], [0, 1, 2, 3]));
 const _: () = assert!(size_of::<StayaOutputs>() == STAYA_OUTPUTS_SIZE);
 
 /// A static obstacle, relative to the robot's position, metres.
@@ -51,7 +54,8 @@ pub struct StayaObstacle {
 ///
 /// Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
 /// `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
-/// The other fields are then ignored.
+/// The other fields are then ignored. With STAYA_LAW_EXTERNAL a `window` puts the robot into cells,
+/// and `cell_m` above 0 lets it move by velocities there.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaInputs {
@@ -166,8 +170,14 @@ pub struct StayaOutputs {
 
 plain!(StayaObstacle, StayaInputs, StayaEvent, StayaOutputs);
 
-pub(crate) fn vector([x, y, z]: [f32; 3]) -> Vec3<Number> {
+pub(crate) fn vector<S: Scalar>([x, y, z]: [f32; 3]) -> Vec3<S> {
     Vec3::new(cast(x), cast(y), cast(z))
+}
+
+/// [`vector`] of numbers that must be finite.
+pub(crate) fn finite<S: Scalar>(numbers: [f32; 3]) -> Checked<Vec3<S>> {
+    let are_finite = numbers.iter().all(|number| number.is_finite());
+    are_finite.then(|| vector(numbers)).ok_or(StayaStatus::Number)
 }
 
 pub(crate) fn array(vector: Vec3<Number>) -> [f32; 3] {
@@ -188,81 +198,68 @@ impl StayaObstacle {
 
 pub(crate) fn read_obstacles(from: &[StayaObstacle], to: &mut Vec<Obstacle<Number>, OBSTACLES>) -> Checked<()> {
     to.clear();
-    for obstacle in from {
-        to.push(obstacle.obstacle()?).map_err(|_| StayaStatus::TooMany)?;
-    }
-    Ok(())
+    from.iter().try_for_each(|obstacle| to.push(obstacle.obstacle()?).map_err(|_| StayaStatus::TooMany))
 }
 
 impl StayaInputs {
-    /// # Safety
-    /// Each pointer is null, misaligned, or valid for the given number of elements, which are not
-    /// modified during the call.
-    pub(crate) unsafe fn inputs<'a>(
-        &'a self,
+    pub(crate) fn inputs<'a>(
+        &self,
+        call: Call<'a>,
         law: StayaLaw,
         obstacles: &'a mut Vec<Obstacle<Number>, OBSTACLES>,
     ) -> Checked<AnyInputs<'a, Number>> {
-        // SAFETY: the caller's contract.
-        let (seen, inbox) = unsafe { (row(self.obstacles, self.obstacle_count)?, row(self.inbox, self.inbox_bytes)?) };
-        read_obstacles(seen, obstacles)?;
+        let inbox = call.row(self.inbox, self.inbox_bytes)?;
+        read_obstacles(call.row(self.obstacles, self.obstacle_count)?, obstacles)?;
         let plane = InPlane { max_speed_mps: cast(self.max_speed_mps), obstacles: obstacles.as_slice() };
-        let surroundings = match law {
-            StayaLaw::Waypoint | StayaLaw::Lattice | StayaLaw::GoalFlock | StayaLaw::Boids => {
-                AnySurroundings::InPlane(plane)
-            }
+        // A representative of the laws with the same surroundings.
+        let kind = match law {
+            StayaLaw::External if self.window.is_null() => StayaLaw::Waypoint,
+            StayaLaw::External if self.cell_m == 0.0 => StayaLaw::RouteOnGrid,
+            StayaLaw::External => StayaLaw::Route,
+            law => law,
+        };
+        let surroundings = match kind {
             StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid => {
-                // SAFETY: the caller's contract.
-                AnySurroundings::OnGrid(unsafe { self.grid(Duration::from_micros(self.busy_us))? })
+                AnySurroundings::OnGrid(self.grid(call, Duration::from_micros(self.busy_us))?)
             }
             StayaLaw::Route | StayaLaw::Formation => {
                 if !(self.cell_m > 0.0 && self.cell_m.is_finite()) {
                     return Err(StayaStatus::Number);
                 }
                 let offset_m = Vec2::new(cast(self.in_cell_x_m), cast(self.in_cell_y_m));
-                AnySurroundings::InCells(InCells {
-                    // SAFETY: the caller's contract.
-                    grid: unsafe { self.grid(Duration::ZERO)? },
-                    plane,
-                    in_cell: InCell { offset_m, cell_m: cast(self.cell_m) },
-                })
+                let in_cell = InCell { offset_m, cell_m: cast(self.cell_m) };
+                AnySurroundings::InCells(InCells { grid: self.grid(call, Duration::ZERO)?, plane, in_cell })
             }
+            _ => AnySurroundings::InPlane(plane),
         };
-        Ok(Inputs { state: self.state(), surroundings, inbox })
+        let position = Position::from_mm(self.position_mm);
+        let state = KinematicState { position, velocity_mps: vector(self.velocity_mps) };
+        Ok(Inputs { state, surroundings, inbox })
     }
 
-    fn state(&self) -> KinematicState<Number> {
-        KinematicState { position: Position::from_mm(self.position_mm), velocity_mps: vector(self.velocity_mps) }
-    }
-
-    /// # Safety
-    /// As for [`Self::inputs`].
-    unsafe fn grid(&self, busy: Duration) -> Checked<OnGrid<'_>> {
+    fn grid<'a>(&self, call: Call<'a>, busy: Duration) -> Checked<OnGrid<'a>> {
+        let cell = CellState { cell: self.cell.into(), busy };
+        if self.window.is_null() {
+            return Ok(OnGrid { cell, window: None });
+        }
         let count = usize::from(self.window_width).saturating_mul(self.window_height.into());
-        let window = if self.window.is_null() {
-            None
-        } else {
-            // SAFETY: the caller's contract.
-            let cells = unsafe { row(self.window, count)? };
-            let window = Window::new(cells, self.window_origin.into(), self.window_width, self.window_height);
-            Some(window.ok_or(StayaStatus::Shape)?)
-        };
-        Ok(OnGrid { cell: CellState { cell: self.cell.into(), busy }, window })
+        let (cells, origin) = (call.row(self.window, count)?, self.window_origin.into());
+        let window = Window::new(cells, origin, self.window_width, self.window_height).ok_or(StayaStatus::Shape)?;
+        Ok(OnGrid { cell, window: Some(window) })
     }
 }
 
 impl StayaEvent {
-    fn of(event: &Event) -> Self {
-        let kind = StayaEventKind::from(event) as u8;
-        let about = Self { kind, ..Self::default() };
-        match *event {
+    fn of(event: Event) -> Self {
+        let about = Self { kind: StayaEventKind::from(event) as u8, ..Self::default() };
+        match event {
             Event::ModeChanged { from, to } => {
                 Self { before: StayaMode::from(from) as u8, after: StayaMode::from(to) as u8, ..about }
             }
             Event::TargetMoved { from, to } => Self { before_xy: from.into(), after_xy: to.into(), ..about },
-            Event::RequestExpired { to, kind } => Self { robot: to.0, after: choices::request(kind), ..about },
-            Event::Implausible { id, claim } => Self { robot: id.0, after: choices::claim(claim), ..about },
-            Event::NeighborFound(id)
+            Event::Implausible { id, claim } => Self { robot: id.0, after: claim as u8, ..about },
+            Event::MessageExpired(id)
+            | Event::NeighborFound(id)
             | Event::NeighborLost(id)
             | Event::NeighborEvicted(id)
             | Event::NeighborRebooted(id)
@@ -278,35 +275,23 @@ impl StayaOutputs {
         match &out.command {
             Command::Hold => self.command = StayaCommand::Hold as u8,
             Command::Move(moves) => {
-                self.command = StayaCommand::Move as u8;
-                for (to, dir) in self.moves.iter_mut().zip(moves) {
-                    *to = dir.index() as u8;
-                    self.move_count = self.move_count.saturating_add(1);
-                }
+                (self.command, self.move_count) = (StayaCommand::Move as u8, moves.len() as u8);
+                self.moves.iter_mut().zip(moves).for_each(|(to, dir)| *to = dir.index() as u8);
             }
             Command::Velocity(velocity_mps) => {
-                self.command = StayaCommand::Velocity as u8;
-                self.velocity_mps = array(*velocity_mps);
+                (self.command, self.velocity_mps) = (StayaCommand::Velocity as u8, array(*velocity_mps));
             }
         }
         self.call_again_us = out.call_again.as_micros();
-        self.wait = StayaWait::from(out.wait) as u8;
+        self.wait = out.wait.map_or(StayaWait::Nothing, StayaWait::from) as u8;
         (self.received, self.rejected) = (out.received, out.rejected);
-        self.refused_unsigned = out.refused.unsigned;
-        self.refused_forged = out.refused.forged;
-        self.refused_replayed = out.refused.replayed;
-        self.refused_no_room = out.refused.no_room;
-        self.implausible_numbers = out.implausible.numbers;
-        self.implausible_radii = out.implausible.radii;
-        self.implausible_speeds = out.implausible.speeds;
-        self.implausible_places = out.implausible.jumps;
-        for (to, event) in self.events.iter_mut().zip(&out.events) {
-            *to = StayaEvent::of(event);
-            self.event_count = self.event_count.saturating_add(1);
-        }
-        for (to, byte) in self.outbox.iter_mut().zip(&out.outbox) {
-            *to = *byte;
-        }
+        (self.refused_unsigned, self.refused_forged) = (out.refused.unsigned, out.refused.forged);
+        (self.refused_replayed, self.refused_no_room) = (out.refused.replayed, out.refused.no_room);
+        (self.implausible_numbers, self.implausible_radii) = (out.implausible.numbers, out.implausible.radii);
+        (self.implausible_speeds, self.implausible_places) = (out.implausible.speeds, out.implausible.jumps);
+        self.event_count = out.events.len() as u8;
+        self.events.iter_mut().zip(&out.events).for_each(|(to, event)| *to = StayaEvent::of(*event));
         self.outbox_bytes = out.outbox.len() as u16;
+        self.outbox.iter_mut().zip(&out.outbox).for_each(|(to, byte)| *to = *byte);
     }
 }

@@ -1,12 +1,10 @@
-//! The guidance laws in this build, as one type. A digest contains only the law inside, so an agent
-//! made through C has the digest of the Rust agent with these types.
+//! The guidance laws in this build, as one type. A digest contains only the law inside.
 
 use crate::Number;
-use crate::choices::StayaLaw;
-use serde::{Serialize, Serializer};
+use crate::one_of::one_of;
 use staya_controller::agent::{
-    AnyOrder, AnyProtocol, AnySurroundings, BadInput, Decision, GridMessage, Law as AgentLaw, Radio, Report, Tools,
-    View, WaypointGuidance, decide_as, order_as, receive_as,
+    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, External, Law as AgentLaw,
+    Radio, Report, Tools, View, WaypointGuidance, decide_as, order_as, payload_as, receive_as,
 };
 #[cfg(feature = "flocks")]
 use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
@@ -14,6 +12,7 @@ use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance}
 use staya_controller::agent::{
     CELLS, CellFollower, FormationGuidance, FormationInPlane, GridWorkspace, RouteGuidance, TEMPLATE,
 };
+use staya_controller::grid::Dir;
 use staya_controller::parameters::Parameters;
 use staya_controller::robot::RobotId;
 
@@ -27,79 +26,57 @@ pub(crate) type Route = RouteGuidance<CELLS, VISITS, LEARNED>;
 #[cfg(feature = "grid")]
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE, LEARNED>;
 
-#[cfg(feature = "grid")]
-pub(crate) type Workspace = GridWorkspace<CELLS>;
-#[cfg(not(feature = "grid"))]
-pub(crate) type Workspace = ();
-
-/// A guidance law.
-#[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "StayaLaw says what each is")]
-pub enum Law {
-    Waypoint(WaypointGuidance<Number>),
-    #[cfg(feature = "flocks")]
-    Lattice(LatticeGuidance<Number>),
-    #[cfg(feature = "flocks")]
-    GoalFlock(GoalFlockGuidance<Number>),
-    #[cfg(feature = "flocks")]
-    Boids(BoidsGuidance<Number>),
-    #[cfg(feature = "grid")]
-    Route(CellFollower<Number, Route>),
-    #[cfg(feature = "grid")]
-    Formation(FormationInPlane<Number, CELLS, VISITS, TEMPLATE, LEARNED>),
-    #[cfg(feature = "grid")]
-    RouteOnGrid(Route),
-    #[cfg(feature = "grid")]
-    FormationOnGrid(Formation),
+one_of! { $ each:
+    /// A guidance law.
+    #[expect(missing_docs, reason = "StayaLaw says what each is")]
+    #[allow(clippy::large_enum_variant, reason = "it has no heap")]
+    Law {
+        Waypoint(WaypointGuidance<Number>),
+        External(External<Number>),
+        #[cfg(feature = "flocks")]
+        Lattice(LatticeGuidance<Number>),
+        #[cfg(feature = "flocks")]
+        GoalFlock(GoalFlockGuidance<Number>),
+        #[cfg(feature = "flocks")]
+        Boids(BoidsGuidance<Number>),
+        #[cfg(feature = "grid")]
+        Route(CellFollower<Number, Route>),
+        #[cfg(feature = "grid")]
+        Formation(FormationInPlane<Number, CELLS, VISITS, TEMPLATE, LEARNED>),
+        #[cfg(feature = "grid")]
+        RouteOnGrid(Route),
+        #[cfg(feature = "grid")]
+        FormationOnGrid(Formation),
+    }
 }
 
-macro_rules! each {
-    ($any:expr, $inside:ident => $action:expr) => {
-        match $any {
-            Law::Waypoint($inside) => $action,
-            #[cfg(feature = "flocks")]
-            Law::Lattice($inside) => $action,
-            #[cfg(feature = "flocks")]
-            Law::GoalFlock($inside) => $action,
-            #[cfg(feature = "flocks")]
-            Law::Boids($inside) => $action,
-            #[cfg(feature = "grid")]
-            Law::Route($inside) => $action,
-            #[cfg(feature = "grid")]
-            Law::Formation($inside) => $action,
-            #[cfg(feature = "grid")]
-            Law::RouteOnGrid($inside) => $action,
-            #[cfg(feature = "grid")]
-            Law::FormationOnGrid($inside) => $action,
-        }
-    };
+/// The scratch memory of any law.
+pub struct Workspace {
+    #[cfg(feature = "grid")]
+    grid: GridWorkspace<CELLS>,
+    none: (),
 }
 
-impl Law {
-    pub(crate) const fn kind(&self) -> StayaLaw {
-        match self {
-            Self::Waypoint(_) => StayaLaw::Waypoint,
-            #[cfg(feature = "flocks")]
-            Self::Lattice(_) => StayaLaw::Lattice,
-            #[cfg(feature = "flocks")]
-            Self::GoalFlock(_) => StayaLaw::GoalFlock,
-            #[cfg(feature = "flocks")]
-            Self::Boids(_) => StayaLaw::Boids,
+impl Workspace {
+    pub(crate) const fn new() -> Self {
+        Self {
             #[cfg(feature = "grid")]
-            Self::Route(_) => StayaLaw::Route,
-            #[cfg(feature = "grid")]
-            Self::Formation(_) => StayaLaw::Formation,
-            #[cfg(feature = "grid")]
-            Self::RouteOnGrid(_) => StayaLaw::RouteOnGrid,
-            #[cfg(feature = "grid")]
-            Self::FormationOnGrid(_) => StayaLaw::FormationOnGrid,
+            grid: GridWorkspace::new(),
+            none: (),
         }
     }
 }
 
-impl Serialize for Law {
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        each!(self, law => law.serialize(serializer))
+impl AsMut<()> for Workspace {
+    fn as_mut(&mut self) -> &mut () {
+        &mut self.none
+    }
+}
+
+#[cfg(feature = "grid")]
+impl AsMut<GridWorkspace<CELLS>> for Workspace {
+    fn as_mut(&mut self) -> &mut GridWorkspace<CELLS> {
+        &mut self.grid
     }
 }
 
@@ -110,43 +87,29 @@ impl AgentLaw<Number> for Law {
 
     fn decide(
         &mut self,
-        view: &View<'_, Number>,
+        view: &View<'_, Number, AnyProtocol>,
         here: &AnySurroundings<'_, Number>,
         tools: Tools<'_, Number, Self>,
     ) -> Result<Decision<Number>, BadInput> {
         let Tools { rng, mut radio, workspace } = tools;
-        #[cfg(not(feature = "grid"))]
-        let () = *workspace;
-        let sends = (rng, &mut radio);
-        match self {
-            Self::Waypoint(law) => decide_as(law, view, here, sends, &mut ()),
-            #[cfg(feature = "flocks")]
-            Self::Lattice(law) => decide_as(law, view, here, sends, &mut ()),
-            #[cfg(feature = "flocks")]
-            Self::GoalFlock(law) => decide_as(law, view, here, sends, &mut ()),
-            #[cfg(feature = "flocks")]
-            Self::Boids(law) => decide_as(law, view, here, sends, &mut ()),
-            #[cfg(feature = "grid")]
-            Self::Route(law) => decide_as(law, view, here, sends, workspace),
-            #[cfg(feature = "grid")]
-            Self::Formation(law) => decide_as(law, view, here, sends, workspace),
-            #[cfg(feature = "grid")]
-            Self::RouteOnGrid(law) => decide_as(law, view, here, sends, workspace),
-            #[cfg(feature = "grid")]
-            Self::FormationOnGrid(law) => decide_as(law, view, here, sends, workspace),
-        }
+        each!(self, law => decide_as(law, view, here, (rng, &mut radio), workspace.as_mut()))
     }
 
-    fn payload(&mut self, radio: &mut Radio<'_, GridMessage>) {
-        each!(self, law => AgentLaw::<Number>::payload(law, &mut radio.of()));
+    fn payload(
+        &mut self,
+        here: &AnySurroundings<'_, Number>,
+        heading: Dir,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> AnyPayload {
+        each!(self, law => payload_as(law, here, heading, radio))
     }
 
-    fn receive(&mut self, from: RobotId, message: GridMessage) -> bool {
-        each!(self, law => receive_as::<Number, _>(law, from, message))
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
+        each!(self, law => receive_as::<Number, _, _>(law, from, message, radio))
     }
 
-    fn order(&mut self, order: AnyOrder) -> bool {
-        each!(self, law => order_as::<Number, _>(law, order))
+    fn order(&mut self, order: &AnyOrder) -> bool {
+        each!(self, law => order_as::<Number, _, _>(law, order))
     }
 
     fn needs(&self, id: RobotId) -> bool {

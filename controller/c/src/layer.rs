@@ -1,6 +1,6 @@
-//! The safety layers in this build, as one type. A digest contains only the layer inside, as for
-//! laws.
+//! The safety layers in this build, as one type. A digest contains only the layer inside.
 
+use crate::one_of::one_of;
 use crate::{HALF_PLANES, Number};
 use serde::{Serialize, Serializer};
 #[cfg(feature = "space")]
@@ -49,34 +49,16 @@ impl HalfSpaces<Number> for Source {
     }
 }
 
-/// A safety layer.
-#[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "StayaSafety says what each is")]
-pub enum Layer {
-    None(Unguarded),
-    Orca(OrcaSafety<Number, HALF_PLANES, Source>),
-    #[cfg(feature = "space")]
-    Fly(FlySafety<Number, HALF_PLANES>),
-    #[cfg(feature = "push-out")]
-    PushOut(PushOutSafety<Number>),
-}
-
-macro_rules! each {
-    ($any:expr, $inside:ident => $action:expr) => {
-        match $any {
-            Layer::None($inside) => $action,
-            Layer::Orca($inside) => $action,
-            #[cfg(feature = "space")]
-            Layer::Fly($inside) => $action,
-            #[cfg(feature = "push-out")]
-            Layer::PushOut($inside) => $action,
-        }
-    };
-}
-
-impl Serialize for Layer {
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        each!(self, layer => layer.serialize(serializer))
+one_of! { $ each:
+    /// A safety layer.
+    #[expect(missing_docs, reason = "StayaSafety says what each is")]
+    Layer {
+        None(Unguarded),
+        Orca(OrcaSafety<Number, HALF_PLANES, Source>),
+        #[cfg(feature = "space")]
+        Fly(FlySafety<Number, HALF_PLANES>),
+        #[cfg(feature = "push-out")]
+        PushOut(PushOutSafety<Number>),
     }
 }
 

@@ -10,6 +10,7 @@
 //! `docs/c.md` has the steps to build the library with the profile `firmware`. There the panic
 //! handler calls a function that does not exist, so a program links only if no panic is reachable.
 #![cfg_attr(not(test), no_std)]
+#![expect(clippy::missing_safety_doc, reason = "the header's introduction has the conditions of all functions")]
 #![cfg_attr(
     not(test),
     deny(
@@ -28,10 +29,12 @@ extern crate std;
 pub mod agent;
 pub mod alone;
 pub mod choices;
+pub mod external;
 pub mod io;
 pub mod law;
 pub mod layer;
 mod memory;
+mod one_of;
 pub mod parameter;
 pub mod setup;
 pub mod speech;

@@ -3,7 +3,9 @@
 
 use crate::status::{Checked, StayaStatus};
 use core::ffi::{CStr, c_char, c_void};
+use core::marker::PhantomData;
 use core::mem::MaybeUninit;
+use core::ptr::NonNull;
 
 /// Types for which any bytes are a valid value, so that memory written by C may be read: integers,
 /// floats, pointers, arrays and structures of these.
@@ -28,7 +30,15 @@ unsafe impl<T> Plain for *mut T {}
 // SAFETY: any bytes are a valid array if they are valid for its elements.
 unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
 
-fn check<T>(pointer: *const T) -> Checked<()> {
+/// A type that lives in the caller's memory and is marked by its first word.
+///
+/// # Safety
+/// `repr(C)`, and its first field is a `u32`.
+pub(crate) unsafe trait Resident: Sized {
+    const MARK: u32;
+}
+
+pub(crate) fn check<T>(pointer: *const T) -> Checked<()> {
     if pointer.is_null() {
         Err(StayaStatus::Null)
     } else if !pointer.is_aligned() {
@@ -38,145 +48,122 @@ fn check<T>(pointer: *const T) -> Checked<()> {
     }
 }
 
-/// Reads a value of the caller.
-///
-/// # Safety
-/// If the pointer is neither null nor misaligned, it points to a `T` that is not modified during
-/// the call.
-pub(crate) unsafe fn shared<'a, T: Plain>(pointer: *const T) -> Checked<&'a T> {
-    check(pointer)?;
-    // SAFETY: neither null nor misaligned; the rest is the caller's contract. Any bytes are a `T`.
-    Ok(unsafe { &*pointer })
-}
-
-/// Like [`shared`], but null is permitted.
-///
-/// # Safety
-/// As [`shared`].
-pub(crate) unsafe fn optional<'a, T: Plain>(pointer: *const T) -> Checked<Option<&'a T>> {
-    if pointer.is_null() {
-        return Ok(None);
-    }
-    // SAFETY: the caller's contract.
-    unsafe { shared(pointer) }.map(Some)
-}
-
-/// Reads `count` consecutive values; null with 0 is empty.
-///
-/// # Safety
-/// If the pointer is neither null nor misaligned, it points to `count` values that are not modified
-/// during the call.
-pub(crate) unsafe fn row<'a, T: Plain>(first: *const T, count: usize) -> Checked<&'a [T]> {
+/// Any pointer for no elements.
+fn check_row<T>(first: *const T, count: usize) -> Checked<*const T> {
     if count == 0 {
-        return Ok(&[]);
+        return Ok(NonNull::dangling().as_ptr());
     }
     check(first)?;
-    if count.saturating_mul(size_of::<T>()) > isize::MAX.unsigned_abs() {
-        return Err(StayaStatus::TooMany);
+    let fits = count.saturating_mul(size_of::<T>()) <= isize::MAX.unsigned_abs();
+    if fits { Ok(first) } else { Err(StayaStatus::TooMany) }
+}
+
+/// Runs a function that C calls, with its [`Call`].
+macro_rules! answers {
+    ($run:expr) => {
+        // SAFETY: C keeps the promises of the header's introduction.
+        unsafe { $crate::memory::Call::new() }.answers($run)
+    };
+}
+pub(crate) use answers;
+
+/// One call from C, whose pointers its methods check and use: each is null, misaligned, or as the
+/// header's introduction requires.
+#[derive(Clone, Copy)]
+pub(crate) struct Call<'a>(PhantomData<&'a ()>);
+
+impl<'a> Call<'a> {
+    /// # Safety
+    /// All pointers that the methods get come from C, which keeps the promises of the header's
+    /// introduction for their types until the call returns.
+    pub(crate) const unsafe fn new() -> Self {
+        Self(PhantomData)
     }
-    // SAFETY: neither null nor misaligned, and within the limits of memory; the rest is the
-    // caller's contract.
-    Ok(unsafe { core::slice::from_raw_parts(first, count) })
-}
 
-/// Reads a text; one that is not UTF-8 is empty.
-///
-/// # Safety
-/// If the pointer is not null, it points to bytes that end with a zero and are not modified during
-/// the call.
-pub(crate) unsafe fn text<'a>(text: *const c_char) -> Checked<&'a str> {
-    check(text)?;
-    // SAFETY: not null, and it ends with a zero by the caller's contract.
-    Ok(unsafe { CStr::from_ptr(text) }.to_str().unwrap_or_default())
-}
-
-/// Writes a whole result, overwriting any previous bytes.
-///
-/// # Safety
-/// If the pointer is neither null nor misaligned, it points to space for a `T` that is not used
-/// elsewhere during the call.
-pub(crate) unsafe fn write<T: Plain>(to: *mut T, value: T) -> Checked<()> {
-    check(to)?;
-    // SAFETY: neither null nor misaligned; the rest is the caller's contract.
-    unsafe { to.write(value) };
-    Ok(())
-}
-
-/// Zeroed space for a result that is written in pieces.
-///
-/// # Safety
-/// As [`write`].
-pub(crate) unsafe fn zeroed<'a, T: Plain>(to: *mut T) -> Checked<&'a mut T> {
-    check(to)?;
-    // SAFETY: neither null nor misaligned, space by contract. Zeros are a valid `T`.
-    unsafe {
-        to.write_bytes(0, 1);
-        Ok(&mut *to)
+    /// Runs the call; no reference outlives it.
+    pub(crate) fn answers(self, run: impl for<'c> FnOnce(Call<'c>) -> Checked<()>) -> StayaStatus {
+        match run(self) {
+            Ok(()) => StayaStatus::Ok,
+            Err(status) => status,
+        }
     }
-}
 
-/// Space for `count` results.
-///
-/// # Safety
-/// If the pointer is neither null nor misaligned, it points to space for `count` values that is not
-/// used elsewhere during the call.
-pub(crate) unsafe fn room<'a, T: Plain>(first: *mut T, count: usize) -> Checked<&'a mut [MaybeUninit<T>]> {
-    if count == 0 {
-        return Ok(&mut []);
+    /// Reads a value.
+    pub(crate) fn shared<T: Plain>(self, pointer: *const T) -> Checked<&'a T> {
+        check(pointer)?;
+        // SAFETY: neither null nor misaligned, and so valid. Any bytes are a `T`.
+        Ok(unsafe { &*pointer })
     }
-    check(first)?;
-    if count.saturating_mul(size_of::<T>()) > isize::MAX.unsigned_abs() {
-        return Err(StayaStatus::TooMany);
+
+    /// Like [`Self::shared`], but null is permitted.
+    pub(crate) fn optional<T: Plain>(self, pointer: *const T) -> Checked<Option<&'a T>> {
+        if pointer.is_null() { Ok(None) } else { self.shared(pointer).map(Some) }
     }
-    // SAFETY: neither null nor misaligned, and within the limits of memory; the bytes need not be a
-    // `T` yet. The rest is the caller's contract.
-    Ok(unsafe { core::slice::from_raw_parts_mut(first.cast(), count) })
-}
 
-/// A type that lives in the caller's memory and is marked by its first word.
-///
-/// # Safety
-/// `repr(C)`, and its first field is a `u32`.
-pub(crate) unsafe trait Resident: Sized {
-    const MARK: u32;
-}
-
-/// Checks memory for a [`Resident`] and clears the mark of any previous one.
-///
-/// # Safety
-/// If the pointer is neither null nor misaligned, it points to `bytes` bytes that are not used
-/// elsewhere.
-pub(crate) unsafe fn site<T: Resident>(memory: *mut c_void, bytes: usize) -> Checked<*mut T> {
-    let place = memory.cast::<T>();
-    check(place)?;
-    if bytes < size_of::<T>() {
-        return Err(StayaStatus::MemorySize);
+    /// Reads `count` consecutive values; null with 0 is empty.
+    pub(crate) fn row<T: Plain>(self, first: *const T, count: usize) -> Checked<&'a [T]> {
+        let first = check_row(first, count)?;
+        // SAFETY: valid for so many values, and within the limits of memory.
+        Ok(unsafe { core::slice::from_raw_parts(first, count) })
     }
-    // SAFETY: aligned space for the whole value, which begins with this word.
-    unsafe { place.cast::<u32>().write(0) };
-    Ok(place)
-}
 
-fn check_resident<T: Resident>(place: *const T) -> Checked<()> {
-    check(place)?;
-    // SAFETY: neither null nor misaligned, and the first word is valid by the caller's contract.
-    let mark = unsafe { place.cast::<u32>().read() };
-    if mark == T::MARK { Ok(()) } else { Err(StayaStatus::NotThere) }
-}
+    /// Reads a text that ends with a zero; one that is not UTF-8 is empty.
+    pub(crate) fn text(self, text: *const c_char) -> Checked<&'a str> {
+        check(text)?;
+        // SAFETY: not null, and so a text.
+        Ok(unsafe { CStr::from_ptr(text) }.to_str().unwrap_or_default())
+    }
 
-/// # Safety
-/// If the pointer is neither null nor misaligned, it points to memory for a `T` that holds one, or
-/// has another first word, and is not used elsewhere during the call.
-pub(crate) unsafe fn resident_mut<'a, T: Resident>(place: *mut T) -> Checked<&'a mut T> {
-    check_resident(place)?;
-    // SAFETY: the mark in its first word shows that it exists; the rest is the caller's contract.
-    Ok(unsafe { &mut *place })
-}
+    /// Writes a whole result, overwriting any previous bytes.
+    pub(crate) fn write<T: Plain>(self, to: *mut T, value: T) -> Checked<()> {
+        check(to)?;
+        // SAFETY: neither null nor misaligned, and so space for a `T`.
+        unsafe { to.write(value) };
+        Ok(())
+    }
 
-/// # Safety
-/// As [`resident_mut`], but other readers are permitted.
-pub(crate) unsafe fn resident<'a, T: Resident>(place: *const T) -> Checked<&'a T> {
-    check_resident(place)?;
-    // SAFETY: the mark in its first word shows that it exists; the rest is the caller's contract.
-    Ok(unsafe { &*place })
+    /// Zeroed space for a result that is written in pieces.
+    pub(crate) fn zeroed<T: Plain>(self, to: *mut T) -> Checked<&'a mut T> {
+        check(to)?;
+        // SAFETY: neither null nor misaligned, and so space for a `T`. Zeros are a valid `T`.
+        unsafe {
+            to.write_bytes(0, 1);
+            Ok(&mut *to)
+        }
+    }
+
+    /// Space for `count` results.
+    pub(crate) fn room<T: Plain>(self, first: *mut T, count: usize) -> Checked<&'a mut [MaybeUninit<T>]> {
+        let first = check_row(first, count)?.cast_mut();
+        // SAFETY: space for so many, within the limits of memory; the bytes need not be a `T` yet.
+        Ok(unsafe { core::slice::from_raw_parts_mut(first.cast(), count) })
+    }
+
+    /// Checks memory for a [`Resident`] and clears the mark of any previous one.
+    pub(crate) fn site<T: Resident>(self, memory: *mut c_void, bytes: usize) -> Checked<*mut T> {
+        let place = memory.cast::<T>();
+        check(place)?;
+        if bytes < size_of::<T>() {
+            return Err(StayaStatus::MemorySize);
+        }
+        // SAFETY: aligned space for the whole value, which begins with this word.
+        unsafe { place.cast::<u32>().write(0) };
+        Ok(place)
+    }
+
+    /// A resident that the call may change.
+    pub(crate) fn resident_mut<T: Resident>(self, place: *mut T) -> Checked<&'a mut T> {
+        self.resident(place)?;
+        // SAFETY: the mark in its first word shows that it exists, and nothing else uses it.
+        Ok(unsafe { &mut *place })
+    }
+
+    /// A resident that the call reads.
+    pub(crate) fn resident<T: Resident>(self, place: *const T) -> Checked<&'a T> {
+        check(place)?;
+        // SAFETY: neither null nor misaligned, and so at least a word.
+        let mark = unsafe { place.cast::<u32>().read() };
+        // SAFETY: the mark in its first word shows that it exists.
+        if mark == T::MARK { Ok(unsafe { &*place }) } else { Err(StayaStatus::NotThere) }
+    }
 }

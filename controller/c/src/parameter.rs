@@ -1,8 +1,8 @@
 //! Parameters that can be changed while a robot runs.
 
 use crate::agent::StayaAgent;
-use crate::memory::{self, plain, resident_mut};
-use crate::status::{StayaStatus, answer};
+use crate::memory::{answers, plain};
+use crate::status::StayaStatus;
 use core::ffi::c_char;
 use staya_controller::parameters::{LONGEST_DESCRIPTION, Parameter};
 
@@ -44,63 +44,44 @@ fn text<const N: usize>(text: &str) -> [c_char; N] {
 }
 
 /// Writes parameter 0, 1, 2 and so on of an agent; `STAYA_STATUS_UNKNOWN` beyond the last one.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_parameter(
     agent: *mut StayaAgent,
     index: u32,
     parameter: *mut StayaParameter,
 ) -> StayaStatus {
-    let find = || {
-        // SAFETY: an agent not used elsewhere by contract, or `resident_mut` rejects it.
-        let agent = unsafe { resident_mut(agent)? };
+    answers!(|call| {
         let (mut left, mut found) = (index as usize, None);
-        agent.inside_mut().parameters(&mut |table| {
+        call.resident_mut(agent)?.inside_mut().parameters(&mut |table| {
             let rows = table.table();
             if let Some((row, value)) = rows.get(left).zip(table.get(left)).filter(|_| found.is_none()) {
                 found = Some(StayaParameter::new(row, value));
             }
             left = left.wrapping_sub(rows.len());
         });
-        // SAFETY: valid space by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(parameter, found.ok_or(StayaStatus::Unknown)?) }
-    };
-    answer(find())
+        call.write(parameter, found.ok_or(StayaStatus::Unknown)?)
+    })
 }
 
 /// Returns the present value of a parameter; `STAYA_STATUS_PARAMETER` if the robot lacks it.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_get_parameter(
     agent: *mut StayaAgent,
     name: *const c_char,
     value: *mut f32,
 ) -> StayaStatus {
-    let ask = || {
-        // SAFETY: a text and an agent not used elsewhere by contract, or they are rejected.
-        let (name, agent) = unsafe { (memory::text(name)?, resident_mut(agent)?) };
-        let known = agent.inside_mut().parameter(name).ok_or(StayaStatus::Parameter)?;
-        // SAFETY: valid space by the caller's contract, or `write` rejects it.
-        unsafe { memory::write(value, known) }
-    };
-    answer(ask())
+    answers!(|call| {
+        let (name, agent) = (call.text(name)?, call.resident_mut(agent)?);
+        call.write(value, agent.inside_mut().parameter(name).ok_or(StayaStatus::Parameter)?)
+    })
 }
 
 /// Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and
 /// no change, if the robot lacks it, or the value is out of range or contradicts other parameters.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_set_parameter(agent: *mut StayaAgent, name: *const c_char, value: f32) -> StayaStatus {
-    let set = || {
-        // SAFETY: a text and an agent not used elsewhere by contract, or they are rejected.
-        let (name, agent) = unsafe { (memory::text(name)?, resident_mut(agent)?) };
+    answers!(|call| {
+        let (name, agent) = (call.text(name)?, call.resident_mut(agent)?);
         agent.inside_mut().set_parameter(name, value).map_err(|_| StayaStatus::Parameter)
-    };
-    answer(set())
+    })
 }

@@ -18,21 +18,21 @@ use crate::Number;
 use crate::choices::{StayaLaw, StayaSafety, StayaWire};
 use crate::law::Law;
 use crate::layer::{Layer, Source};
-use crate::memory::{plain, zeroed};
+use crate::memory::{answers, plain};
 use crate::speech::Speech;
-use crate::status::{Checked, StayaStatus, answer};
+use crate::status::{Checked, StayaStatus};
 #[cfg(feature = "space")]
 use staya_controller::agent::FlySafety;
 #[cfg(feature = "push-out")]
 use staya_controller::agent::PushOutSafety;
-use staya_controller::agent::{AgentConfig, ContactLossPolicy, OrcaSafety, Unguarded, WaypointGuidance};
+use staya_controller::agent::{AgentConfig, ContactLossPolicy, External, OrcaSafety, Unguarded, WaypointGuidance};
 use staya_controller::neighbor::{Ages, PlausibilityLimits};
 #[cfg(feature = "space")]
 use staya_controller::orca::InSpace;
 use staya_controller::robot::RobotId;
 use staya_controller::scalar::cast;
 use staya_controller::time::Duration;
-use staya_controller::wire::{Postcard, Retry};
+use staya_controller::wire::{Postcard, ProtocolId, Retry};
 
 /// Length of a swarm's key in bytes.
 pub const STAYA_KEY: usize = 32;
@@ -71,11 +71,12 @@ pub struct StayaSetup {
     pub stands_after_us: i32,
     /// How long the robot stands and listens after its start, microseconds.
     pub listen_us: i32,
-    /// How long a stop lasts unless it is renewed, microseconds.
-    pub stop_valid_us: i32,
-    /// Time between two attempts of a request, microseconds.
+    /// How long a message of a law across land in cells is resent at most, and how long a stop
+    /// lasts unless it is renewed, microseconds.
+    pub message_valid_us: i32,
+    /// Time between two attempts of a message, microseconds.
     pub retry_interval_us: i32,
-    /// Number of attempts of a request.
+    /// Number of attempts of a message.
     pub retry_attempts: u8,
     /// Must change with each start (a stored counter or random), or others take it for a replay.
     pub boot: u8,
@@ -89,6 +90,8 @@ pub struct StayaSetup {
     pub wire: u8,
     /// Above 0: a robot that has not heard another one stands.
     pub expects_others: u8,
+    /// With STAYA_LAW_EXTERNAL: the protocol of its payloads and messages, 64 to 255.
+    pub protocol: u8,
     /// Radius of the ball around the body, metres.
     pub radius_m: f32,
     /// Cruising speed, m/s; limited by that of the body.
@@ -136,7 +139,10 @@ pub struct StayaSetup {
 
 plain!(StayaSetup);
 
-const VERSION: u32 = u32::from_be_bytes(*b"sty1");
+const VERSION: u32 = u32::from_be_bytes(*b"sty2");
+
+/// The first protocol of users.
+const FIRST_PROTOCOL: u8 = 64;
 
 fn positive(numbers: &[f32]) -> Checked<()> {
     if numbers.iter().all(|number| *number > 0.0 && number.is_finite()) { Ok(()) } else { Err(StayaStatus::Number) }
@@ -145,28 +151,24 @@ fn positive(numbers: &[f32]) -> Checked<()> {
 impl StayaSetup {
     fn defaults(&mut self, id: u32, radius_m: f32, tick_us: i32) {
         let config = AgentConfig::new(RobotId(id), radius_m, Duration::from_micros(tick_us));
+        let AgentConfig { ages, retry, contact_loss, plausibility, .. } = config;
         let diameter_m = 2.0 * radius_m.max(0.05);
-        self.version = VERSION;
-        self.id = id;
-        self.tick_us = tick_us;
+        (self.version, self.id, self.radius_m, self.tick_us) = (VERSION, id, radius_m, tick_us);
         self.beacon_period_us = config.beacon_period.as_micros();
-        self.stale_after_us = config.ages.stale_after.as_micros();
-        self.lost_after_us = config.ages.expire_after.as_micros();
-        self.stands_after_us = config.contact_loss.stands_after.as_micros();
-        self.listen_us = config.contact_loss.listen.as_micros();
-        self.stop_valid_us = config.stop_valid.as_micros();
-        self.retry_interval_us = config.retry.interval.as_micros();
-        self.retry_attempts = config.retry.attempts;
-        self.radius_m = radius_m;
-        self.speed_mps = 0.5;
-        self.tolerance_m = 0.05;
+        self.stale_after_us = ages.stale_after.as_micros();
+        self.lost_after_us = ages.expire_after.as_micros();
+        self.stands_after_us = contact_loss.stands_after.as_micros();
+        self.listen_us = contact_loss.listen.as_micros();
+        self.message_valid_us = config.message_valid.as_micros();
+        (self.retry_interval_us, self.retry_attempts) = (retry.interval.as_micros(), retry.attempts);
+        (self.speed_mps, self.tolerance_m) = (0.5, 0.05);
         self.max_acceleration_mps2 = config.max_acceleration_mps2;
-        self.alone_mps = config.contact_loss.alone_mps;
-        self.plausibility_max_radius_m = config.plausibility.max_radius_m;
-        self.plausibility_max_speed_mps = config.plausibility.max_speed_mps;
-        self.plausibility_slack_m = config.plausibility.slack_m;
-        self.plausibility_settle_us = config.plausibility.settle.as_micros();
-        self.plausibility_last_id = config.plausibility.last.0;
+        self.alone_mps = contact_loss.alone_mps;
+        self.plausibility_max_radius_m = plausibility.max_radius_m;
+        self.plausibility_max_speed_mps = plausibility.max_speed_mps;
+        self.plausibility_slack_m = plausibility.slack_m;
+        self.plausibility_settle_us = plausibility.settle.as_micros();
+        self.plausibility_last_id = plausibility.last.0;
         self.safety = StayaSafety::Orca as u8;
         self.orca = StayaOrca::defaults();
         self.push_out.min_distance_m = 1.5 * diameter_m;
@@ -184,33 +186,31 @@ impl StayaSetup {
         if self.id == 0 {
             return Err(StayaStatus::NoRobot);
         }
-        let times = [self.beacon_period_us, self.stale_after_us, self.lost_after_us, self.retry_interval_us];
-        if self.tick_us <= 0 || times.iter().any(|time| *time <= 0) {
-            return Err(StayaStatus::Number);
-        }
-        if !(self.radius_m >= 0.0 && self.radius_m.is_finite()) {
+        let us = [self.tick_us, self.beacon_period_us, self.stale_after_us, self.lost_after_us, self.retry_interval_us];
+        if us.iter().any(|time| *time <= 0) || !(self.radius_m >= 0.0 && self.radius_m.is_finite()) {
             return Err(StayaStatus::Number);
         }
         let us = Duration::from_micros;
+        let Self { seed, boot, flock, radius_m, max_acceleration_mps2, lag_s, alone_mps, reach_m, .. } = *self;
         let config = AgentConfig::<f32> {
             id: RobotId(self.id),
-            seed: self.seed,
-            boot: self.boot,
+            seed,
+            boot,
             tick: us(self.tick_us),
             beacon_period: us(self.beacon_period_us),
-            radius_m: self.radius_m,
-            max_acceleration_mps2: self.max_acceleration_mps2,
-            lag_s: self.lag_s,
+            radius_m,
+            max_acceleration_mps2,
+            lag_s,
             latency: us(self.latency_us.max(0)),
             ages: Ages { stale_after: us(self.stale_after_us), expire_after: us(self.lost_after_us) },
             retry: Retry { attempts: self.retry_attempts, interval: us(self.retry_interval_us) },
-            stop_valid: us(self.stop_valid_us),
+            message_valid: us(self.message_valid_us),
             contact_loss: ContactLossPolicy {
                 stands_after: us(self.stands_after_us),
-                alone_mps: self.alone_mps,
+                alone_mps,
                 listen: us(self.listen_us.max(0)),
                 expects_others: self.expects_others > 0,
-                reach_m: self.reach_m,
+                reach_m,
             },
             plausibility: PlausibilityLimits {
                 max_radius_m: self.plausibility_max_radius_m,
@@ -219,14 +219,14 @@ impl StayaSetup {
                 settle: us(self.plausibility_settle_us),
                 last: RobotId(self.plausibility_last_id),
             },
-            flock: self.flock,
+            flock,
         };
         Ok(config.cast())
     }
 
     pub(crate) fn law(&self) -> Checked<Law> {
         let law = StayaLaw::of(self.law)?;
-        if !matches!(law, StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid) {
+        if !matches!(law, StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid | StayaLaw::External) {
             positive(&[self.speed_mps])?;
         }
         match law {
@@ -234,29 +234,27 @@ impl StayaSetup {
                 positive(&[self.tolerance_m])?;
                 Ok(Law::Waypoint(WaypointGuidance::new(cast(self.speed_mps), cast(self.tolerance_m))))
             }
-            StayaLaw::Lattice | StayaLaw::GoalFlock | StayaLaw::Boids => {
-                #[cfg(feature = "flocks")]
-                {
-                    flocks::law(self, law)
-                }
-                #[cfg(not(feature = "flocks"))]
-                Err(StayaStatus::NotBuilt)
-            }
+            StayaLaw::External if self.protocol < FIRST_PROTOCOL => Err(StayaStatus::Choice),
+            StayaLaw::External => Ok(Law::External(External::new(ProtocolId(self.protocol)))),
+            #[cfg(feature = "flocks")]
+            StayaLaw::Lattice | StayaLaw::GoalFlock | StayaLaw::Boids => flocks::law(self, law),
+            #[cfg(feature = "grid")]
             StayaLaw::Route | StayaLaw::Formation | StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid => {
-                #[cfg(feature = "grid")]
-                {
-                    laws::law(self, law)
-                }
-                #[cfg(not(feature = "grid"))]
-                Err(StayaStatus::NotBuilt)
+                laws::law(self, law)
             }
+            #[cfg(not(all(feature = "flocks", feature = "grid")))]
+            _ => Err(StayaStatus::NotBuilt),
         }
     }
 
     pub(crate) fn layer(&self) -> Checked<Layer> {
-        let orca = |source| {
+        let params = || {
             positive(&[self.orca.horizon_s, self.orca.wall_horizon_s])?;
-            Ok(Layer::Orca(OrcaSafety::with_source(self.orca.params(), self.orca.inflation(), source)))
+            Ok((self.orca.params(), self.orca.inflation()))
+        };
+        let orca = |source| {
+            let (params, inflation) = params()?;
+            Ok(Layer::Orca(OrcaSafety::with_source(params, inflation, source)))
         };
         match StayaSafety::of(self.safety)? {
             StayaSafety::None => Ok(Layer::None(Unguarded)),
@@ -265,9 +263,8 @@ impl StayaSetup {
             StayaSafety::OrcaTable => orca(Source::Table),
             #[cfg(feature = "space")]
             StayaSafety::Fly => {
-                positive(&[self.orca.horizon_s, self.orca.wall_horizon_s])?;
+                let (params, inflation) = params()?;
                 let source = InSpace { downwash: cast(self.orca.downwash) };
-                let (params, inflation) = (self.orca.params(), self.orca.inflation());
                 Ok(Layer::Fly(FlySafety::with_source(params, inflation, source)))
             }
             #[cfg(feature = "push-out")]
@@ -305,9 +302,6 @@ impl StayaSetup {
 /// each step, no inertia, no latency; lengths of other laws follow from the radius. `radius_m` is
 /// that of the ball around the body, `tick_us` the time between two steps. `staya_init` checks
 /// them.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_setup_defaults(
     setup: *mut StayaSetup,
@@ -315,6 +309,8 @@ pub unsafe extern "C" fn staya_setup_defaults(
     radius_m: f32,
     tick_us: i32,
 ) -> StayaStatus {
-    // SAFETY: valid space for a setup by the caller's contract, or `zeroed` rejects it.
-    answer(unsafe { zeroed(setup) }.map(|setup| setup.defaults(id, radius_m, tick_us)))
+    answers!(|call| {
+        call.zeroed(setup)?.defaults(id, radius_m, tick_us);
+        Ok(())
+    })
 }

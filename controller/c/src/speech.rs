@@ -1,7 +1,7 @@
 //! The wire formats in this build, as one type. A digest contains only the format inside.
 
+use crate::one_of::one_of;
 use heapless::Vec;
-use serde::{Serialize, Serializer};
 #[cfg(feature = "auth")]
 use staya_controller::wire::Sealed;
 use staya_controller::wire::{DecodeError, EncodeError, Frame, Header, KeyPhase, Message, Postcard, Wire};
@@ -12,36 +12,16 @@ use staya_mavlink::wire::Mavlink;
 #[cfg(feature = "auth")]
 pub const PEERS: usize = if cfg!(feature = "small") { 16 } else { staya_controller::wire::PEERS };
 
-/// A wire format.
-#[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "StayaWire says what each is")]
-#[cfg_attr(
-    feature = "auth",
-    expect(clippy::large_enum_variant, reason = "a robot without a key leaves the feature out")
-)]
-pub enum Speech {
-    Postcard(Postcard),
-    #[cfg(feature = "mavlink")]
-    Mavlink(Mavlink),
-    #[cfg(feature = "auth")]
-    Sealed(Sealed<PEERS>),
-}
-
-macro_rules! each {
-    ($any:expr, $inside:ident => $action:expr) => {
-        match $any {
-            Speech::Postcard($inside) => $action,
-            #[cfg(feature = "mavlink")]
-            Speech::Mavlink($inside) => $action,
-            #[cfg(feature = "auth")]
-            Speech::Sealed($inside) => $action,
-        }
-    };
-}
-
-impl Serialize for Speech {
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        each!(self, wire => wire.serialize(serializer))
+one_of! { $ each:
+    /// A wire format.
+    #[expect(missing_docs, reason = "StayaWire says what each is")]
+    #[cfg_attr(feature = "auth", expect(clippy::large_enum_variant, reason = "without a key, omit the feature"))]
+    Speech {
+        Postcard(Postcard),
+        #[cfg(feature = "mavlink")]
+        Mavlink(Mavlink),
+        #[cfg(feature = "auth")]
+        Sealed(Sealed<PEERS>),
     }
 }
 

@@ -39,77 +39,48 @@ pub enum StayaStatus {
     Parameter = 14,
     /// The name or number does not exist.
     Unknown = 15,
+    /// `staya_act` needs a `staya_hear` before.
+    NotHeard = 16,
 }
 
-impl StayaStatus {
-    const ALL: [Self; 16] = [
-        Self::Ok,
-        Self::Null,
-        Self::Alignment,
-        Self::MemorySize,
-        Self::NotThere,
-        Self::Version,
-        Self::NoRobot,
-        Self::Number,
-        Self::Choice,
-        Self::NotBuilt,
-        Self::Task,
-        Self::Search,
-        Self::TooMany,
-        Self::Shape,
-        Self::Parameter,
-        Self::Unknown,
-    ];
-
-    const fn texts(self) -> (&'static CStr, &'static CStr) {
-        match self {
-            Self::Ok => (c"STAYA_STATUS_OK", c"it is done"),
-            Self::Null => (c"STAYA_STATUS_NULL", c"a pointer that is needed is null"),
-            Self::Alignment => (c"STAYA_STATUS_ALIGNMENT", c"a pointer is not aligned; memory needs STAYA_ALIGN"),
-            Self::MemorySize => {
-                (c"STAYA_STATUS_MEMORY_SIZE", c"the memory is too small: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE")
-            }
-            Self::NotThere => {
-                (c"STAYA_STATUS_NOT_THERE", c"nothing was made in this memory: call staya_init or staya_orca_init")
-            }
-            Self::Version => {
-                (c"STAYA_STATUS_VERSION", c"call staya_setup_defaults first; header and library must be of one version")
-            }
-            Self::NoRobot => (c"STAYA_STATUS_NO_ROBOT", c"0 is not a robot id: use 1 and up"),
-            Self::Number => (c"STAYA_STATUS_NUMBER", c"a number that must be above 0, or finite, is not"),
-            Self::Choice => (c"STAYA_STATUS_CHOICE", c"a field that names one of several has another number"),
-            Self::NotBuilt => (c"STAYA_STATUS_NOT_BUILT", c"the library was built without it: see its features"),
-            Self::Task => (c"STAYA_STATUS_TASK", c"the guidance law has no use for this task"),
-            Self::Search => (c"STAYA_STATUS_SEARCH", c"the radius of the search is above STAYA_MAX_RADIUS"),
-            Self::TooMany => (c"STAYA_STATUS_TOO_MANY", c"more of them than there is room for"),
-            Self::Shape => (c"STAYA_STATUS_SHAPE", c"a window, a graph or a template makes no sense"),
-            Self::Parameter => (c"STAYA_STATUS_PARAMETER", c"no such parameter here, or a value that it cannot have"),
-            Self::Unknown => (c"STAYA_STATUS_UNKNOWN", c"there is no such name or number"),
-        }
-    }
-
-    fn of(status: i32) -> Option<Self> {
-        Self::ALL.into_iter().find(|known| *known as i32 == status)
-    }
-}
+/// The statuses with their names and texts.
+const TEXTS: [(StayaStatus, &CStr, &CStr); 17] = {
+    use StayaStatus::*;
+    [
+        (Ok, c"STAYA_STATUS_OK", c"it is done"),
+        (Null, c"STAYA_STATUS_NULL", c"a pointer that is needed is null"),
+        (Alignment, c"STAYA_STATUS_ALIGNMENT", c"a pointer is not aligned; memory needs STAYA_ALIGN"),
+        (MemorySize, c"STAYA_STATUS_MEMORY_SIZE", c"too little memory: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE"),
+        (NotThere, c"STAYA_STATUS_NOT_THERE", c"nothing is in this memory: call staya_init or staya_orca_init"),
+        (Version, c"STAYA_STATUS_VERSION", c"call staya_setup_defaults of this version of the header first"),
+        (NoRobot, c"STAYA_STATUS_NO_ROBOT", c"0 is not a robot id: use 1 and up"),
+        (Number, c"STAYA_STATUS_NUMBER", c"a number that must be above 0, or finite, is not"),
+        (Choice, c"STAYA_STATUS_CHOICE", c"a field that names one of several has another number"),
+        (NotBuilt, c"STAYA_STATUS_NOT_BUILT", c"the library was built without it: see its features"),
+        (Task, c"STAYA_STATUS_TASK", c"the guidance law has no use for this"),
+        (Search, c"STAYA_STATUS_SEARCH", c"the radius of the search is above STAYA_MAX_RADIUS"),
+        (TooMany, c"STAYA_STATUS_TOO_MANY", c"more of them than there is room for"),
+        (Shape, c"STAYA_STATUS_SHAPE", c"a window, a graph or a template makes no sense"),
+        (Parameter, c"STAYA_STATUS_PARAMETER", c"no such parameter here, or a value that it cannot have"),
+        (Unknown, c"STAYA_STATUS_UNKNOWN", c"there is no such name or number"),
+        (NotHeard, c"STAYA_STATUS_NOT_HEARD", c"call staya_hear before staya_act"),
+    ]
+};
 
 pub(crate) type Checked<T> = Result<T, StayaStatus>;
 
-pub(crate) fn answer(result: Checked<()>) -> StayaStatus {
-    match result {
-        Ok(()) => StayaStatus::Ok,
-        Err(status) => status,
-    }
+fn texts(status: i32) -> Option<(&'static CStr, &'static CStr)> {
+    TEXTS.iter().find(|(known, ..)| *known as i32 == status).map(|(_, name, text)| (*name, *text))
 }
 
 /// The name of a status, such as "STAYA_STATUS_NULL". Never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn staya_status_name(status: i32) -> *const c_char {
-    StayaStatus::of(status).map_or(c"(no status)", |known| known.texts().0).as_ptr()
+    texts(status).map_or(c"(no status)", |(name, _)| name).as_ptr()
 }
 
 /// The meaning of a status and its remedy, in one line. Never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn staya_status_text(status: i32) -> *const c_char {
-    StayaStatus::of(status).map_or(c"no status of this library", |known| known.texts().1).as_ptr()
+    texts(status).map_or(c"no status of this library", |(_, text)| text).as_ptr()
 }

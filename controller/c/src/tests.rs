@@ -1,13 +1,18 @@
+mod external;
 mod header;
 mod misuse;
 mod steps;
 
+use crate::Number;
 use crate::agent::{STAYA_AGENT_SIZE, StayaAgent, StayaWaypoint, staya_init};
+use crate::choices::StayaMode;
 use crate::io::{StayaInputs, StayaOutputs};
 use crate::setup::{StayaSetup, staya_setup_defaults};
 use crate::status::StayaStatus;
 use core::mem::MaybeUninit;
 use core::ptr::null_mut;
+use staya_controller::agent::Outputs;
+use staya_controller::robot::Mode;
 
 #[repr(align(8))]
 struct Memory([u8; STAYA_AGENT_SIZE]);
@@ -42,4 +47,13 @@ fn nothing() -> (StayaInputs, StayaOutputs) {
 
 fn waypoint(x_mm: i32) -> StayaWaypoint {
     StayaWaypoint { position_mm: [x_mm, 0, 0], ..StayaWaypoint::default() }
+}
+
+/// C shows what the agent in Rust returned.
+fn shows(out: &StayaOutputs, twin: &Outputs<Number>, mode: Mode, whose: &str) {
+    assert_eq!(out.outbox[..out.outbox_bytes.into()], twin.outbox[..], "{whose}");
+    let StayaOutputs { leader, target, has_target, .. } = *out;
+    let mut expected = StayaOutputs { leader, target, has_target, mode: StayaMode::from(mode) as u8, ..nothing().1 };
+    expected.fill(twin);
+    assert_eq!(format!("{out:?}"), format!("{expected:?}"), "{whose}");
 }

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-void print_row(const char *name, uint64_t hash, uint32_t steps)
+void print_row(const char *name, const Hashes *hashes, uint32_t steps)
 {
-    printf("%s f32 %016" PRIx64 " %" PRIu32 "\n", name, hash, steps);
+    printf("%s f32 %016" PRIx64 " %016" PRIx64 " %" PRIu32 "\n", name, hashes->commands, hashes->bytes, steps);
 }
 
 void fail(const char *why)

@@ -6,8 +6,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Prints `name f32 hash steps`. */
-void print_row(const char *name, uint64_t hash, uint32_t steps);
+/* Hashes of a swarm's commands and of its packets. */
+typedef struct Hashes {
+    uint64_t commands, bytes;
+} Hashes;
+
+/* Prints `name f32 commands bytes steps`. */
+void print_row(const char *name, const Hashes *hashes, uint32_t steps);
 
 /* Prints the reason and ends the program as failed. */
 void fail(const char *why);

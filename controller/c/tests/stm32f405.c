@@ -59,16 +59,24 @@ static void print_number(uint32_t number)
     print(&decimal[at]);
 }
 
-void print_row(const char *name, uint64_t hash, uint32_t steps)
+/* A space and the hash. */
+static void print_hash(uint64_t hash)
 {
-    char digits[17];
+    char digits[18];
+    digits[0] = ' ';
     for (int i = 0; i < 16; i++) {
-        digits[i] = "0123456789abcdef"[(hash >> (60 - 4 * i)) & 15];
+        digits[i + 1] = "0123456789abcdef"[(hash >> (60 - 4 * i)) & 15];
     }
-    digits[16] = 0;
-    print(name);
-    print(" f32 ");
+    digits[17] = 0;
     print(digits);
+}
+
+void print_row(const char *name, const Hashes *hashes, uint32_t steps)
+{
+    print(name);
+    print(" f32");
+    print_hash(hashes->commands);
+    print_hash(hashes->bytes);
     print_number(steps);
 }
 

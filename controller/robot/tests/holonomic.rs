@@ -71,7 +71,7 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
     let mut agent = Agent::<Q16, _, 8, _>::new(&config, guidance, safety, Postcard);
     let goal = Vec2::new(-1.5, 2.0);
     let there = Position::from_metres([goal.x, goal.y, 0.0]).unwrap();
-    assert!(agent.order(WaypointOrder::first(Waypoint::fixed(there))));
+    assert!(agent.order(&WaypointOrder::first(Waypoint::fixed(there))));
 
     let mut turned = 0.0;
     let mut now = Instant::from_micros(0);

@@ -343,7 +343,7 @@ fn a_robot_gets_around_a_wall_known_only_from_ranges() {
     let guidance = |speed| CellFollower::new(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), speed);
     let mut robots = [Firmware::new(1, guidance, GridWorkspace::new(), &bodies[0])];
     let goal = Cell::new(7, 2);
-    robots[0].agent.order(GridOrder::Goal(goal));
+    robots[0].agent.order(&GridOrder::Goal(goal));
     let mut least = f64::MAX;
     let time = run(&mut bodies, &mut robots, &walls, |bodies| {
         let gaps = walls.iter().map(|wall| bodies[0].gap_to(wall));
@@ -368,7 +368,7 @@ fn two_differential_robots_swap_places_over_a_bad_wire() {
     let goals = [v(3.5, 1.0), v(0.5, 1.0)];
     for (robot, goal) in robots.iter_mut().zip(goals) {
         let place = Position::from_metres([goal.x, goal.y, 0.0]).unwrap();
-        assert!(robot.agent.order(WaypointOrder::first(Waypoint::fixed(place))));
+        assert!(robot.agent.order(&WaypointOrder::first(Waypoint::fixed(place))));
     }
     let mut least = f64::MAX;
     let time = run(&mut bodies, &mut robots, &[], |bodies| {

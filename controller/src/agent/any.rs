@@ -177,7 +177,7 @@ pub struct OtherPayload {
 }
 
 impl OtherPayload {
-    fn new(id: ProtocolId, payload: &[u8]) -> Option<Self> {
+    pub(super) fn new(id: ProtocolId, payload: &[u8]) -> Option<Self> {
         let mut other = Self { id, len: u8::try_from(payload.len()).ok()?, ..Self::default() };
         other.bytes.get_mut(..payload.len())?.copy_from_slice(payload);
         Some(other)
@@ -234,7 +234,7 @@ impl Content for AnyPayload {
 }
 
 impl<const N: usize> Raw<N> {
-    fn new(id: ProtocolId, bytes: &[u8]) -> Option<Self> {
+    pub(super) fn new(id: ProtocolId, bytes: &[u8]) -> Option<Self> {
         Some(Self { id, bytes: Bytes::from_slice(bytes).ok()? })
     }
 
@@ -399,12 +399,11 @@ pub fn receive_as<S: Scalar, L: Law<S>, P: Protocol>(
     from: RobotId,
     message: &P::Message,
     radio: &mut Radio<'_, P>,
-) where
+) -> bool
+where
     MessageOf<L, S>: TryFrom<P::Message>,
 {
-    if let Ok(message) = message.clone().try_into() {
-        law.receive(from, &message, &mut radio.of());
-    }
+    message.clone().try_into().is_ok_and(|message| law.receive(from, &message, &mut radio.of()))
 }
 
 /// Gives an order to one law of an enum of laws.
@@ -451,12 +450,30 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         each!(self, law(inside_mut) => payload_as(law, here, heading, radio))
     }
 
-    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
-        each!(self, law(inside_mut) => receive_as::<S, _, _>(law, from, message, radio));
+    #[inline(never)]
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
+        let (AnyMessage::Grid(message), radio) = (message, &mut radio.of()) else { return false };
+        match self {
+            Self::Route(law) => inside_mut(law).receive(from, message, radio),
+            Self::Formation(law) => inside_mut(law).receive(from, message, radio),
+            Self::RouteOnGrid(law) => Law::<S>::receive(law, from, message, radio),
+            Self::FormationOnGrid(law) => Law::<S>::receive(inside_mut(law), from, message, radio),
+            Self::Waypoint(_) | Self::Lattice(_) | Self::GoalFlock(_) | Self::Boids(_) => false,
+        }
     }
 
+    #[inline(never)]
     fn order(&mut self, order: &AnyOrder) -> bool {
-        each!(self, law(inside_mut) => order_as::<S, _, _>(law, order))
+        match (self, order) {
+            (Self::Waypoint(law), AnyOrder::Waypoint(order)) => law.order(order),
+            (Self::Lattice(law), AnyOrder::Waypoint(order)) => law.order(order),
+            (Self::GoalFlock(law), AnyOrder::Waypoint(order)) => law.order(order),
+            (Self::Route(law), AnyOrder::Grid(order)) => inside_mut(law).order(order),
+            (Self::Formation(law), AnyOrder::Grid(order)) => inside_mut(law).order(order),
+            (Self::RouteOnGrid(law), AnyOrder::Grid(order)) => Law::<S>::order(law, order),
+            (Self::FormationOnGrid(law), AnyOrder::Grid(order)) => Law::<S>::order(inside_mut(law), order),
+            _ => false,
+        }
     }
 
     fn needs(&self, id: RobotId) -> bool {

@@ -1,7 +1,7 @@
 //! Runs a law of the grid on a body that moves in the plane.
 
-use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Tools, View};
-use super::protocol::{Protocol, Radio};
+use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Scene, Tools, View};
+use super::protocol::Radio;
 use super::{CellState, InCells, OnGrid};
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
@@ -94,11 +94,12 @@ where
         self.law.payload(&here.grid, heading, radio)
     }
 
-    fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) {
-        self.law.receive(from, message, radio);
-        if radio.takes_anew() {
+    fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) -> bool {
+        let takes = self.law.receive(from, message, radio);
+        if radio.takes_decision() {
             self.last = None;
         }
+        takes
     }
 
     fn order(&mut self, order: &OrderOf<Self, S>) -> bool {
@@ -126,10 +127,10 @@ type Targeted<S> = (Decision<S>, Option<Cell>);
 
 /// One step of a law that decides by `decide`. Not generic over the law, so it is compiled once.
 #[inline(never)]
-fn follow<S: Scalar, P: Protocol>(
+fn follow<S: Scalar>(
     (speed_mps, has_goal): (S, bool),
     last: &mut Option<Last<S>>,
-    input: &View<'_, S, P>,
+    input: &Scene<'_, S>,
     here: &InCells<'_, S>,
     decide: &mut dyn FnMut(OnGrid<'_>) -> Result<Targeted<S>, BadInput>,
 ) -> Result<Decision<S>, BadInput> {

@@ -422,13 +422,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.task.payload(here, heading)
     }
 
-    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
+    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) -> bool {
         self.task.receive(from, message, radio);
         match message {
             GridMessage::Redirect => self.travel.redirect(),
             GridMessage::Land(patch) => self.map.hear(patch),
             GridMessage::Stop { .. } | GridMessage::Resume { .. } => {}
         }
+        true
     }
 
     fn order(&mut self, order: &GridOrder) -> bool {

@@ -1,6 +1,6 @@
 //! Handles a goal that another robot occupies.
 
-use super::{Protocol, View};
+use super::Scene;
 use crate::geom::Vec3;
 use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
@@ -58,8 +58,8 @@ impl<S: Scalar> GoalOccupancy<S> {
     pub(super) const NEW: Self = Self { nearest_m: S::ZERO, idle_m: S::ZERO, is_beside: false };
 
     /// O(nearby). Call it in each step.
-    pub(super) fn claim<P: Protocol>(&mut self, input: &View<'_, S, P>, way_m: Vec3<S>, tolerance_m: S) -> Claim<S> {
-        let View { body, nearby, .. } = input;
+    pub(super) fn claim(&mut self, input: &Scene<'_, S>, way_m: Vec3<S>, tolerance_m: S) -> Claim<S> {
+        let Scene { body, nearby, .. } = input;
         let distance = way_m.norm();
         let radii = |thousandths: i32| body.radius_m * S::from_milli(thousandths);
         let is_as_before = (self.nearest_m - radii(NEARER)..=self.nearest_m + radii(FARTHER)).contains(&distance);

@@ -1,6 +1,6 @@
 //! What robots that plan on the grid say to each other.
 
-use super::{CellState, OnGrid, Protocol, Radio, Report, TemplatePart, View};
+use super::{CellState, OnGrid, Protocol, Radio, Report, Scene, TemplatePart, View};
 use crate::fixint;
 use crate::geom::Position;
 use crate::grid::{Cell, Dir};
@@ -42,6 +42,9 @@ impl Protocol for Grid {
     }
 }
 
+/// The greatest number of a leader that fits a payload.
+const MAX_LEADER: RobotId = RobotId((1 << 28) - 1);
+
 /// The state of a robot on the grid; at most 16 bytes on the air, 15 with a leader below 2^21.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -59,7 +62,7 @@ pub struct GridPayload {
     pub heading: Dir,
     /// Its place in the formation.
     pub slot: u8,
-    /// Its leader, or [`RobotId::NONE`].
+    /// Its leader, below 2^28, or [`RobotId::NONE`].
     pub leader: RobotId,
 }
 
@@ -191,12 +194,12 @@ impl CellFrame {
     #[must_use]
     pub fn cell_at(&self, place: Position) -> Cell {
         let ([x, y, _], [center_x, center_y, _]) = (place.mm, self.center.mm);
-        let along = |mm: i32, center: i32| {
+        let along = |mm: i32, center: i32, cell: i16| {
             let from_edge = i64::from(mm) - i64::from(center) + i64::from(self.cell_mm >> 1);
             let cells = from_edge.checked_div_euclid(self.cell_mm.into()).unwrap_or(0);
-            cells.clamp(i16::MIN.into(), i16::MAX.into()) as i16
+            cells.saturating_add(cell.into()).clamp(i16::MIN.into(), i16::MAX.into()) as i16
         };
-        self.cell + Cell::new(along(x, center_x), along(y, center_y))
+        Cell::new(along(x, center_x, self.cell.x), along(y, center_y, self.cell.y))
     }
 }
 
@@ -288,16 +291,18 @@ impl GridTask {
         true
     }
 
-    /// Takes in a stop or a resume, and passes it on to the leader. The robot decides anew after
-    /// each message to it alone.
+    /// Stores a stop or a resume, and passes it on to the leader. The robot decides at once after
+    /// each message that is not for all.
     pub fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
+        if matches!(message, GridMessage::Land(_)) {
+            return;
+        }
+        radio.decide_at_once();
         let (origin, valid_ms) = match *message {
             GridMessage::Stop { origin, valid_ms } => (origin, Some(valid_ms)),
             GridMessage::Resume { origin } => (origin, None),
-            GridMessage::Redirect => return radio.decide_anew(),
-            GridMessage::Land(_) => return,
+            GridMessage::Redirect | GridMessage::Land(_) => return,
         };
-        radio.decide_anew();
         let leader = self.shown.leader;
         if self.stops.receive(from, origin, valid_ms, radio.now()) && leader.is_some() && leader != origin {
             let valid = valid_ms.map_or(radio.valid, |millis| Duration::from_millis(millis.into()));
@@ -317,9 +322,10 @@ impl GridTask {
         self.stopped_until().is_some_and(|until| !is_over(until, now))
     }
 
-    /// The cell to go to; `None` without a goal.
+    /// The cell to go to; `None` without a goal. Drops stops that have ended.
     #[must_use]
-    pub fn goal<S, P: Protocol>(&self, view: &View<'_, S, P>, offset: Cell) -> Option<Cell> {
+    pub fn goal<S>(&mut self, view: &Scene<'_, S>, offset: Cell) -> Option<Cell> {
+        self.stops.0.retain(|stop| !is_over(stop.until, view.now));
         let own = self.goal.map(|goal| match goal {
             Goal::Own(goal) => goal,
             Goal::Formation(top) => top + offset,
@@ -349,7 +355,7 @@ impl GridTask {
             busy_ms: u16::try_from(busy_ms).unwrap_or(u16::MAX),
             heading,
             slot: self.shown.slot,
-            leader: self.shown.leader,
+            leader: if self.shown.leader > MAX_LEADER { RobotId::NONE } else { self.shown.leader },
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Lets an operator take over a robot temporarily.
 
-use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
+use super::law::{Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Report, Scene, Status, Tools, View};
 use super::protocol::Radio;
 use super::waypoint_guidance::WaypointGuidance;
 use super::{Surroundings, Wait, Waypoint, WrongTask};
@@ -160,7 +160,10 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
                 decision.status.recovers = true;
                 Ok(decision)
             }
-            Wish::Cell(goal) => self.inside.decide(&View { sent_to: Some(goal), ..*view }, here, tools),
+            Wish::Cell(goal) => {
+                let scene = Scene { sent_to: Some(goal), ..view.scene };
+                self.inside.decide(&View { scene, ..*view }, here, tools)
+            }
         }
     }
 
@@ -173,8 +176,8 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
         self.inside.payload(here, heading, radio)
     }
 
-    fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) {
-        self.inside.receive(from, message, radio);
+    fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) -> bool {
+        self.inside.receive(from, message, radio)
     }
 
     fn order(&mut self, order: &OrderOf<Self, S>) -> bool {

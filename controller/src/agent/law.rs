@@ -11,6 +11,7 @@ use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
+use core::ops::Deref;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -113,11 +114,18 @@ pub trait Law<S: Scalar>: Sized {
         Default::default()
     }
 
-    /// Takes in a message of another robot, each once. Messages sent here follow those of the
-    /// frames in the inbox.
-    fn receive(&mut self, _from: RobotId, _message: &MessageOf<Self, S>, _radio: &mut Radio<'_, Self::Protocol>) {}
+    /// Receives a message of another robot. Returns whether the law takes it: then it is
+    /// acknowledged, and its repeats do not come. Sends after all messages of the inbox.
+    fn receive(
+        &mut self,
+        _from: RobotId,
+        _message: &MessageOf<Self, S>,
+        _radio: &mut Radio<'_, Self::Protocol>,
+    ) -> bool {
+        false
+    }
 
-    /// Takes in an order. Returns whether it was of use; one that was not may come again.
+    /// Receives an order. Returns whether the law takes it; one that it does not take comes again.
     fn order(&mut self, _order: &OrderOf<Self, S>) -> bool {
         false
     }
@@ -136,8 +144,9 @@ pub trait Law<S: Scalar>: Sized {
     fn parameters(&mut self, _visit: &mut dyn FnMut(&mut dyn Parameters)) {}
 }
 
-/// What a law knows at a decision besides its surroundings; `P` is its protocol.
-pub struct View<'a, S, P: Protocol = ()> {
+/// What a law knows at a decision besides its surroundings and the words of other robots.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a, S> {
     /// Own id.
     pub id: RobotId,
     /// Time of the decision.
@@ -160,8 +169,23 @@ pub struct View<'a, S, P: Protocol = ()> {
     pub sent_to: Option<Cell>,
     /// Where cells lie in the world; `None` cell by cell and without cells.
     pub cells: Option<CellFrame>,
+}
+
+/// What a law knows at a decision besides its surroundings: the [`Scene`], and the robots with what
+/// their laws say in protocol `P`.
+pub struct View<'a, S, P: Protocol = ()> {
+    /// The part that does not depend on the protocol.
+    pub scene: Scene<'a, S>,
     /// Known robots in ascending order of ids, none older than [`Ages::expire_after`].
     pub known: &'a dyn Known<S, P::Payload>,
+}
+
+impl<'a, S, P: Protocol> Deref for View<'a, S, P> {
+    type Target = Scene<'a, S>;
+
+    fn deref(&self) -> &Scene<'a, S> {
+        &self.scene
+    }
 }
 
 impl<S: Copy, P: Protocol> Clone for View<'_, S, P> {
@@ -191,13 +215,12 @@ impl<'a, S: Copy, P: Protocol> View<'a, S, P> {
     }
 
     /// The same view for a law with another protocol that gets its robots from `known`.
-    pub fn with<Q: Protocol>(&self, known: &'a dyn Known<S, Q::Payload>) -> View<'a, S, Q> {
-        let Self { id, now, tick, state, ahead_m, lag_s, body, nearby, ages, sent_to, cells, known: _ } = *self;
-        View { id, now, tick, state, ahead_m, lag_s, body, nearby, ages, sent_to, cells, known }
+    pub const fn with<Q: Protocol>(&self, known: &'a dyn Known<S, Q::Payload>) -> View<'a, S, Q> {
+        View { scene: self.scene, known }
     }
 }
 
-impl<S: Scalar, P: Protocol> View<'_, S, P> {
+impl<S: Scalar> Scene<'_, S> {
     /// Checks that the body can move by velocities.
     ///
     /// # Errors

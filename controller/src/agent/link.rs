@@ -30,12 +30,13 @@ const ORDERS: usize = 4;
 
 /// What the law must handle.
 pub(super) enum Received<Q: Protocol> {
-    Message(RobotId, Q::Message),
-    /// Call [`Link::followed`] with the receipt if it was of use.
+    /// Call [`Link::take_message`] with the receipt if the law takes it; none if it is for all.
+    Message(RobotId, Q::Message, Option<Receipt>),
+    /// Call [`Link::take_order`] with the receipt if the law takes it.
     Order(Q::Order, Receipt),
 }
 
-/// Which order it was.
+/// Identifies a message or an order.
 pub(super) struct Receipt {
     header: Header,
     number: u8,
@@ -186,7 +187,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let count = if frame.is_some() { &mut out.received } else { &mut out.rejected };
         *count = count.saturating_add(1);
         let (frame, id, arrival) = frame?;
-        self.take(frame, id, arrival, now, listener, out)
+        self.take(&frame, id, arrival, now, listener, out)
     }
 
     /// `None` if the frame must be refused.
@@ -206,42 +207,47 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
 
     fn take(
         &mut self,
-        frame: Frame,
+        Frame { header, message, .. }: &Frame,
         id: RobotId,
         arrival: Arrival,
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
     ) -> Option<Received<Q>> {
-        let Frame { header, message, .. } = frame;
+        let header = *header;
         let is_mine = |to: RobotId| to == self.header.sender;
         match message {
             Message::Beacon(beacon) if arrival.is_latest() => {
-                self.keep(Neighbor::from_beacon(id, &beacon, Q::ID, listener.heard_at), header, now, listener, out);
+                self.keep(Neighbor::from_beacon(id, beacon, Q::ID, listener.heard_at), header, now, listener, out);
             }
-            Message::Law(Addressed { to, number, protocol, content }) if Q::Message::EXISTS && is_mine(to) => {
-                let message = Q::Message::decode(Q::ID, protocol, &content)?;
-                let is_new = self.incoming.receive(header, number, Q::subject(&message), now);
-                self.say_early(&Message::Ack(Ack { to: header.sender, boot: header.boot, number }), out);
-                return is_new.then_some(Received::Message(id, message));
+            Message::Law(Addressed { to, number, protocol, content }) if Q::Message::EXISTS && is_mine(*to) => {
+                let message = Q::Message::decode(Q::ID, *protocol, content)?;
+                let (number, subject) = (*number, Q::subject(&message));
+                if self.incoming.is_repeat(header, number, subject, now) {
+                    self.acknowledge(header, number, out);
+                    return None;
+                }
+                let receipt = Receipt { header, number, subject: Some(subject) };
+                return Some(Received::Message(id, message, Some(receipt)));
             }
             Message::Broadcast(Broadcast { protocol, content }) if Q::Message::EXISTS => {
-                return Q::Message::decode(Q::ID, protocol, &content).map(|message| Received::Message(id, message));
+                return Q::Message::decode(Q::ID, *protocol, content)
+                    .map(|message| Received::Message(id, message, None));
             }
             Message::Ack(ack) if Q::Message::EXISTS && is_mine(ack.to) => {
-                let _ = self.outgoing.acknowledged(header.sender, &ack);
+                let _ = self.outgoing.acknowledged(header.sender, ack);
             }
             Message::Order(Addressed { to, number, protocol, content })
-                if Q::Order::EXISTS && (is_mine(to) || !to.is_some()) =>
+                if Q::Order::EXISTS && (is_mine(*to) || !to.is_some()) =>
             {
-                let mut order = Q::Order::decode(Q::ID, protocol, &content)?;
+                let (mut order, number) = (Q::Order::decode(Q::ID, *protocol, content)?, *number);
                 let subject = Q::order_subject(&order);
                 let is_restarted = subject.is_none() && self.orders.is_restarted(header);
                 Q::received(&mut order, listener.heard_at, is_restarted);
                 let is_news = self.orders.is_news(header, number, subject);
                 return is_news.then_some(Received::Order(order, Receipt { header, number, subject }));
             }
-            Message::Lost(lost) if listener.fastest_mps.is_some() => self.hear_lost(&lost, now, listener, out),
+            Message::Lost(lost) if listener.fastest_mps.is_some() => self.hear_lost(lost, now, listener, out),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     let held = KeyHeld { to: header.sender, generation, phase };
@@ -284,8 +290,19 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
     }
 
-    /// An order that was not of use is reported again when it is repeated: it may be by then.
-    pub(super) fn followed(&mut self, Receipt { header, number, subject }: Receipt) {
+    /// Acknowledges a message, and recognises its repeats.
+    pub(super) fn take_message(&mut self, receipt: &Receipt, now: Instant, out: &mut Outputs<S>) {
+        let Receipt { header, number, subject } = *receipt;
+        self.incoming.note(header, number, subject.unwrap_or_default(), now);
+        self.acknowledge(header, number, out);
+    }
+
+    fn acknowledge(&mut self, header: Header, number: u8, out: &mut Outputs<S>) {
+        self.say_early(&Message::Ack(Ack { to: header.sender, boot: header.boot, number }), out);
+    }
+
+    /// Recognises the repeats of an order. One that the law did not take comes again.
+    pub(super) fn take_order(&mut self, Receipt { header, number, subject }: Receipt) {
         if let Some(subject) = subject {
             self.orders.note(header, number, subject);
         }
@@ -299,7 +316,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
     }
 
-    /// Queues the messages of a law and broadcasts one, after a decision.
+    /// Queues the messages of a law and broadcasts one, after messages or a decision.
     pub(super) fn send(&mut self, outgoing: Outgoing, now: Instant, out: &mut Outputs<S>) {
         self.queue(&outgoing, now);
         if let Some((protocol, content)) = outgoing.broadcast {
@@ -307,7 +324,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
     }
 
-    #[cfg(test)]
+    #[cfg(all(test, feature = "auth"))]
     pub(super) fn is_quiet(&self) -> bool {
         self.outgoing.is_empty()
     }

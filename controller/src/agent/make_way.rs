@@ -1,7 +1,7 @@
 //! A robot makes way for a robot that it blocks in a narrow place.
 
+use super::Scene;
 use super::goal_occupancy::SLOW;
-use super::{Protocol, View};
 use crate::body::Body;
 use crate::geom::{Vec2, Vec3};
 use crate::neighbor::Nearby;
@@ -52,23 +52,23 @@ impl<S: Scalar> MakeWay<S> {
         Self { for_id: RobotId::NONE, times: 0, is_on: false, stood: (S::ZERO, S::ZERO), left: S::ZERO };
 
     /// Whether a robot is near and cannot be passed. O(nearby x obstacles).
-    pub(super) fn is_blocked<P: Protocol>(input: &View<'_, S, P>, obstacles: &[Obstacle<S>]) -> bool {
-        let View { body, nearby, .. } = input;
+    pub(super) fn is_blocked(input: &Scene<'_, S>, obstacles: &[Obstacle<S>]) -> bool {
+        let Scene { body, nearby, .. } = input;
         let is_near = |other: &&Nearby<S>| gap(body, other) < body.radius_m * S::from_milli(NEAR);
         nearby.iter().filter(is_near).any(|other| is_narrow(body, other, obstacles, S::ZERO))
     }
 
     /// The direction to move to; `None` if no robot needs the place. `to_goal`: the offset of the
     /// next waypoint, metres. O(nearby x obstacles + obstacles^2).
-    pub(super) fn way<P: Protocol>(
+    pub(super) fn way(
         &mut self,
-        input: &View<'_, S, P>,
+        input: &Scene<'_, S>,
         obstacles: &[Obstacle<S>],
         is_at_goal: bool,
         to_goal: Vec2<S>,
         rng: &mut Rng,
     ) -> Option<Vec3<S>> {
-        let View { body, nearby, .. } = input;
+        let Scene { body, nearby, .. } = input;
         let radii = |thousandths: i32| body.radius_m * S::from_milli(thousandths);
         let slow = body.max_speed_mps * S::from_milli(SLOW);
         let step = (body.max_speed_mps * body.step_s).checked_div(body.radius_m).unwrap_or(S::ZERO);

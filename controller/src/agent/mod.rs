@@ -13,6 +13,7 @@
 //! | [`WaypointGuidance`], [`GoalFlockGuidance`] | [`InPlane`] | [waypoint] | [velocity] |
 //! | [`LatticeGuidance`] | [`InPlane`] | [waypoint] or none: it flocks | [velocity] |
 //! | [`BoidsGuidance`] | [`InPlane`] | none: it roams | [velocity] |
+//! | [`External`]: the caller decides | [`AnySurroundings`] | any bytes | any |
 //!
 //! [cell]: GridOrder
 //! [waypoint]: WaypointOrder
@@ -103,6 +104,7 @@ mod cell_follower;
 mod config;
 mod contact_loss;
 mod duplicate_id;
+mod external;
 mod flock_guidance;
 mod formation_guidance;
 mod goal_occupancy;
@@ -141,12 +143,15 @@ pub use assembly::{MAX_TEMPLATE, PartError, TEMPLATE_PART, TemplateAssembler, Te
 pub use cell_follower::CellFollower;
 pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
+pub use external::{External, Incoming};
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::{FormationGuidance, FormationInPlane};
 pub use grid_protocol::{CellFrame, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask};
 pub use guided::{Guided, Wish};
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, KinematicState, OUTBOX, Outputs, Refused};
-pub use law::{Action, BadInput, Decision, Known, Law, MessageOf, OrderOf, PayloadOf, Report, Status, Tools, View};
+pub use law::{
+    Action, BadInput, Decision, Known, Law, MessageOf, OrderOf, PayloadOf, Report, Scene, Status, Tools, View,
+};
 pub use orca_safety::{FlySafety, OrcaSafety};
 pub use other_safety::PushOutSafety;
 pub use parameter::parameters;

@@ -138,7 +138,7 @@ pub(super) struct Queued {
 pub struct Outgoing {
     pub(super) messages: Vec<Queued, MESSAGES>,
     pub(super) broadcast: Option<(ProtocolId, Bytes<MAX_CONTENT>)>,
-    decides_anew: bool,
+    decides_at_once: bool,
 }
 
 /// Sends messages of protocol `P`.
@@ -165,13 +165,13 @@ impl<'t, P> Radio<'t, P> {
     }
 
     /// Makes a [`CellFollower`](super::CellFollower) decide at once rather than in the next cell.
-    pub const fn decide_anew(&mut self) {
-        self.outgoing.decides_anew = true;
+    pub const fn decide_at_once(&mut self) {
+        self.outgoing.decides_at_once = true;
     }
 
-    /// Whether the law inside must decide anew.
-    pub(super) fn takes_anew(&mut self) -> bool {
-        core::mem::take(&mut self.outgoing.decides_anew)
+    /// Whether the law inside must decide at once.
+    pub(super) fn takes_decision(&mut self) -> bool {
+        core::mem::take(&mut self.outgoing.decides_at_once)
     }
 
     /// The same radio for a law inside another one.
@@ -186,7 +186,7 @@ impl<P: Protocol> Radio<'_, P> {
     /// subject to the same robot is replaced. Returns whether there is room for it: it has at most
     /// [`MAX_MESSAGE`] bytes, and in one step a law sends at most four.
     pub fn send(&mut self, to: RobotId, message: &P::Message, valid: Duration) -> bool {
-        let Some((protocol, content)) = message.encode(P::ID) else { return false };
+        let Some((protocol, content)) = message.encode(P::ID).filter(|_| to.is_some()) else { return false };
         let queued = Queued { to, subject: P::subject(message), protocol, content, valid };
         self.outgoing.messages.push(queued).is_ok()
     }

@@ -7,7 +7,7 @@ use super::protocol::{Outgoing, Radio};
 use super::wait::is_hindered;
 use super::{
     Action, Agent, Command, Decision, Event, Inputs, KinematicState, Last, Law, OrderOf, Outputs, Perception, Report,
-    Safety, SafetyInput, Surroundings, Tools, View, Wait,
+    Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
@@ -53,9 +53,26 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         workspace: &mut L::Workspace,
         out: &mut Outputs<S>,
     ) {
+        self.hear_into(inputs, now, out);
+        self.act_into(inputs, now, workspace, out);
+    }
+
+    /// The first half of [`Agent::step_into`]: clears `out` and receives frames and detections.
+    pub fn hear_into(&mut self, inputs: &Inputs<'_, S, L::Surroundings<'_>>, now: Instant, out: &mut Outputs<S>) {
         out.clear();
         self.hear(inputs, now, out);
         self.merge_sightings(inputs.state.position, now, out);
+    }
+
+    /// The second half: decides, avoids collisions and sends. Takes what [`Agent::hear_into`] took,
+    /// and its `out`; does not read the inbox.
+    pub fn act_into(
+        &mut self,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
+        now: Instant,
+        workspace: &mut L::Workspace,
+        out: &mut Outputs<S>,
+    ) {
         let mut nearby = self.look(inputs, now);
         let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
         let decision = self.decide(inputs, &nearby, now, &mut rng, workspace, out);
@@ -140,22 +157,24 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 needs: &|id| id == leader || id == config.id.duplicate() || law.needs(id),
             };
             match link.hear(bytes, now, &listener, out) {
-                None => {}
-                Some(Received::Message(from, message)) => {
-                    law.receive(from, &message, &mut Radio::new(now, config.message_valid, &mut outgoing));
-                }
-                Some(Received::Order(given, receipt)) => {
-                    if order(law, last, &given) {
-                        link.followed(receipt);
+                Some(Received::Message(from, message, receipt)) => {
+                    let takes = law.receive(from, &message, &mut Radio::new(now, config.message_valid, &mut outgoing));
+                    if let Some(receipt) = receipt.filter(|_| takes) {
+                        link.take_message(&receipt, now, out);
                     }
                 }
+                Some(Received::Order(given, receipt)) => {
+                    let takes = order(law, last, &given);
+                    Some(receipt).filter(|_| takes).into_iter().for_each(|receipt| link.take_order(receipt));
+                }
+                None => {}
             }
         }
         // At the end, when messages acknowledged in this step have freed their entries.
-        link.queue(&outgoing, now);
+        link.send(outgoing, now, out);
     }
 
-    /// Gives the law an order. Returns whether it was of use.
+    /// Gives the law an order. Returns whether the law takes it.
     pub fn order(&mut self, given: &OrderOf<L, S>) -> bool {
         order(&mut self.law, &mut self.last, given)
     }
@@ -174,7 +193,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         if on_grid.is_some_and(|grid| grid.cell.busy > Duration::ZERO) {
             return None;
         }
-        let view = View {
+        let scene = Scene {
             id: self.config.id,
             now,
             tick: self.config.tick,
@@ -186,12 +205,13 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             ages: self.config.ages,
             sent_to: None,
             cells: inputs.surroundings.cell_frame(inputs.state.position),
-            known: &self.link.table.as_slice(),
         };
+        let view = View { scene, known: &self.link.table.as_slice() };
         let mut outgoing = Outgoing::default();
         let tools = Tools { rng, radio: Radio::new(now, self.config.message_valid, &mut outgoing), workspace };
         let target = self.law.report().target;
         let decision = self.law.decide(&view, &inputs.surroundings, tools);
+        self.link.send(outgoing, now, out);
         let situation = &mut self.last.situation;
         situation.has_goal = !matches!(decision, Ok(Decision { action: Action::Idle, .. }));
         if !situation.has_goal {
@@ -201,7 +221,6 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         self.decisions = self.decisions.wrapping_add(1);
         situation.has_fault = decision.is_err();
         let decision = decision.ok()?;
-        self.link.send(outgoing, now, out);
         let shown = self.law.report();
         if let Report { goal: Some(from), target: Some(to), .. } = shown
             && from != to
@@ -356,10 +375,10 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
 }
 
 fn order<S: Scalar, L: Law<S>>(law: &mut L, last: &mut Last, order: &OrderOf<L, S>) -> bool {
-    let is_of_use = law.order(order);
-    if is_of_use {
+    let takes = law.order(order);
+    if takes {
         // At once, even if it decides only after it has crossed its cell.
         last.situation.has_goal |= law.report().goal.is_some();
     }
-    is_of_use
+    takes
 }

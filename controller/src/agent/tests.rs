@@ -9,9 +9,7 @@ use crate::robot::RobotId;
 use crate::route::RouteParams;
 use crate::template::Template;
 use crate::time::{Duration, Instant};
-use crate::wire::{
-    Beacon, Frame, GoalAssignment, Header, Message, Request, RequestKind, TemplateAssignment, decode, encode, frames,
-};
+use crate::wire::{Addressed, Beacon, Content, Frame, Header, Message, ProtocolId, decode, encode, frames};
 use std::boxed::Box;
 use std::vec;
 use std::vec::Vec;
@@ -68,8 +66,68 @@ fn sent(outputs: &Outputs<f32>) -> Vec<Frame> {
     frames(&outputs.outbox).map(|f| decode(f).unwrap()).collect()
 }
 
+/// The beacon of a moving robot on the grid.
+fn on_grid(payload: GridPayload) -> Beacon {
+    let (protocol, payload) = payload.encode(Grid::ID).unwrap();
+    Beacon { mode: Mode::Cruise, protocol, payload, ..Beacon::default() }
+}
+
+fn in_cell(x: i16, y: i16) -> GridPayload {
+    GridPayload { cell: Cell::new(x, y), ..GridPayload::default() }
+}
+
 fn beacon_at(x: i16, y: i16) -> Beacon {
-    Beacon { cell: Cell::new(x, y), mode: Mode::Cruise, ..Beacon::default() }
+    on_grid(in_cell(x, y))
+}
+
+/// The beacon of a follower of `leader`.
+fn behind(leader: u32, x: i16, y: i16) -> Beacon {
+    on_grid(GridPayload { leader: RobotId(leader), ..in_cell(x, y) })
+}
+
+fn payload_of(beacon: &Beacon) -> GridPayload {
+    GridPayload::decode(Grid::ID, beacon.protocol, &beacon.payload).unwrap()
+}
+
+fn message(to: u32, number: u8, message: &GridMessage) -> Message {
+    let (protocol, content) = message.encode(Grid::ID).unwrap();
+    Message::Law(Addressed { to: RobotId(to), number, protocol, content })
+}
+
+fn stop(from: u32, to: u32, number: u8) -> Message {
+    message(to, number, &GridMessage::Stop { origin: RobotId(from), valid_ms: 12_000 })
+}
+
+fn resume(from: u32, to: u32, number: u8) -> Message {
+    message(to, number, &GridMessage::Resume { origin: RobotId(from) })
+}
+
+fn redirect(to: u32, number: u8) -> Message {
+    message(to, number, &GridMessage::Redirect)
+}
+
+/// The messages to single robots.
+fn asked(out: &Outputs<f32>) -> Vec<(RobotId, GridMessage)> {
+    let said = sent(out).into_iter().filter_map(|frame| match frame.message {
+        Message::Law(Addressed { to, protocol, content, .. }) => {
+            Some((to, GridMessage::decode(Grid::ID, protocol, &content).unwrap()))
+        }
+        _ => None,
+    });
+    said.collect()
+}
+
+/// An order for the formation, to one robot or to all.
+fn goal(to: u32, number: u8, cell: Cell) -> Message {
+    Grid::order(RobotId(to), number, &GridOrder::FormationGoal(cell)).unwrap()
+}
+
+fn template_orders(to: u32, parts: impl Iterator<Item = TemplatePart>) -> Vec<Message> {
+    let order = |part: TemplatePart| {
+        let number = part.part;
+        Grid::order(RobotId(to), number, &GridOrder::Template { part, is_restarted: false }).unwrap()
+    };
+    parts.map(order).collect()
 }
 
 #[test]
@@ -77,14 +135,16 @@ fn a_robot_without_a_goal_is_idle_and_sends_beacons() {
     let out = route_agent(1).step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(0), &mut workspace());
     assert_eq!(out.command, Command::Hold);
     let [frame] = &sent(&out)[..] else { panic!("one frame") };
-    assert!(matches!(&frame.message, Message::Beacon(b) if b.mode == Mode::Idle && b.cell == Cell::new(5, 5)));
+    assert!(matches!(&frame.message, Message::Beacon(beacon) if beacon.mode == Mode::Idle));
+    let Message::Beacon(beacon) = &frame.message else { panic!("a beacon") };
+    assert_eq!((beacon.protocol, payload_of(beacon)), (Grid::ID, in_cell(5, 5)));
 }
 
 #[test]
 fn a_robot_moves_to_its_goal_and_arrives() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let (mut at, goal) = (Cell::new(5, 5), Cell::new(12, 7));
-    agent.order(GridOrder::Goal(goal));
+    agent.order(&GridOrder::Goal(goal));
     let mut walked = 0;
     for n in 0..20 {
         let out = agent.step(&inputs(&FLAT, at, &[]), tick(n), &mut ws);
@@ -99,7 +159,7 @@ fn a_robot_moves_to_its_goal_and_arrives() {
 #[test]
 fn a_robot_that_crosses_a_cell_keeps_its_mode_and_does_not_decide() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(9, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(9, 5)));
     let mut busy = inputs(&FLAT, Cell::new(9, 5), &[]);
     busy.surroundings.cell = CellState { cell: Cell::new(9, 5), busy: Duration::from_micros(1) };
     let out = agent.step(&busy, tick(0), &mut ws);
@@ -112,7 +172,7 @@ fn a_robot_that_crosses_a_cell_keeps_its_mode_and_does_not_decide() {
 #[test]
 fn a_robot_recovers_from_the_fault_of_missing_terrain() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(9, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(9, 5)));
     let mut modes = Vec::new();
     for (n, has_window) in [true, false, false, true, true].into_iter().enumerate() {
         let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
@@ -129,7 +189,7 @@ fn a_robot_recovers_from_the_fault_of_missing_terrain() {
 #[test]
 fn an_enclosed_robot_holds_and_reports_once() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(50, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(50, 5)));
     let mut cells = [BLOCKED; 121];
     cells[60] = 1;
     let events: Vec<Event> =
@@ -142,7 +202,7 @@ fn an_enclosed_robot_holds_and_reports_once() {
 fn a_goal_in_a_wall_moves_to_the_nearest_free_cell() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let goal = Cell::new(8, 5);
-    agent.order(GridOrder::Goal(goal));
+    agent.order(&GridOrder::Goal(goal));
     let mut cells = FLAT;
     cells[5 * 11 + 8] = BLOCKED;
     let out = agent.step(&inputs(&cells, Cell::new(5, 5), &[]), tick(0), &mut ws);
@@ -184,7 +244,7 @@ fn repeated_replayed_and_own_frames_are_refused() {
     let own = core::mem::take(&mut own);
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &own.concat()), tick(6), &mut ws);
     assert_eq!((out.received, out.rejected), (0, 6), "its own");
-    assert_eq!(agent.neighbors()[0].cell, Cell::new(6, 3));
+    assert_eq!(agent.neighbors()[0].payload, Some(in_cell(6, 3)));
 }
 
 #[test]
@@ -206,7 +266,7 @@ fn neighbours_are_found_lost_and_evicted() {
 #[test]
 fn goals_are_assigned_by_packet_and_older_ones_ignored() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    let goal = |to, version, x| Message::Goal(GoalAssignment { to: RobotId(to), version, target: Cell::new(x, 0) });
+    let goal = |to, number, x| goal(to, number, Cell::new(x, 0));
     let orders = [goal(0, 5, 40), goal(2, 4, 50), goal(3, 6, 60), goal(2, 7, 70), goal(2, 7, 80)];
     let inbox = bytes(99, 0, 0, &orders);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
@@ -214,11 +274,10 @@ fn goals_are_assigned_by_packet_and_older_ones_ignored() {
 }
 
 #[test]
-fn a_restarted_commander_is_obeyed_at_any_version() {
+fn a_restarted_commander_is_obeyed_at_any_number() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    let mut target_after = |boot, version, x| {
-        let goal = Message::Goal(GoalAssignment { to: RobotId(1), version, target: Cell::new(x, 5) });
-        let inbox = bytes(99, boot, 0, &[goal]);
+    let mut target_after = |boot, number, x| {
+        let inbox = bytes(99, boot, 0, &[goal(1, number, Cell::new(x, 5))]);
         let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
         agent.target().map(|cell| cell.x)
     };
@@ -232,34 +291,27 @@ fn a_restarted_commander_is_obeyed_at_any_version() {
 fn templates_are_assigned_by_packet() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     let entries = formation_agent(3).law.template().entries.clone();
-    let parts: Vec<Message> = TemplateAssignment::split(RobotId(1), 1, 2, Cell::new(-6, 0), &entries)
-        .unwrap()
-        .map(Message::Template)
-        .collect();
-    let inbox = bytes(99, 0, 0, &parts);
+    let parts = TemplatePart::split(1, 2, Cell::new(-6, 0), &entries).unwrap();
+    let inbox = bytes(99, 0, 0, &template_orders(1, parts));
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
     assert_eq!(agent.law.template(), formation_agent(3).law.template());
-}
-
-fn stop(from: u32, to: u32, number: u8, kind: RequestKind) -> Message {
-    Message::Request(Request { to: RobotId(to), origin: RobotId(from), number, kind, valid_ms: 12_000 })
 }
 
 #[test]
 fn a_stop_holds_until_it_is_resumed_or_expires() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let mut mode_after = |inbox: &[u8], n| {
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), inbox), tick(n), &mut ws);
         let acks = sent(&out).iter().filter(|f| matches!(f.message, Message::Ack(_))).count();
-        assert_eq!(acks, usize::from(!inbox.is_empty()), "every request is acknowledged");
+        assert_eq!(acks, usize::from(!inbox.is_empty()), "every message is acknowledged");
         agent.mode()
     };
-    let ask = |sequence, number, kind| bytes(2, 0, sequence, &[stop(2, 1, number, kind)]);
     assert_eq!(mode_after(&[], 0), Mode::Cruise);
-    assert_eq!(mode_after(&ask(0, 0, RequestKind::Stop), 1), Mode::Hold);
-    assert_eq!(mode_after(&ask(1, 1, RequestKind::Resume), 2), Mode::Cruise);
-    assert_eq!(mode_after(&ask(2, 2, RequestKind::Stop), 3), Mode::Hold);
+    assert_eq!(mode_after(&bytes(2, 0, 0, &[stop(2, 1, 0)]), 1), Mode::Hold);
+    assert_eq!(mode_after(&bytes(2, 0, 1, &[resume(2, 1, 1)]), 2), Mode::Cruise);
+    assert_eq!(mode_after(&bytes(2, 0, 2, &[stop(2, 1, 2)]), 3), Mode::Hold);
+    assert_eq!(mode_after(&bytes(2, 0, 3, &[stop(2, 1, 2)]), 10), Mode::Hold, "a repeat does not prolong it");
     assert_eq!(mode_after(&[], 14), Mode::Hold);
     assert_eq!(mode_after(&[], 16), Mode::Cruise, "the lost resume costs 12 ticks");
 }
@@ -267,54 +319,49 @@ fn a_stop_holds_until_it_is_resumed_or_expires() {
 #[test]
 fn stops_are_passed_up_the_leader_chain_hop_by_hop() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let leader = bytes(1, 0, 0, &[Message::Beacon(beacon_at(8, 5))]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &leader), tick(0), &mut ws);
     assert_eq!(agent.leader(), RobotId(1));
-    let inbox = bytes(3, 0, 0, &[stop(3, 2, 9, RequestKind::Stop)]);
+    let inbox = bytes(3, 0, 0, &[stop(3, 2, 9)]);
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
-    let passed_on = sent(&out).into_iter().find_map(|f| match f.message {
-        Message::Request(request) => Some(request),
-        _ => None,
-    });
-    let request = passed_on.expect("a request to the leader");
-    assert_eq!((request.to, request.origin, request.kind), (RobotId(1), RobotId(3), RequestKind::Stop));
+    assert_eq!(asked(&out), [(RobotId(1), GridMessage::Stop { origin: RobotId(3), valid_ms: 12_000 })]);
     assert_ne!(agent.mode(), Mode::Hold, "a follower continues");
 }
 
 #[test]
 fn a_robot_that_falls_behind_requests_a_stop_and_later_a_resume() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
-    let mut asked = Vec::new();
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+    let mut said = Vec::new();
     for (n, (leader_x, own_x)) in [(8, 5), (20, 5), (20, 16)].into_iter().enumerate() {
-        let mut beacon = beacon_at(leader_x, 5);
-        beacon.heading = Dir::East;
+        let beacon = on_grid(GridPayload { heading: Dir::East, ..in_cell(leader_x, 5) });
         let inbox = bytes(1, 0, n as u16, &[Message::Beacon(beacon)]);
-        // Far enough apart for the first request to be acknowledged or given up.
+        // Far enough apart for the first message to be acknowledged or given up.
         let out = agent.step(&inputs(&FLAT, Cell::new(own_x, 5), &inbox), tick(20 * n as u32), &mut ws);
-        asked.extend(sent(&out).into_iter().filter_map(|f| match f.message {
-            Message::Request(request) => Some(request.kind),
-            _ => None,
-        }));
+        said.extend(asked(&out));
     }
-    assert_eq!(asked, [RequestKind::Stop, RequestKind::Resume]);
+    let (leader, origin) = (RobotId(1), RobotId(2));
+    assert_eq!(
+        said,
+        [(leader, GridMessage::Stop { origin, valid_ms: 12_000 }), (leader, GridMessage::Resume { origin })]
+    );
 }
 
 #[test]
 fn a_redirected_robot_chooses_another_direction_even_when_arrived() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(9, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(9, 5)));
     let first = |out: &Outputs<f32>| match &out.command {
         Command::Move(moves) => Some(moves[0]),
         Command::Hold | Command::Velocity(_) => None,
     };
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(0), &mut ws);
     assert_eq!(first(&out), Some(Dir::East));
-    let inbox = bytes(2, 0, 0, &[stop(2, 1, 0, RequestKind::Redirect)]);
+    let inbox = bytes(2, 0, 0, &[redirect(1, 0)]);
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
     assert!(first(&out).is_some_and(|dir| dir != Dir::East), "{out:?}");
-    let inbox = bytes(2, 0, 1, &[stop(2, 1, 1, RequestKind::Redirect)]);
+    let inbox = bytes(2, 0, 1, &[redirect(1, 1)]);
     let out = agent.step(&inputs(&FLAT, Cell::new(9, 5), &inbox), tick(2), &mut ws);
     assert_eq!(agent.mode(), Mode::Arrived);
     assert!(first(&out).is_some());
@@ -323,30 +370,26 @@ fn a_redirected_robot_chooses_another_direction_even_when_arrived() {
 }
 
 #[test]
-fn a_blocked_robot_sends_a_request_to_the_robot_in_its_way() {
+fn a_blocked_robot_asks_the_robot_in_its_way_to_redirect() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let mut cells = [BLOCKED; 121];
     cells[55..66].fill(1);
-    let mut asked = None;
+    let mut first = None;
     for n in 0..8 {
         let inbox = bytes(2, 0, n, &[Message::Beacon(beacon_at(6, 5))]);
         let out = agent.step(&inputs(&cells, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
-        asked = asked.or(sent(&out).into_iter().find_map(|f| match f.message {
-            Message::Request(request) => Some((n, request.to, request.kind)),
-            _ => None,
-        }));
+        first = first.or(asked(&out).pop().map(|(to, message)| (n, to, message)));
     }
-    assert_eq!(asked, Some((4, RobotId(2), RequestKind::Redirect)));
+    assert_eq!(first, Some((4, RobotId(2), GridMessage::Redirect)));
 }
 
 #[test]
 fn outboxes_hold_whole_frames_and_the_beacon_at_any_load() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     for n in 0..40_u16 {
-        let crowd: Vec<u8> =
-            (2..60).flat_map(|id| bytes(id, 0, n, &[stop(id, 1, n as u8, RequestKind::Stop)])).collect();
+        let crowd: Vec<u8> = (2..60).flat_map(|id| bytes(id, 0, n, &[stop(id, 1, n as u8)])).collect();
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &crowd), tick(n.into()), &mut ws);
         let frames = sent(&out);
         assert!(frames.len() > 1);
@@ -358,7 +401,7 @@ fn outboxes_hold_whole_frames_and_the_beacon_at_any_load() {
 fn equal_agents_give_equal_bytes() {
     let run = || {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
-        agent.order(GridOrder::Goal(Cell::new(40, 9)));
+        agent.order(&GridOrder::Goal(Cell::new(40, 9)));
         let mut at = Cell::new(5, 5);
         let mut said = vec![];
         for n in 0..30 {
@@ -377,7 +420,7 @@ fn equal_agents_give_equal_bytes() {
 #[test]
 fn the_clock_may_wrap() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let start = Instant::from_micros(u32::MAX - 2_500_000);
     let mut beacons = 0;
     for n in 0..6 {
@@ -391,22 +434,27 @@ fn the_clock_may_wrap() {
     assert_eq!(beacons, 6);
 }
 
+mod any_law;
 mod cell_follower;
 mod claims;
 mod commanded;
 mod contact_loss;
 mod crossing;
 mod duplicate_id;
+mod external;
 mod faults;
 mod flocks;
 mod make_way;
 mod map_sharing;
 mod nonsense;
 mod nonsense_in_plane;
+mod on_grid;
 mod payload;
 mod plane;
+mod protocol;
 mod sealed;
 mod setup;
 mod sighted;
 mod silence;
+mod stops;
 mod waits;

@@ -1,9 +1,9 @@
 //! Straight lines through waypoints to a goal.
 
 use super::goal_occupancy::{Claim, GoalOccupancy};
-use super::law::{Action, BadInput, Decision, Law, Status, Tools, View};
+use super::law::{Action, BadInput, Decision, Law, Scene, Status, Tools, View};
 use super::make_way::MakeWay;
-use super::protocol::{Protocol, WaypointOrder, Waypoints};
+use super::protocol::{WaypointOrder, Waypoints};
 use super::{InPlane, WAYPOINTS, Wait, Waypoint};
 use crate::geom::{Vec2, Vec3};
 use crate::parameters::{Parameters, SPEED, TOLERANCE};
@@ -50,7 +50,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     }
 
     /// Offset, metres, and velocity of the current waypoint. Advances when one is passed.
-    fn next<P: Protocol>(&mut self, view: &View<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
+    fn next(&mut self, view: &Scene<'_, S>) -> Option<(Vec3<S>, Vec3<S>)> {
         let passed_m = self.tolerance_m.max(view.body.radius_m * S::from_i32(PASSED_RADII));
         let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));
         let mut waypoint = ahead.next()?;
@@ -67,8 +67,8 @@ impl<S: Scalar> WaypointGuidance<S> {
     }
 
     /// Heads for the waypoint before again, if other robots pushed this one far away from it.
-    fn goes_back<P: Protocol>(&mut self, view: &View<'_, S, P>, makes_way: bool) {
-        let View { state, now, body, .. } = view;
+    fn goes_back(&mut self, view: &Scene<'_, S>, makes_way: bool) {
+        let Scene { state, now, body, .. } = view;
         let mut way = |leg: u8| Some(self.course.get_mut(usize::from(leg))?.way(state.position, *now));
         let before = self.leg.saturating_sub(1);
         let (Some(next), Some(last)) = (way(self.leg), way(before)) else {
@@ -91,7 +91,7 @@ impl<S: Scalar> WaypointGuidance<S> {
         legs.fold(distance, |sum, leg| sum + leg)
     }
 
-    pub(super) fn head<P: Protocol>(&mut self, view: &View<'_, S, P>) -> Result<Decision<S>, BadInput> {
+    pub(super) fn head(&mut self, view: &Scene<'_, S>) -> Result<Decision<S>, BadInput> {
         view.can_move()?;
         let (way, velocity_mps) = self.next(view).ok_or(BadInput)?;
         let from_body = way + view.ahead_m;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::wire::Beacon;
+use crate::wire::{Beacon, Bytes, ProtocolId};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
@@ -12,7 +12,7 @@ fn at(micros: u32) -> Instant {
 /// `x` metres east of the origin; if `x` is NaN, the velocity is NaN.
 fn standing(id: u32, x: f32, heard: Instant) -> Neighbor<f32> {
     let beacon = Beacon::default();
-    let mut neighbor = Neighbor::from_beacon(RobotId(id), &beacon, heard);
+    let mut neighbor = Neighbor::from_beacon(RobotId(id), &beacon, ProtocolId::NONE, heard);
     match place(x, 0.0) {
         Some(place) => neighbor.position = place,
         None => neighbor.velocity_mps.x = x,
@@ -307,25 +307,35 @@ fn position_is_extrapolated_for_a_bounded_time() {
 #[test]
 fn a_beacon_is_converted_to_metres_and_the_own_clock() {
     let beacon = Beacon {
-        time: at(123),
         position_mm: [1_500, -2_250, i32::MAX],
         velocity_mmps: [500, i16::MIN, 0],
         radius_mm: 150,
-        cell: Cell::new(1, -2),
-        heading: Dir::North,
-        busy_ms: u16::MAX,
-        leader: RobotId(7),
-        slot: 3,
         mode: Mode::Cruise,
-        target: Cell::new(9, 9),
+        flock: 3,
+        protocol: ProtocolId(64),
+        payload: Bytes::from_slice(&[7]).unwrap(),
     };
-    let n = Neighbor::<f64>::from_beacon(RobotId(5), &beacon, at(u32::MAX));
+    let n = Neighbor::<f64, u8>::from_beacon(RobotId(5), &beacon, ProtocolId(64), at(u32::MAX));
     assert_eq!(n.position, Position::from_mm([1_500, -2_250, i32::MAX]));
     assert_eq!(n.velocity_mps, Vec3::new(0.5, -32.768, 0.0));
-    assert_eq!((n.radius_m, n.id, n.leader), (0.15, RobotId(5), RobotId(7)));
-    assert_eq!((n.heard, n.busy_until), (at(u32::MAX), at(65_534_999)));
-    assert_eq!((n.cell, n.target), (beacon.cell, beacon.target));
-    assert_eq!((n.heading, n.slot, n.mode), (Dir::North, 3, Mode::Cruise));
+    assert_eq!((n.radius_m, n.id, n.flock), (0.15, RobotId(5), 3));
+    assert_eq!((n.heard, n.mode, n.trace, n.gap_m), (at(u32::MAX), Mode::Cruise, Trace::Heard, 0.0));
+    assert_eq!(n.payload, Some(7));
+}
+
+#[test]
+fn a_payload_of_another_protocol_or_with_other_bytes_is_unknown() {
+    let told = |protocol, bytes: &[u8]| {
+        let payload = Bytes::from_slice(bytes).unwrap();
+        let beacon = Beacon { protocol: ProtocolId(protocol), payload, ..Beacon::default() };
+        Neighbor::<f32, u8>::from_beacon(RobotId(5), &beacon, ProtocolId(64), at(0)).payload
+    };
+    assert_eq!([told(64, &[7]), told(65, &[7]), told(64, &[]), told(64, &[7, 7])], [Some(7), None, None, None]);
+    let silent = |protocol| {
+        let beacon = Beacon { protocol, ..Beacon::default() };
+        Neighbor::<f32>::from_beacon(RobotId(5), &beacon, ProtocolId::NONE, at(0)).payload
+    };
+    assert_eq!([silent(ProtocolId::NONE), silent(ProtocolId(1))], [Some(()), None]);
 }
 
 /// Small whole distances, so that ties occur.

@@ -41,28 +41,30 @@ impl<const C: usize> IncomingMessages<C> {
         Self { known: SparseVec::new(), memory }
     }
 
-    /// Whether this message, from a frame with `header`, is new: neither a repeat nor older than
-    /// another one about the same subject. O(`C`).
-    #[must_use = "a repeat must not be given to the law"]
-    pub fn receive(&mut self, header: Header, number: u8, subject: u32, now: Instant) -> bool {
+    /// Whether this message, from a frame with `header`, was [noted](Self::note), or is older than
+    /// a noted one about the same subject: then it is remembered for longer. O(`C`).
+    #[must_use = "a repeat is not given to the law"]
+    pub fn is_repeat(&mut self, header: Header, number: u8, subject: u32, now: Instant) -> bool {
         let memory = self.memory;
         self.known.retain(|known| {
             let age = now.since(known.heard);
             Duration::ZERO <= age && age < memory
         });
-        let latest = Latest { sender: header.sender, subject, heard: now, boot: header.boot, number };
         let is_about = |known: &&mut Latest| known.sender == header.sender && known.subject == subject;
-        if let Some(known) = self.known.iter_mut().find(is_about) {
-            let behind = known.number.wrapping_sub(number);
-            let is_new = known.boot != header.boot || behind > LATE;
-            *known = if is_new { latest } else { Latest { heard: now, ..*known } };
-            return is_new;
-        }
+        let known = self.known.iter_mut().find(is_about);
+        let is_late = |known: &&mut Latest| known.boot == header.boot && known.number.wrapping_sub(number) <= LATE;
+        known.filter(is_late).map(|known| known.heard = now).is_some()
+    }
+
+    /// Remembers a message that the law took. O(`C`).
+    pub fn note(&mut self, header: Header, number: u8, subject: u32, now: Instant) {
+        self.known.retain(|known| known.sender != header.sender || known.subject != subject);
         if self.known.is_full() {
             let oldest = self.known.iter().max_by_key(|known| now.since(known.heard)).copied();
             self.known.retain(|known| Some(*known) != oldest);
         }
-        self.known.push(latest).is_ok()
+        let latest = Latest { sender: header.sender, subject, heard: now, boot: header.boot, number };
+        let _ = self.known.push(latest);
     }
 
     /// Drops all messages of `sender`, because it restarted.

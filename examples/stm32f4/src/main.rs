@@ -64,7 +64,7 @@ async fn robot(p: Peripherals) -> Option<()> {
     let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
     let law = WaypointGuidance::new(max_speed_mps, 0.02);
     let mut agent = OrcaAgent::new(&config, law, safety, Postcard);
-    agent.order(WaypointOrder::first(Waypoint::fixed(Position::from_mm([2000, 1000, 0]))));
+    agent.order(&WaypointOrder::first(Waypoint::fixed(Position::from_mm([2000, 1000, 0]))));
 
     let mut ticker = Ticker::every(embassy_time::Duration::from_micros(TICK.as_micros() as u64));
     let mut watchdog = IndependentWatchdog::new(p.IWDG, 200_000);

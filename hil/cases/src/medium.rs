@@ -4,7 +4,7 @@ use heapless::Vec;
 use staya_controller::rand::Rng;
 use staya_controller::wire::Wire;
 
-/// A beacon and some requests; further frames are dropped.
+/// A beacon and some messages; further frames are dropped.
 const SAID: usize = 144;
 pub(crate) const INBOX: usize = 576;
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");

@@ -14,7 +14,7 @@ use core::fmt::{Display, Formatter};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{Agent, AgentConfig, InPlane, Inputs, KinematicState, OrcaSafety, Outputs, Waypoint};
-use staya_controller::agent::{Law as _, WaypointGuidance, WaypointOrder};
+use staya_controller::agent::{Law as _, Protocol as _, WaypointGuidance, WaypointOrder, Waypoints};
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
@@ -143,17 +143,17 @@ impl Robot {
         }
     }
 
-    fn beacon(&self, at: Instant, before_ms: i32) -> Beacon {
+    fn beacon(&self, before_ms: i32) -> Beacon {
         let [x, y] = CENTER_MM;
         let [east, north] = self.at_mm.map(i32::from);
         let [vx, vy] = self.velocity_mmps.map(|v| i32::from(v) * before_ms / 1_000);
         let [east_mmps, north_mmps] = self.velocity_mmps;
         Beacon {
-            time: at,
             position_mm: [x + east - vx, y + north - vy, 0],
             velocity_mmps: [east_mmps, north_mmps, 0],
             radius_mm: self.radius_mm.unsigned_abs(),
             mode: MODES.get(usize::from(self.mode)).copied().unwrap_or_default(),
+            protocol: Waypoints::ID,
             ..Beacon::default()
         }
     }
@@ -243,9 +243,9 @@ impl Scene {
         let [east, north] = self.way_mm.map(i32::from);
         let goal = Waypoint::fixed(Position::from_mm([x + east, y + north, 0]));
         if self.is_second {
-            let _ = law.order(WaypointOrder::first(Waypoint::fixed(Position::from_mm([x, y, 0]))));
+            let _ = law.order(&WaypointOrder::first(Waypoint::fixed(Position::from_mm([x, y, 0]))));
         }
-        let _ = law.order(WaypointOrder { index: u8::from(self.is_second), waypoint: goal });
+        let _ = law.order(&WaypointOrder { index: u8::from(self.is_second), waypoint: goal });
         let mut agent = Agent::<S, _, N, _>::new(&config, law, safety, Postcard);
         let mut obstacles = Vec::<Obstacle<S>, WALLS>::new();
         for ends in self.walls_mm {
@@ -264,8 +264,8 @@ impl Scene {
             let numbers = (FIRST_ID..).filter(|id| *id != OWN.0);
             for (id, robot) in numbers.zip(&self.robots).take(N).filter(|(_, robot)| step <= robot.last_step()) {
                 let header = Header { boot: 0, sender: RobotId(id), sequence: step as u16 };
-                // As old as the latency, at the position of now.
-                let beacon = robot.beacon(now - STEP, last_ms - time_ms);
+                // At the position of now, although the agent takes it for as old as the latency.
+                let beacon = robot.beacon(last_ms - time_ms);
                 let _ = encode(header, &Message::Beacon(beacon), &mut inbox);
             }
             let surroundings = InPlane { max_speed_mps: S::ONE, obstacles: &obstacles };

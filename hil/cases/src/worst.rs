@@ -10,8 +10,8 @@ use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
     Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FormationGuidance, GoalFlockGuidance, Grid, GridOrder,
-    GridWorkspace, InPlane, Inputs, KinematicState, LatticeGuidance, Law, LawOrder as _, OnGrid, OrcaSafety, OrderOf,
-    RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, Waypoint, WaypointGuidance,
+    GridPayload, GridWorkspace, InPlane, Inputs, KinematicState, LatticeGuidance, Law, OnGrid, OrcaSafety, Protocol,
+    RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, Waypoint, WaypointGuidance, WaypointOrder, Waypoints,
 };
 #[cfg(feature = "all-cases")]
 use staya_controller::agent::{FlySafety, PushOutSafety};
@@ -32,7 +32,7 @@ use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
 use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, Postcard, encode};
+use staya_controller::wire::{Beacon, Content as _, Header, Message, Postcard, encode};
 
 const STEPS: u32 = 64;
 const OBSTACLES: usize = 4;
@@ -131,12 +131,12 @@ impl WorstCase {
                 in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
             }
             Self::Lattice => {
-                let guidance = LatticeGuidance::new(LatticeParams::new(S::ONE), true);
+                let guidance = sent(LatticeGuidance::new(LatticeParams::new(S::ONE), true));
                 in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
             }
             Self::GoalFlock => {
                 let params = GoalParams::new(S::HALF, S::ONE);
-                let guidance = GoalFlockGuidance::new(params, S::ONE, 3);
+                let guidance = sent(GoalFlockGuidance::new(params, S::ONE, 3));
                 in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
             }
             Self::Boids => {
@@ -154,7 +154,14 @@ fn inflation<S: Scalar>() -> StalenessInflation<S> {
 }
 
 fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
-    WaypointGuidance::new(S::ONE, S::from_milli(10))
+    sent(WaypointGuidance::new(S::ONE, S::from_milli(10)))
+}
+
+/// The law with a waypoint. Boids accept none.
+fn sent<S: Scalar, G: Law<S, Protocol = Waypoints>>(mut law: G) -> G {
+    let goal = Waypoint::fixed(Position::from_mm([9000, 500, 0]));
+    let _ = law.order(&WaypointOrder::first(goal));
+    law
 }
 
 /// Runs [`WorstCase::OrcaAnalytic`] with half-planes of neighbours from `source`.
@@ -182,7 +189,7 @@ fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32,
 }
 
 #[inline(never)]
-fn in_crowd<S, G, A, P, const N: usize>(mut law: G, safety: A, probe: &mut P) -> Summary
+fn in_crowd<S, G, A, P, const N: usize>(law: G, safety: A, probe: &mut P) -> Summary
 where
     S: Scalar,
     G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()>,
@@ -191,9 +198,6 @@ where
     P: Probe<S>,
 {
     let config = AgentConfig { seed: 1, latency: STEP, ..AgentConfig::new(OWN, S::from_milli(RADIUS_MM), STEP) };
-    // Boids accept no waypoint.
-    let goal = Waypoint::fixed(Position::from_mm([9000, 500, 0]));
-    let _ = OrderOf::<G, S>::waypoint(0, goal).map(|order| law.order(order));
     let mut agent = Agent::<S, G, N, A>::new(&config, law, safety, Postcard);
     let mut summary = Summary::of::<Agent<S, G, N, A>, ()>();
     let (mut hashes, mut inbox) = (Hashes::new(), Inbox::new());
@@ -203,6 +207,7 @@ where
             velocity_mmps: [about(rng, 700), about(rng, 700), about(rng, 200)].map(|v| v as i16),
             radius_mm: RADIUS_MM.unsigned_abs() as u16,
             mode: Mode::Cruise,
+            protocol: G::Protocol::ID,
             ..Beacon::default()
         });
         let mut rng = Rng::keyed(2, PURPOSE, 0, step);
@@ -265,7 +270,7 @@ where
     let config = AgentConfig { seed: 1, ..AgentConfig::new(OWN, S::ZERO, STEP) };
     let mut agent = Agent::<S, G, N>::new(&config, guidance, Unguarded, Postcard);
     let cell = TOP + PLACES.get(MIDDLE).copied().unwrap_or_default();
-    agent.order(GridOrder::Goal(GOAL + (cell - TOP)));
+    agent.order(&GridOrder::Goal(GOAL + (cell - TOP)));
     let mut workspace = GridWorkspace::new();
     let mut summary = Summary::of::<Agent<S, G, N>, GridWorkspace<CELLS>>();
     let (mut hashes, mut inbox) = (Hashes::new(), Inbox::new());
@@ -278,16 +283,17 @@ where
         say::<8>(step, &mut inbox, |number, rng| {
             let index = number.saturating_sub(1) as usize;
             let place = PLACES.get(index).copied().unwrap_or_default();
-            Beacon {
+            let payload = GridPayload {
                 // Off its place, so that prediction must search.
                 cell: TOP + place + Cell::new(about(rng, 1) as i16, i16::from(number != 1)),
-                heading: Dir::NorthEast,
-                leader: RobotId(LEADERS.get(index).copied().unwrap_or(0)),
-                slot: index as u8,
-                mode: Mode::Cruise,
                 target: GOAL + place,
-                ..Beacon::default()
-            }
+                busy_ms: 0,
+                heading: Dir::NorthEast,
+                slot: index as u8,
+                leader: RobotId(LEADERS.get(index).copied().unwrap_or(0)),
+            };
+            let (protocol, payload) = payload.encode(Grid::ID).unwrap_or_default();
+            Beacon { mode: Mode::Cruise, protocol, payload, ..Beacon::default() }
         });
         let inputs = Inputs {
             state: KinematicState::default(),

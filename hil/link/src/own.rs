@@ -7,7 +7,9 @@ use crate::refusal::Refusal;
 use crate::robot::Controller;
 use postcard::take_from_bytes;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Agent, AnySafety, HALF_PLANES, InPlane, Law, NEIGHBORS, Setup, Task};
+use staya_controller::agent::{
+    Agent, AnyOrder, AnySafety, HALF_PLANES, InPlane, Law, NEIGHBORS, Protocol, Setup, Task,
+};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::wire::FromFormat;
 use staya_mavlink::any::AnyWire;
@@ -18,13 +20,19 @@ pub type OwnLarge<G> = Own<f32, G, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
 pub type OwnSmall<G> = Own<Q16, G, 8, 16, 16, AnyWire>;
 
 /// A user-defined guidance law, in the plane or in space, whose state a host can send to a device.
+/// Its orders come from the [`Task`] of the host: [`Never`](staya_controller::wire::Never),
+/// [`WaypointOrder`](staya_controller::agent::WaypointOrder), or a type made from [`AnyOrder`].
 pub trait LinkedLaw<S: Scalar>:
-    for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
+    for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Protocol: Protocol<Order: TryFrom<AnyOrder>>, Workspace = ()>
+    + Serialize
+    + for<'de> Deserialize<'de>
 {
 }
 
 impl<S: Scalar, G> LinkedLaw<S> for G where
-    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
+    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Protocol: Protocol<Order: TryFrom<AnyOrder>>, Workspace = ()>
+        + Serialize
+        + for<'de> Deserialize<'de>
 {
 }
 

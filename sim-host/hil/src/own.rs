@@ -4,7 +4,6 @@ use crate::run::{HilArgs, Swarm, drive};
 use anyhow::{Context as _, Result};
 use clap::{CommandFactory as _, FromArgMatches as _};
 use staya_console::{Ended, Global, WatchArgs};
-use staya_controller::agent::Law;
 use staya_controller::scalar::Q16;
 use staya_link::own::{LinkedLaw, OwnLarge, OwnSmall};
 use staya_link::robot::Controller;
@@ -63,7 +62,7 @@ impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
     #[must_use]
     pub fn in_fixed_point(self) -> Self
     where
-        G: for<'a> Law<Q16, Surroundings<'a> = staya_controller::agent::InPlane<'a, Q16>, Workspace = ()>,
+        G: LinkedLaw<Q16>,
     {
         let shadows: Shadows = || {
             let both: [Box<dyn Controller + Send>; 2] =

@@ -8,11 +8,11 @@ mod nearest;
 pub mod station;
 
 use serde::Deserialize;
-use staya_controller::agent::TEMPLATE;
+use staya_controller::agent::{Grid, GridOrder, Protocol as _, TEMPLATE, TemplatePart};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateError, rotated};
-use staya_controller::wire::{GoalAssignment, Header, Message, TemplateAssignment};
+use staya_controller::wire::{Header, Message};
 use staya_mavlink::frame::MAX_FRAME_LEN;
 use staya_mavlink::wire::{MAX_ROBOT, encode};
 use std::collections::BTreeSet;
@@ -255,15 +255,16 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
         for entry in &mut template.entries {
             entry.id = id(entry.id.0 as usize - 1);
         }
-        let parts =
-            TemplateAssignment::split(id(own), order.version, template.slot, template.offset, &template.entries)
-                .map_err(|_| GraphError::Neighbors(own + 1))?;
-        messages.extend(parts.map(Message::Template));
+        let parts = TemplatePart::split(order.version, template.slot, template.offset, &template.entries)
+            .map_err(|_| GraphError::Neighbors(own + 1))?;
+        messages.extend(parts.filter_map(|part| {
+            Grid::order(id(own), order.version, &GridOrder::Template { part, is_restarted: false })
+        }));
     }
     let target = order.goal.zip(graph.places.first()).map(|(goal, &first)| goal + first);
     let to = if order.to_all { vec![RobotId::NONE] } else { (0..robots.len()).map(id).collect() };
     messages.extend(target.iter().flat_map(|&target| {
-        to.iter().map(move |&to| Message::Goal(GoalAssignment { to, version: order.version, target }))
+        to.iter().filter_map(move |&to| Grid::order(to, order.version, &GridOrder::FormationGoal(target)))
     }));
     let frame = |(sequence, message): (u16, &Message)| {
         let header = Header { boot: order.boot, sender: RobotId(STATION.into()), sequence };

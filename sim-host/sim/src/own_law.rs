@@ -139,7 +139,7 @@ trait Hosted: fmt::Debug + Send + Sync {
         heading: Dir,
         radio: &mut Radio<'_, AnyProtocol>,
     ) -> AnyPayload;
-    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>);
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool;
     fn order(&mut self, order: &AnyOrder) -> bool;
     fn needs(&self, id: RobotId) -> bool;
     fn report(&self) -> Report;
@@ -189,12 +189,11 @@ impl<L: OwnLaw> Hosted for Held<L> {
         encoded.and_then(|(id, bytes)| AnyPayload::decode(ProtocolId::NONE, id, &bytes)).unwrap_or_default()
     }
 
-    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
         let encoded = message.encode::<MAX_CONTENT>(ProtocolId::NONE);
         let own = <L::Protocol as Protocol>::ID;
-        if let Some(message) = encoded.and_then(|(id, bytes)| MessageOf::<L, f32>::decode(own, id, &bytes)) {
-            self.law.receive(from, &message, &mut radio.of());
-        }
+        let message = encoded.and_then(|(id, bytes)| MessageOf::<L, f32>::decode(own, id, &bytes));
+        message.is_some_and(|message| self.law.receive(from, &message, &mut radio.of()))
     }
 
     fn order(&mut self, order: &AnyOrder) -> bool {
@@ -280,8 +279,8 @@ impl Law<f32> for Own {
         self.0.payload(here, heading, radio)
     }
 
-    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
-        self.0.receive(from, message, radio);
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
+        self.0.receive(from, message, radio)
     }
 
     fn order(&mut self, order: &AnyOrder) -> bool {

@@ -6,14 +6,14 @@
 
 mod keys;
 mod mavlink;
-mod requests;
+mod messages;
 mod sealed;
 mod templates;
 mod wire;
 
 pub use keys::keys;
 pub use mavlink::mavlink_decode;
-pub use requests::requests_model;
+pub use messages::messages_model;
 pub use sealed::sealed;
 pub use templates::templates;
 pub use wire::wire_decode;
@@ -54,8 +54,8 @@ mod tests {
     }
 
     #[test]
-    fn requests_model_invariants_hold_for_random_bytes() {
-        on_random_bytes(requests_model, 300, 1_000);
+    fn messages_model_invariants_hold_for_random_bytes() {
+        on_random_bytes(messages_model, 300, 1_000);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Bytes from an attacker without the key.
 
 use heapless::Vec as Bounded;
+use staya_controller::agent::{Grid, GridOrder, Protocol as _};
 use staya_controller::auth::Key;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{Frame, GoalAssignment, Header, MAX_FRAME_LEN, Message, Sealed, Wire};
+use staya_controller::wire::{Frame, Header, MAX_FRAME_LEN, Sealed, Wire};
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::Signing;
 
@@ -48,9 +49,9 @@ fn refuses<W: Wire>(new: impl Fn() -> W, bytes: &[u8]) {
 
 fn said<W: Wire>(by: &mut W, sequence: u16) -> Bounded<u8, MAX_FRAME_LEN> {
     let header = Header { boot: 1, sender: RobotId(7), sequence };
-    let goal = GoalAssignment { to: RobotId(2), version: 3, target: Cell::new(1, -2) };
+    let goal = Grid::order(RobotId(2), 3, &GridOrder::FormationGoal(Cell::new(1, -2))).expect("a goal is short");
     let mut out = Bounded::new();
-    by.encode(header, &Message::Goal(goal), &mut out).expect("a goal is short");
+    by.encode(header, &goal, &mut out).expect("a goal is short");
     out
 }
 

@@ -2,12 +2,11 @@
 
 use arbitrary::{Result, Unstructured};
 use heapless::Vec as Bounded;
+use staya_controller::agent::{Grid, GridOrder, Protocol as _, TEMPLATE_PART, TemplateAssembler, TemplatePart};
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateEntry};
-use staya_controller::wire::{
-    Header, MAX_FRAME_LEN, Message, TEMPLATE_PART, TemplateAssembler, TemplateAssignment, decode, encode,
-};
+use staya_controller::wire::{Content as _, Header, MAX_FRAME_LEN, Message, decode, encode};
 
 const F: usize = 7;
 const TO: RobotId = RobotId(3);
@@ -26,7 +25,7 @@ pub fn templates(bytes: &[u8]) {
 
 fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut version: u8 = choice.arbitrary()?;
-    let mut sent: Vec<(Template<F>, Vec<TemplateAssignment>)> = Vec::new();
+    let mut sent: Vec<(Template<F>, Vec<TemplatePart>)> = Vec::new();
     let mut assembler = TemplateAssembler::<F>::new();
     let mut newest = None;
     let mut there = Vec::new();
@@ -35,10 +34,8 @@ fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
             let template = template(choice)?;
             version = version.wrapping_add(1);
             let Template { slot, offset, entries } = &template;
-            let parts: Vec<_> = TemplateAssignment::split(TO, version, *slot, *offset, entries)
-                .expect("a small template")
-                .map(carried)
-                .collect();
+            let parts: Vec<_> =
+                TemplatePart::split(version, *slot, *offset, entries).expect("a small template").map(carried).collect();
             assert_eq!(parts.len(), entries.len().div_ceil(TEMPLATE_PART).max(1));
             sent.push((template, parts));
         }
@@ -65,14 +62,13 @@ fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
 /// A refused part changes nothing. A completed template consists of parts of one version.
 fn from_any_sender(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut assembler = TemplateAssembler::<F>::new();
-    let mut seen: Vec<TemplateAssignment> = Vec::new();
+    let mut seen: Vec<TemplatePart> = Vec::new();
     while !choice.is_empty() {
         let mut entries = Bounded::new();
         for _ in 0..choice.int_in_range(0..=TEMPLATE_PART)? {
             let _ = entries.push(entry(choice, 0)?);
         }
-        let mut part = TemplateAssignment {
-            to: TO,
+        let mut part = TemplatePart {
             version: choice.arbitrary()?,
             part: choice.arbitrary()?,
             parts: choice.arbitrary()?,
@@ -95,7 +91,7 @@ fn from_any_sender(choice: &mut Unstructured<'_>) -> Result<()> {
         seen.push(part);
         let Ok(Some(whole)) = answer else { continue };
         for (at, chunk) in whole.entries.chunks(TEMPLATE_PART).enumerate() {
-            let came = |part: &TemplateAssignment| {
+            let came = |part: &TemplatePart| {
                 part.version == version
                     && part.slot == whole.slot
                     && usize::from(part.part) == at
@@ -126,13 +122,18 @@ fn entry(choice: &mut Unstructured<'_>, least_hops: u8) -> Result<TemplateEntry>
     })
 }
 
-fn carried(part: TemplateAssignment) -> TemplateAssignment {
+/// The part after its way through a frame.
+fn carried(part: TemplatePart) -> TemplatePart {
     let mut out = Bounded::<u8, MAX_FRAME_LEN>::new();
-    let message = Message::Template(part);
+    let version = part.version;
+    let sent = GridOrder::Template { part, is_restarted: false };
+    let message = Grid::order(TO, version, &sent).expect("a part fits an order");
     encode(HEADER, &message, &mut out).expect("every message fits");
     let frame = decode(&out[..out.len() - 1]).expect("a sent frame is intact");
-    match frame.message {
-        Message::Template(part) if message == Message::Template(part.clone()) => part,
-        other => panic!("sent {message:?}, received {other:?}"),
-    }
+    assert_eq!(frame.message, message);
+    let Message::Order(order) = frame.message else { panic!("received {message:?}") };
+    let received = GridOrder::decode(Grid::ID, order.protocol, &order.content);
+    assert_eq!(received, Some(sent));
+    let Some(GridOrder::Template { part, .. }) = received else { panic!("received {received:?}") };
+    part
 }

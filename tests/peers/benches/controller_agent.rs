@@ -7,9 +7,9 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::agent::{
-    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, GridOrder, GridWorkspace, InPlane, Inputs,
-    KinematicState, OnGrid, OrcaAgent, OrcaSafety, RouteAgent, RouteGuidance, Unguarded, Waypoint, WaypointGuidance,
-    WaypointOrder,
+    AgentConfig, CELLS, CellState, FormationAgent, FormationGuidance, Grid, GridOrder, GridPayload, GridWorkspace,
+    InPlane, Inputs, KinematicState, OnGrid, OrcaAgent, OrcaSafety, Protocol as _, RouteAgent, RouteGuidance,
+    Unguarded, Waypoint, WaypointGuidance, WaypointOrder,
 };
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::geom::{Position, Vec3};
@@ -21,7 +21,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::RouteParams;
 use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Header, Message, Postcard, encode};
+use staya_controller::wire::{Beacon, Content as _, Header, Message, Postcard, encode};
 
 /// Rows 1 2 3, 4 5 6, 7 8 9, with robot 1 in front.
 const PLACES: [Cell; 9] = [
@@ -47,15 +47,18 @@ const TOP: Cell = Cell::new(50, 50);
 
 /// One per sequence number, to be repeated cyclically.
 fn inboxes() -> Vec<Vec<u8>> {
-    let beacon = |robot: usize| Beacon {
-        // Off its place, so that prediction must search its route.
-        cell: TOP + PLACES[robot] + Cell::new(i16::from(robot != 0), 0),
-        heading: Dir::NorthEast,
-        leader: RobotId(LEADERS[robot]),
-        slot: robot as u8,
-        mode: Mode::Cruise,
-        target: Cell::new(98, 98) + PLACES[robot],
-        ..Beacon::default()
+    let beacon = |robot: usize| {
+        let payload = GridPayload {
+            // Off its place, so that prediction must search its route.
+            cell: TOP + PLACES[robot] + Cell::new(i16::from(robot != 0), 0),
+            target: Cell::new(98, 98) + PLACES[robot],
+            busy_ms: 0,
+            heading: Dir::NorthEast,
+            slot: robot as u8,
+            leader: RobotId(LEADERS[robot]),
+        };
+        let (protocol, payload) = payload.encode(Grid::ID).unwrap();
+        Beacon { mode: Mode::Cruise, protocol, payload, ..Beacon::default() }
     };
     (0..=u16::MAX)
         .map(|sequence| {
@@ -92,7 +95,7 @@ fn agent_step(c: &mut Criterion) {
         let template = Template::from_graph(&PLACES, &EDGES, OWN, 2).unwrap();
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut agent = FormationAgent::new(&config, guidance, Unguarded, Postcard);
-        agent.order(GridOrder::Goal(goal));
+        agent.order(&GridOrder::Goal(goal));
         let mut step = 0;
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
@@ -105,7 +108,7 @@ fn agent_step(c: &mut Criterion) {
     }
     let law = RouteGuidance::new(RouteParams::default());
     let mut alone = RouteAgent::new(&config, law, Unguarded, Postcard);
-    alone.order(GridOrder::Goal(goal));
+    alone.order(&GridOrder::Goal(goal));
     let mut step = 0;
     group.bench_function("route_only", |bencher| {
         bencher.iter(|| {
@@ -128,7 +131,6 @@ fn in_plane_inboxes() -> Vec<Vec<u8>> {
         let place = |out: f64, around: f64| milli(far_m * out + wide_m * around);
         let pace = |along: f64| milli(0.5 * along) as i16;
         Beacon {
-            time: now(step),
             position_mm: [place(libm::cos(bearing), libm::cos(turn)), place(libm::sin(bearing), libm::sin(turn)), 0],
             velocity_mmps: [pace(-libm::sin(turn)), pace(libm::cos(turn)), 0],
             radius_mm: 200,
@@ -159,7 +161,7 @@ fn agent_step_in_plane(c: &mut Criterion) {
     let safety = OrcaSafety::new(AvoidParams::default(), inflation);
     let mut agent = OrcaAgent::new(&config, WaypointGuidance::new(0.5, 0.02), safety, Postcard);
     let goal = Waypoint::fixed(Position::from_mm([20_000, 3_000, 0]));
-    assert!(agent.order(WaypointOrder::first(goal)));
+    assert!(agent.order(&WaypointOrder::first(goal)));
     // The robot stays in place, so that the scene is identical in each round.
     let inputs = |step: usize| Inputs {
         state: KinematicState { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..KinematicState::default() },

@@ -7,7 +7,7 @@ use staya_controller::neighbor::{Ages, Neighbor, NeighborTable, Put, StalenessIn
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::Beacon;
+use staya_controller::wire::{Beacon, ProtocolId};
 
 const ROBOTS: u32 = 16;
 const AGES: Ages = Ages { stale_after: Duration::from_millis(500), expire_after: Duration::from_millis(5_000) };
@@ -22,7 +22,7 @@ fn neighbor(id: u32, range_mm: i32, rng: &mut Rng) -> Neighbor<f32> {
         radius_mm: 150,
         ..Beacon::default()
     };
-    Neighbor::from_beacon(RobotId(id), &beacon, Instant::default())
+    Neighbor::from_beacon(RobotId(id), &beacon, ProtocolId::NONE, Instant::default())
 }
 
 fn neighbor_table(c: &mut Criterion) {

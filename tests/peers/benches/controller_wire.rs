@@ -4,56 +4,41 @@ use core::hint::black_box;
 use core::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use heapless::Vec;
+use staya_controller::agent::{Grid, GridMessage, GridOrder, GridPayload, Protocol as _, TEMPLATE_PART, TemplatePart};
 use staya_controller::auth::Key;
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
-use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Request, RequestKind, Sealed, TEMPLATE_PART,
-    TemplateAssignment, Wire, decode, encode,
+    Ack, Addressed, Beacon, Content as _, Header, MAX_FRAME_LEN, Message, Sealed, Wire, decode, encode,
 };
 
 const TO: RobotId = RobotId(70_000);
 const CELL: Cell = Cell::new(98, -98);
 
 fn messages() -> [(&'static str, Message); 5] {
-    let entry = TemplateEntry { offset: CELL, id: TO, hops: 1 };
+    let payload = GridPayload { cell: CELL, target: CELL, busy_ms: 400, heading: Dir::NorthWest, slot: 4, leader: TO };
+    let (protocol, payload) = payload.encode(Grid::ID).unwrap();
+    let beacon = Beacon {
+        position_mm: [12_345, -678_901, 0],
+        velocity_mmps: [250, -3, 0],
+        radius_mm: 150,
+        mode: Mode::Cruise,
+        flock: 0,
+        protocol,
+        payload,
+    };
+    let stop = GridMessage::Stop { origin: TO, valid_ms: 2_000 };
+    let (protocol, content) = stop.encode(Grid::ID).unwrap();
+    let entries = [TemplateEntry { offset: CELL, id: TO, hops: 1 }; TEMPLATE_PART].into();
+    let part = TemplatePart { version: 1, part: 0, parts: 4, slot: 3, offset: CELL, entries };
+    let template = GridOrder::Template { part, is_restarted: false };
     [
-        (
-            "beacon",
-            Message::Beacon(Beacon {
-                time: Instant::from_micros(123_456_789),
-                position_mm: [12_345, -678_901, 0],
-                velocity_mmps: [250, -3, 0],
-                radius_mm: 150,
-                cell: CELL,
-                heading: Dir::NorthWest,
-                busy_ms: 400,
-                leader: TO,
-                slot: 4,
-                mode: Mode::Cruise,
-                target: CELL,
-            }),
-        ),
-        (
-            "request",
-            Message::Request(Request { to: TO, origin: TO, number: 9, kind: RequestKind::Stop, valid_ms: 2_000 }),
-        ),
-        ("ack", Message::Ack(Ack { to: TO, boot: 1, number: 9, accepted: true })),
-        (
-            "template",
-            Message::Template(TemplateAssignment {
-                to: TO,
-                version: 1,
-                part: 0,
-                parts: 4,
-                slot: 3,
-                offset: CELL,
-                entries: [entry; TEMPLATE_PART].into(),
-            }),
-        ),
-        ("goal", Message::Goal(GoalAssignment { to: RobotId::NONE, version: 1, target: CELL })),
+        ("beacon", Message::Beacon(beacon)),
+        ("stop", Message::Law(Addressed { to: TO, number: 9, protocol, content })),
+        ("ack", Message::Ack(Ack { to: TO, boot: 1, number: 9 })),
+        ("template", Grid::order(TO, 1, &template).unwrap()),
+        ("goal", Grid::order(RobotId::NONE, 1, &GridOrder::FormationGoal(CELL)).unwrap()),
     ]
 }
 

@@ -4,25 +4,30 @@ use core::hint::black_box;
 use core::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use heapless::Vec;
+use staya_controller::agent::{Grid, GridPayload, Protocol as _};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::robot::{Mode, RobotId};
-use staya_controller::time::Instant;
-use staya_controller::wire::{Beacon, Header, Message, Postcard, Wire};
+use staya_controller::wire::{Beacon, Content as _, Header, Message, Postcard, Wire};
 use staya_mavlink::wire::Mavlink;
 
 fn beacon() -> Message {
+    let payload = GridPayload {
+        cell: Cell::new(98, -98),
+        target: Cell::new(98, 70),
+        busy_ms: 400,
+        heading: Dir::NorthWest,
+        slot: 4,
+        leader: RobotId(1),
+    };
+    let (protocol, payload) = payload.encode(Grid::ID).unwrap();
     Message::Beacon(Beacon {
-        time: Instant::from_micros(123_456_789),
         position_mm: [12_345, -678_901, 4_000],
         velocity_mmps: [250, -3, 1],
         radius_mm: 150,
-        cell: Cell::new(98, -98),
-        heading: Dir::NorthWest,
-        busy_ms: 400,
-        leader: RobotId(1),
-        slot: 4,
         mode: Mode::Cruise,
-        target: Cell::new(98, 70),
+        flock: 0,
+        protocol,
+        payload,
     })
 }
 

@@ -59,7 +59,7 @@ impl StayaOrca {
     pub(crate) fn defaults() -> Self {
         let AvoidParams { horizon_s, wall_horizon_s, share, margin_m, deadlock } = AvoidParams::<f32>::default();
         let DeadlockParams { lean_rad, patience_radii } = deadlock;
-        let [growth_mps, growth_max_m] = [0.5, 0.3];
+        let (growth_mps, growth_max_m, downwash) = (0.5, 0.3, 1.0);
         Self {
             horizon_s,
             wall_horizon_s,
@@ -69,18 +69,14 @@ impl StayaOrca {
             patience_radii,
             growth_mps,
             growth_max_m,
-            downwash: 1.0,
+            downwash,
         }
     }
 
     pub(crate) fn params(&self) -> AvoidParams<Number> {
-        AvoidParams {
-            horizon_s: cast(self.horizon_s),
-            wall_horizon_s: cast(self.wall_horizon_s),
-            share: cast(self.share),
-            margin_m: cast(self.margin_m),
-            deadlock: DeadlockParams { lean_rad: cast(self.lean_rad), patience_radii: cast(self.patience_radii) },
-        }
+        let Self { horizon_s, wall_horizon_s, share, margin_m, lean_rad, patience_radii, .. } = *self;
+        let deadlock = DeadlockParams { lean_rad, patience_radii };
+        AvoidParams { horizon_s, wall_horizon_s, share, margin_m, deadlock }.cast()
     }
 
     pub(crate) fn inflation(&self) -> StalenessInflation<Number> {
@@ -92,7 +88,7 @@ impl StayaOrca {
 impl StayaPushOut {
     pub(crate) fn params(&self) -> Checked<PushOutParams<Number>> {
         Ok(PushOutParams {
-            model: StayaPushOutModel::of(self.model)?.into(),
+            model: StayaPushOutModel::chosen(self.model)?,
             evasion: if self.only_nearest == 0 { Evasion::Multiple } else { Evasion::Single },
             min_distance_m: cast(self.min_distance_m),
         })

@@ -4,9 +4,9 @@ use super::positive;
 use crate::Number;
 use crate::choices::{StayaLatticeTerms, StayaLaw};
 use crate::law::Law;
-use crate::memory::{self, plain, shared};
+use crate::memory::{answers, plain};
 use crate::setup::StayaSetup;
-use crate::status::{Checked, StayaStatus, answer};
+use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::{BoidsGuidance, BoidsSetup, GoalFlockGuidance, LatticeGuidance};
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
@@ -86,18 +86,20 @@ plain!(StayaLattice, StayaGoalFlock, StayaBoids);
 
 impl StayaLattice {
     fn from_params(params: &LatticeParams<f32>, terms: u8, reference_moves: u8) -> Self {
+        let LatticeParams { spacing_m, range_ratio, obstacle_ratio, attraction, repulsion, .. } = *params;
+        let LatticeParams { alpha, beta, gamma, .. } = params;
         Self {
-            spacing_m: params.spacing_m,
-            range_ratio: params.range_ratio,
-            obstacle_ratio: params.obstacle_ratio,
-            attraction: params.attraction,
-            repulsion: params.repulsion,
-            alpha_position: params.alpha.position,
-            alpha_velocity: params.alpha.velocity,
-            beta_position: params.beta.position,
-            beta_velocity: params.beta.velocity,
-            gamma_position: params.gamma.position,
-            gamma_velocity: params.gamma.velocity,
+            spacing_m,
+            range_ratio,
+            obstacle_ratio,
+            attraction,
+            repulsion,
+            alpha_position: alpha.position,
+            alpha_velocity: alpha.velocity,
+            beta_position: beta.position,
+            beta_velocity: beta.velocity,
+            gamma_position: gamma.position,
+            gamma_velocity: gamma.velocity,
             terms,
             reference_moves,
         }
@@ -107,23 +109,23 @@ impl StayaLattice {
         Self::from_params(&LatticeParams::new(spacing_m), StayaLatticeTerms::All as u8, 1)
     }
 
-    pub(crate) fn softened(&self, delay_s: f32, rate_hz: f32) -> Checked<Self> {
-        let params = self.in_f32()?.stable_for(delay_s, rate_hz);
-        Ok(Self::from_params(&params, self.terms, self.reference_moves))
-    }
-
     fn in_f32(&self) -> Checked<LatticeParams<f32>> {
         let gain = |position, velocity| Gain { position, velocity };
+        let algorithm = StayaLatticeTerms::chosen(self.terms)?;
+        let Self { spacing_m, range_ratio, obstacle_ratio, attraction, repulsion, .. } = *self;
+        let alpha = gain(self.alpha_position, self.alpha_velocity);
+        let beta = gain(self.beta_position, self.beta_velocity);
+        let gamma = gain(self.gamma_position, self.gamma_velocity);
         Ok(LatticeParams {
-            algorithm: StayaLatticeTerms::of(self.terms)?.into(),
-            spacing_m: self.spacing_m,
-            range_ratio: self.range_ratio,
-            obstacle_ratio: self.obstacle_ratio,
-            attraction: self.attraction,
-            repulsion: self.repulsion,
-            alpha: gain(self.alpha_position, self.alpha_velocity),
-            beta: gain(self.beta_position, self.beta_velocity),
-            gamma: gain(self.gamma_position, self.gamma_velocity),
+            algorithm,
+            spacing_m,
+            range_ratio,
+            obstacle_ratio,
+            attraction,
+            repulsion,
+            alpha,
+            beta,
+            gamma,
         })
     }
 
@@ -135,88 +137,60 @@ impl StayaLattice {
 
 impl StayaGoalFlock {
     pub(crate) fn defaults(min_distance_m: f32) -> Self {
-        let params = GoalParams::new(min_distance_m, 1.0);
-        Self {
-            goal_gain: params.goal_gain,
-            center_gain: params.center_gain,
-            repulsion_gain: params.repulsion_gain,
-            neighborhood_m: params.neighborhood_m,
-            min_distance_m,
-            arrival_m: params.neighborhood_m,
-            seed: 0,
-        }
+        let GoalParams { goal_gain, center_gain, repulsion_gain, neighborhood_m, .. } =
+            GoalParams::new(min_distance_m, 1.0);
+        let (arrival_m, seed) = (neighborhood_m, 0);
+        Self { goal_gain, center_gain, repulsion_gain, neighborhood_m, min_distance_m, arrival_m, seed }
     }
 
     pub(crate) fn params(&self, speed_mps: f32) -> Checked<GoalParams<Number>> {
-        let params = GoalParams {
-            goal_gain: cast(self.goal_gain),
-            center_gain: cast(self.center_gain),
-            repulsion_gain: cast(self.repulsion_gain),
-            neighborhood_m: cast(self.neighborhood_m),
-            min_distance_m: cast(self.min_distance_m),
-            speed_mps: cast(speed_mps),
-        };
+        let Self { goal_gain, center_gain, repulsion_gain, neighborhood_m, min_distance_m, .. } = *self;
+        let params =
+            GoalParams { goal_gain, center_gain, repulsion_gain, neighborhood_m, min_distance_m, speed_mps }.cast();
         if params.is_sound() { Ok(params) } else { Err(StayaStatus::Number) }
     }
 }
 
 impl StayaBoids {
     pub(crate) fn defaults(unit_m: f32) -> Self {
-        let BoidsSetup { crowded_m, closest_m, max_turn, max_turn_away } = BoidsSetup::PAPER;
-        Self {
-            crowded_m: crowded_m * unit_m,
-            closest_m: closest_m * unit_m,
-            max_turn_rad: max_turn,
-            max_turn_away_rad: max_turn_away,
-        }
+        let BoidsSetup { crowded_m, closest_m, max_turn: max_turn_rad, max_turn_away: max_turn_away_rad } =
+            BoidsSetup::PAPER;
+        Self { crowded_m: crowded_m * unit_m, closest_m: closest_m * unit_m, max_turn_rad, max_turn_away_rad }
     }
 
     pub(crate) fn params(&self) -> BoidsParams<Number> {
-        let numbers = [self.crowded_m, self.closest_m, self.max_turn_rad, self.max_turn_away_rad];
-        let [crowded, closest, turn, away] = numbers.map(cast);
-        BoidsParams::new(crowded, closest, turn, away)
+        let Self { crowded_m, closest_m, max_turn_rad: max_turn, max_turn_away_rad: max_turn_away } = *self;
+        BoidsSetup { crowded_m, closest_m, max_turn, max_turn_away }.params()
     }
 }
 
 #[cfg(feature = "flocks")]
 pub(super) fn law(setup: &StayaSetup, law: StayaLaw) -> Checked<Law> {
+    let StayaSetup { lattice, goal_flock, boids, speed_mps, .. } = setup;
     Ok(match law {
-        StayaLaw::Lattice => {
-            let moves = setup.lattice.reference_moves != 0;
-            Law::Lattice(LatticeGuidance::new(setup.lattice.params()?, moves))
-        }
+        StayaLaw::Lattice => Law::Lattice(LatticeGuidance::new(lattice.params()?, lattice.reference_moves != 0)),
         StayaLaw::GoalFlock => {
-            positive(&[setup.goal_flock.arrival_m])?;
-            let params = setup.goal_flock.params(setup.speed_mps)?;
-            Law::GoalFlock(GoalFlockGuidance::new(
-                params,
-                cast(setup.goal_flock.arrival_m),
-                setup.goal_flock.seed.into(),
-            ))
+            positive(&[goal_flock.arrival_m])?;
+            let (params, seed) = (goal_flock.params(*speed_mps)?, goal_flock.seed.into());
+            Law::GoalFlock(GoalFlockGuidance::new(params, cast(goal_flock.arrival_m), seed))
         }
-        _ => Law::Boids(BoidsGuidance::new(setup.boids.params(), cast(setup.speed_mps))),
+        _ => Law::Boids(BoidsGuidance::new(boids.params(), cast(*speed_mps))),
     })
 }
 
 /// Writes the paper's values of the lattice for a spacing, metres, as in a setup's defaults.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_lattice_defaults(lattice: *mut StayaLattice, spacing_m: f32) -> StayaStatus {
-    // SAFETY: valid space by the caller's contract, or `write` rejects it.
-    answer(unsafe { memory::write(lattice, StayaLattice::defaults(spacing_m)) })
+    answers!(|call| call.write(lattice, StayaLattice::defaults(spacing_m)))
 }
 
 /// Reduces the gains as far as required if beacons are `delay_s` old when they arrive and come
 /// `rate_hz` times per second. Stiffer gains make the lattice oscillate and break apart.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_lattice_soften(lattice: *mut StayaLattice, delay_s: f32, rate_hz: f32) -> StayaStatus {
-    // SAFETY: a valid lattice not used elsewhere by contract, or `shared` rejects it.
-    let softened = unsafe { shared(lattice) }.and_then(|lattice| lattice.softened(delay_s, rate_hz));
-    // SAFETY: as above; the reference has ended.
-    answer(softened.and_then(|softened| unsafe { memory::write(lattice, softened) }))
+    answers!(|call| {
+        let before = *call.shared(lattice)?;
+        let params = before.in_f32()?.stable_for(delay_s, rate_hz);
+        call.write(lattice, StayaLattice::from_params(&params, before.terms, before.reference_moves))
+    })
 }

@@ -1,7 +1,7 @@
 //! Parameters of routes and formations across land in cells.
 
-use crate::memory::{self, plain, row, shared};
-use crate::status::{Checked, StayaStatus, answer};
+use crate::memory::{answers, plain};
+use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::TEMPLATE;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
@@ -125,24 +125,24 @@ plain!(StayaRoute, StayaCell, StayaPlace, StayaFormation, StayaEdge);
 impl StayaFormation {
     #[cfg(feature = "grid")]
     pub(super) fn template(&self) -> Checked<Template<TEMPLATE>> {
-        let entries = self.neighbors.get(..self.neighbor_count.into()).ok_or(StayaStatus::TooMany)?;
+        let places = self.neighbors.get(..self.neighbor_count.into()).ok_or(StayaStatus::TooMany)?;
         let mut template = Template { slot: self.slot, offset: self.offset.into(), entries: heapless::Vec::new() };
-        for StayaPlace { robot, offset, hops } in entries {
-            let entry = TemplateEntry { offset: (*offset).into(), id: RobotId(*robot), hops: *hops };
-            let kept = (*hops > 0).then(|| template.entries.push(entry)).ok_or(StayaStatus::Shape)?;
-            kept.map_err(|_| StayaStatus::TooMany)?;
+        for &StayaPlace { robot, offset, hops } in places {
+            if hops == 0 {
+                return Err(StayaStatus::Shape);
+            }
+            let entry = TemplateEntry { offset: offset.into(), id: RobotId(robot), hops };
+            template.entries.push(entry).map_err(|_| StayaStatus::TooMany)?;
         }
         Ok(template)
     }
 
     fn place(&mut self, template: &Template<TEMPLATE>) {
-        self.slot = template.slot;
-        self.offset = template.offset.into();
+        (self.slot, self.offset) = (template.slot, template.offset.into());
         self.neighbors = [StayaPlace::default(); STAYA_TEMPLATE];
-        self.neighbor_count = 0;
+        self.neighbor_count = template.entries.len() as u8;
         for (to, from) in self.neighbors.iter_mut().zip(&template.entries) {
             *to = StayaPlace { robot: from.id.0, offset: from.offset.into(), hops: from.hops };
-            self.neighbor_count += 1;
         }
     }
 }
@@ -151,9 +151,6 @@ impl StayaFormation {
 /// frame, the top leader's first, and the edges of its graph. Robots within `hops` edges become
 /// neighbours; the robot at place i has the number i + 1. `STAYA_STATUS_SHAPE` for a place or edge
 /// that does not exist, `STAYA_STATUS_TOO_MANY` above STAYA_TEMPLATE neighbours.
-///
-/// # Safety
-/// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_formation_from_graph(
     formation: *mut StayaFormation,
@@ -164,32 +161,21 @@ pub unsafe extern "C" fn staya_formation_from_graph(
     own: usize,
     hops: u8,
 ) -> StayaStatus {
-    let template = || {
-        // SAFETY: this many places and edges by the caller's contract, or `row` rejects them.
-        let (places, edges) = unsafe { (row(places, place_count)?, row(edges, edge_count)?) };
-        from_graph(places, edges, own, hops)
-    };
-    let placed = || {
-        let template = template()?;
-        // SAFETY: a valid formation not used elsewhere by contract, or `shared` rejects it.
-        let mut filled = unsafe { *shared(formation)? };
+    answers!(|call| {
+        let template = from_graph(call.row(places, place_count)?, call.row(edges, edge_count)?, own, hops)?;
+        let mut filled = *call.shared(formation)?;
         filled.place(&template);
-        // SAFETY: as above; the reference has ended.
-        unsafe { memory::write(formation, filled) }
-    };
-    answer(placed())
+        call.write(formation, filled)
+    })
 }
 
 fn from_graph(places: &[StayaCell], edges: &[StayaEdge], own: usize, hops: u8) -> Checked<Template<TEMPLATE>> {
     // As many as a formation of this library can need: its slots are bytes.
     let mut cells = heapless::Vec::<Cell, 64>::new();
     let mut pairs = heapless::Vec::<(u16, u16), 256>::new();
-    for place in places {
-        cells.push((*place).into()).map_err(|_| StayaStatus::TooMany)?;
-    }
-    for edge in edges {
-        pairs.push((edge.a, edge.b)).map_err(|_| StayaStatus::TooMany)?;
-    }
+    let too_many = |()| StayaStatus::TooMany;
+    places.iter().try_for_each(|place| cells.push((*place).into()).map_err(|_| ())).map_err(too_many)?;
+    edges.iter().try_for_each(|edge| pairs.push((edge.a, edge.b)).map_err(|_| ())).map_err(too_many)?;
     Template::from_graph(&cells, &pairs, own, hops).map_err(|error| match error {
         TemplateError::NoSuchPlace | TemplateError::BadEdge => StayaStatus::Shape,
         TemplateError::TooMany => StayaStatus::TooMany,

@@ -19,44 +19,32 @@ const _: () = {
 
 pub(super) fn defaults(setup: &mut StayaSetup) {
     let (route, formation) = (RouteParams::default(), FormationParams::default());
-    setup.route = StayaRoute {
-        time_gain_16ths: route.a0.sixteenths(),
-        others_gain_16ths: route.a1.sixteenths(),
-        visits_gain_16ths: route.a2.sixteenths(),
-        way_gain_16ths: route.a3.sixteenths(),
-        halved_per_16ths: 0,
-        radius_cells: route.radius,
-        exit_on_ray: 0,
-        diagonals_count_as_one: 0,
-        cuts_corners: 0,
-        keeps_plan: 0,
-    };
+    setup.route.time_gain_16ths = route.a0.sixteenths();
+    setup.route.others_gain_16ths = route.a1.sixteenths();
+    setup.route.visits_gain_16ths = route.a2.sixteenths();
+    setup.route.way_gain_16ths = route.a3.sixteenths();
+    setup.route.radius_cells = route.radius;
     setup.formation.gain_16ths = formation.gain.sixteenths();
-    setup.formation.halt_lag_units = formation.halt_lag;
-    setup.formation.resume_lag_units = formation.resume_lag;
-    setup.formation.patience = formation.patience;
-    setup.formation.eps_cells = formation.eps;
-    setup.formation.lead_cells = formation.lead;
-    setup.formation.footprint_16ths = formation.footprint;
+    (setup.formation.halt_lag_units, setup.formation.resume_lag_units) = (formation.halt_lag, formation.resume_lag);
+    (setup.formation.patience, setup.formation.eps_cells) = (formation.patience, formation.eps);
+    (setup.formation.lead_cells, setup.formation.footprint_16ths) = (formation.lead, formation.footprint);
 }
 
 fn route_params(route: &StayaRoute) -> Checked<RouteParams> {
-    if route.radius_cells > STAYA_MAX_RADIUS {
-        return Err(StayaStatus::Search);
+    match route.radius_cells {
+        0 => Err(StayaStatus::Number),
+        1..=STAYA_MAX_RADIUS => Ok(RouteParams {
+            radius: route.radius_cells,
+            exit: if route.exit_on_ray == 0 { ExitRule::Best } else { ExitRule::Ray },
+            norm: if route.diagonals_count_as_one == 0 { Norm::Euclidean } else { Norm::Chebyshev },
+            corner_cutting: route.cuts_corners != 0,
+            a0: Gain::from_sixteenths(route.time_gain_16ths),
+            a1: Gain::from_sixteenths(route.others_gain_16ths),
+            a2: Gain::from_sixteenths(route.visits_gain_16ths),
+            a3: Gain::from_sixteenths(route.way_gain_16ths),
+        }),
+        _ => Err(StayaStatus::Search),
     }
-    if route.radius_cells == 0 {
-        return Err(StayaStatus::Number);
-    }
-    Ok(RouteParams {
-        radius: route.radius_cells,
-        exit: if route.exit_on_ray == 0 { ExitRule::Best } else { ExitRule::Ray },
-        norm: if route.diagonals_count_as_one == 0 { Norm::Euclidean } else { Norm::Chebyshev },
-        corner_cutting: route.cuts_corners != 0,
-        a0: Gain::from_sixteenths(route.time_gain_16ths),
-        a1: Gain::from_sixteenths(route.others_gain_16ths),
-        a2: Gain::from_sixteenths(route.visits_gain_16ths),
-        a3: Gain::from_sixteenths(route.way_gain_16ths),
-    })
 }
 
 fn formation_params(formation: &StayaFormation) -> Checked<FormationParams> {
@@ -78,7 +66,7 @@ fn formation_params(formation: &StayaFormation) -> Checked<FormationParams> {
 }
 
 pub(super) fn law(setup: &StayaSetup, law: StayaLaw) -> Checked<Law> {
-    let params = route_params(&setup.route)?;
+    let (params, speed) = (route_params(&setup.route)?, cast(setup.speed_mps));
     let sharpness = match setup.route.halved_per_16ths {
         0 => Sharpness::Greedy,
         gain => Sharpness::HalvedPer(Gain::from_sixteenths(gain)),
@@ -86,10 +74,9 @@ pub(super) fn law(setup: &StayaSetup, law: StayaLaw) -> Checked<Law> {
     let replan = if setup.route.keeps_plan == 0 { Replan::EachCell } else { Replan::UntilChanged };
     let route = || Route::new(params).replan(replan).sharpness(sharpness);
     let formation = || {
-        let (params, template) = (formation_params(&setup.formation)?, setup.formation.template()?);
-        Ok(Formation::new(route_params(&setup.route)?, params, template).sharpness(sharpness))
+        let (keeping, template) = (formation_params(&setup.formation)?, setup.formation.template()?);
+        Ok(Formation::new(params, keeping, template).sharpness(sharpness))
     };
-    let speed = cast(setup.speed_mps);
     Ok(match law {
         StayaLaw::Route => Law::Route(CellFollower::new(route(), speed)),
         StayaLaw::Formation => Law::Formation(FormationInPlane::new(formation()?, speed)),

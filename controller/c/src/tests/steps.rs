@@ -1,19 +1,23 @@
-//! Steps through C equal the steps of the same agent in Rust; `cargo xtask c` compares those of the
-//! plane.
+//! Steps through C equal the steps of the same agent in Rust; `cargo xtask c` compares whole swarms
+//! of the plane.
 
-use super::{Memory, nothing, setup, waypoint};
+use super::{Memory, nothing, setup, shows, waypoint};
 use crate::agent::*;
 use crate::alone::*;
-use crate::choices::{StayaCommand, StayaMode};
-use crate::setup::StayaOrca;
+use crate::choices::{StayaCommand, StayaDir, StayaLaw, StayaMode, StayaSafety};
+use crate::law::Law;
+use crate::setup::{StayaOrca, StayaSetup};
 use crate::status::StayaStatus;
+use crate::{NEIGHBORS, Number};
 use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut};
+use staya_controller::agent;
 
 #[test]
 fn two_robots_hear_each_other() {
     let (mut first, mut second) = (Memory::new(), Memory::new());
-    let agents = [first.agent(&setup(1)).unwrap(), second.agent(&setup(2)).unwrap()];
+    let other = StayaSetup { flock: 3, ..setup(2) };
+    let agents = [first.agent(&setup(1)).unwrap(), second.agent(&other).unwrap()];
     let (mut inputs, mut out) = nothing();
     let mut air = Vec::new();
     for tick in 0..3 {
@@ -34,6 +38,71 @@ fn two_robots_hear_each_other() {
     // SAFETY: all pointers are valid.
     let status = unsafe { staya_neighbors(agents[0], known.as_mut_ptr(), known.len(), &mut count) };
     assert_eq!((status, count, known[0].id, known[0].position_mm), (StayaStatus::Ok, 1, 2, [1000, 0, 0]));
+    let StayaNeighbor { flock, leader, cell, heading, .. } = known[0];
+    assert_eq!((flock, leader, cell.x, heading), (3, 0, 0, StayaDir::Stay as u8), "not across land in cells");
+}
+
+/// Steps two agents of C and two of Rust; all receive the same frames.
+fn twins_agree<L>(setup: impl Fn(u32) -> StayaSetup, law: impl Fn(Law) -> L)
+where
+    L: for<'a> agent::Law<Number, Surroundings<'a> = agent::InPlane<'a, Number>, Workspace = ()> + serde::Serialize,
+    agent::OrderOf<L, Number>: TryFrom<agent::AnyOrder>,
+{
+    use staya_controller::geom::Position;
+    use staya_controller::scalar::cast;
+    use staya_controller::time::Instant;
+    use staya_controller::wire::Postcard;
+
+    let (mut twins, mut memories) = (Vec::new(), Vec::new());
+    for id in [1, 2] {
+        let setup = setup(id);
+        let mut memory = Memory::new();
+        let one = memory.agent(&setup).unwrap();
+        let law = law(setup.law().unwrap());
+        let config = setup.config().unwrap();
+        let mut twin = agent::Agent::<Number, L, NEIGHBORS, _>::new(&config, law, agent::Unguarded, Postcard);
+        // SAFETY: there is an agent.
+        let status = unsafe { staya_assign_waypoint(one, 0, &waypoint(5000)) };
+        let to = agent::Waypoint::fixed(Position::from_mm([5000, 0, 0]));
+        let assigned = twin.assign(&agent::Task::Waypoints([(0, to)].into_iter().collect()));
+        assert_eq!(status == StayaStatus::Ok, assigned.is_ok());
+        twins.push(twin);
+        memories.push(memory);
+    }
+    let mut said = vec![Vec::new(); 2];
+    for step in 0..20u32 {
+        let heard = said.concat();
+        for (place, (memory, twin)) in (0..).zip(memories.iter_mut().zip(&mut twins)) {
+            let one: *mut StayaAgent = (&raw mut **memory).cast();
+            let (mut inputs, mut out) = nothing();
+            (inputs.now_us, inputs.max_speed_mps) = (step * 50_000, 0.5);
+            inputs.position_mm = [place * 300 + step as i32 * 20, 0, 0];
+            (inputs.inbox, inputs.inbox_bytes) = (heard.as_ptr(), heard.len());
+            // SAFETY: all pointers are valid.
+            assert_eq!(unsafe { staya_step(one, &inputs, &mut out) }, StayaStatus::Ok);
+            let position = Position::from_mm(inputs.position_mm);
+            let own_inputs = agent::Inputs {
+                state: agent::KinematicState { position, ..agent::KinematicState::default() },
+                surroundings: agent::InPlane { max_speed_mps: cast(0.5), obstacles: &[] },
+                inbox: &heard,
+            };
+            let own = twin.step(&own_inputs, Instant::from_micros(step * 50_000), &mut ());
+            shows(&out, &own, twin.mode(), &format!("step {step} of {place}"));
+            said[place as usize] = own.outbox.to_vec();
+        }
+    }
+    assert!(twins.iter().all(|twin| twin.neighbors().len() == 1 && twin.neighbors()[0].payload.is_some()));
+}
+
+#[test]
+fn agents_in_the_plane_equal_those_of_rust() {
+    let with = |law: StayaLaw| move |id| StayaSetup { law: law as u8, safety: StayaSafety::None as u8, ..setup(id) };
+    twins_agree(with(StayaLaw::Waypoint), |law| if let Law::Waypoint(law) = law { law } else { panic!("{law:?}") });
+    #[cfg(feature = "flocks")]
+    {
+        twins_agree(with(StayaLaw::Lattice), |law| if let Law::Lattice(law) = law { law } else { panic!("{law:?}") });
+        twins_agree(with(StayaLaw::Boids), |law| if let Law::Boids(law) = law { law } else { panic!("{law:?}") });
+    }
 }
 
 #[test]
@@ -86,7 +155,6 @@ fn orca_without_an_agent_keeps_clear_in_any_order() {
 #[cfg(all(feature = "grid", not(feature = "fixed"), not(feature = "small")))]
 #[test]
 fn a_formation_on_the_grid_equals_that_of_rust() {
-    use crate::choices::{StayaLaw, StayaSafety};
     use crate::setup::{StayaCell, StayaEdge, staya_formation_from_graph};
     use staya_controller::agent::*;
     use staya_controller::formation::FormationParams;
@@ -125,7 +193,7 @@ fn a_formation_on_the_grid_equals_that_of_rust() {
         let goal = Cell::new(30 + place.0, 28 + place.1);
         // SAFETY: there is an agent.
         assert_eq!(unsafe { staya_assign_cell((&raw mut **memory).cast(), goal.x, goal.y) }, StayaStatus::Ok);
-        twin.order(GridOrder::Goal(goal));
+        twin.order(&GridOrder::Goal(goal));
     }
     for step in 0..40u32 {
         let heard: Vec<u8> = said.concat();
@@ -139,12 +207,8 @@ fn a_formation_on_the_grid_equals_that_of_rust() {
             (inputs.window_width, inputs.window_height, inputs.window) = (11, 11, land.as_ptr());
             (inputs.inbox, inputs.inbox_bytes) = (heard.as_ptr(), heard.len());
             let agent: *mut StayaAgent = (&raw mut *memories[own]).cast();
-            let mut digest = 0;
             // SAFETY: all pointers are valid.
-            unsafe {
-                assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Ok);
-                assert_eq!(staya_digest(agent, &mut digest), StayaStatus::Ok);
-            }
+            assert_eq!(unsafe { staya_step(agent, &inputs, &mut out) }, StayaStatus::Ok);
             let position = staya_controller::geom::Position::from_mm(inputs.position_mm);
             let own_inputs = Inputs {
                 state: KinematicState { position, ..KinematicState::default() },
@@ -155,8 +219,7 @@ fn a_formation_on_the_grid_equals_that_of_rust() {
                 inbox: &heard,
             };
             let twin = twins[own].step(&own_inputs, Instant::from_micros(step * 50_000), &mut workspace);
-            assert_eq!(out.outbox[..out.outbox_bytes.into()], twin.outbox[..], "step {step} of {own}");
-            assert_eq!(digest, twins[own].digest(), "step {step} of {own}");
+            shows(&out, &twin, twins[own].mode(), &format!("step {step} of {own}"));
             if let Command::Move(moves) = &twin.command {
                 assert_eq!((out.moves[0], out.move_count), (moves[0].index() as u8, moves.len() as u8));
                 cells[own] = cell + moves[0].offset();
@@ -165,4 +228,15 @@ fn a_formation_on_the_grid_equals_that_of_rust() {
         }
     }
     assert_ne!(cells, places.map(|(x, y)| Cell::new(x + 20, y + 20)), "no robot moved");
+    let (mut known, mut count) = ([StayaNeighbor::default(); 2], 0);
+    // SAFETY: all pointers are valid.
+    let status = unsafe { staya_neighbors((&raw mut *memories[1]).cast(), known.as_mut_ptr(), 2, &mut count) };
+    assert_eq!((status, count), (StayaStatus::Ok, 2));
+    for (shown, twin) in known.iter().zip(twins[1].neighbors()) {
+        let GridPayload { cell, target, heading, slot, leader, .. } = twin.payload.unwrap();
+        let (shown_cell, shown_target) = (Cell::from(shown.cell), Cell::from(shown.target));
+        assert_eq!((shown_cell, shown_target), (cell, target), "{shown:?}");
+        assert_eq!((shown.heading, shown.slot, shown.leader), (heading.index() as u8, slot, leader.0));
+    }
+    assert_eq!((known[0].id, known[1].id, known[1].slot), (1, 3, 2));
 }

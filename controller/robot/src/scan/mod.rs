@@ -6,7 +6,7 @@
 //! packets are more precise.
 //!
 //! ```rust
-//! use staya_controller::agent::KinematicState;
+//! use staya_controller::agent::{GridPayload, KinematicState};
 //! use staya_controller::geom::{Position, Vec2};
 //! use staya_controller::grid::GridFrame;
 //! use staya_controller::neighbor::Neighbor;
@@ -19,7 +19,7 @@
 //!     ranges_m: &[f32],   // one turn, counter-clockwise, the first one straight ahead
 //!     state: &KinematicState<f32>,
 //!     heading_rad: f32,
-//!     others: &[Neighbor<f32>], // agent.neighbors()
+//!     others: &[Neighbor<f32, GridPayload>], // agent.neighbors()
 //!     now: Instant,
 //! ) -> heapless::Vec<Obstacle<f32>, 16> {
 //!     let frame = GridFrame { origin_m: Vec2::new(0.0, 0.0), cell_m: 0.4 };

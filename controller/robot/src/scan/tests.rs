@@ -2,7 +2,9 @@ use super::*;
 use proptest::prelude::*;
 use staya_controller::grid::{BLOCKED, Cell, GridFrame};
 use staya_controller::obstacle::Obstacle;
+use staya_controller::robot::RobotId;
 use staya_controller::scalar::Q16;
+use staya_controller::wire::{Beacon, ProtocolId};
 use std::vec::Vec;
 
 const FRAME: GridFrame<f64> = GridFrame { origin_m: Vec2::new(-10.0, 5.0), cell_m: 0.5 };
@@ -256,13 +258,9 @@ fn a_wall_includes_its_farthest_point() {
 
 #[test]
 fn neighbours_are_extrapolated_with_the_radius_they_sent() {
-    let beacon = staya_controller::wire::Beacon {
-        position_mm: [3_000, 1_000, 0],
-        velocity_mmps: [500, 0, 0],
-        radius_mm: 200,
-        ..Default::default()
-    };
-    let neighbor = Neighbor::<f32>::from_beacon(staya_controller::robot::RobotId(2), &beacon, NOW);
+    let beacon =
+        Beacon { position_mm: [3_000, 1_000, 0], velocity_mmps: [500, 0, 0], radius_mm: 200, ..Beacon::default() };
+    let neighbor = Neighbor::<f32>::from_beacon(RobotId(2), &beacon, ProtocolId::NONE, NOW);
     let own = Position::from_mm([1_000, 1_000, 0]);
     let seen = |ms: i32, x: f32| {
         let now = NOW + Duration::from_millis(ms);

@@ -1,11 +1,12 @@
 use super::*;
-use crate::wire::arbitrary::{cell, robot};
+use crate::agent::{Grid, Protocol};
+use crate::wire::arbitrary::robot;
+use crate::wire::{Content, MAX_ORDER};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
 const F: usize = 9;
-const TO: RobotId = RobotId(7);
 
 type Assembler = TemplateAssembler<F>;
 
@@ -16,15 +17,12 @@ fn template(mark: u8, len: usize) -> Template<F> {
     Template { slot: mark, offset: Cell::new(-1, mark.into()), entries: (0..len).map(entry).collect() }
 }
 
-fn parts(version: u8, template: &Template<F>) -> StdVec<TemplateAssignment> {
+fn parts(version: u8, template: &Template<F>) -> StdVec<TemplatePart> {
     let Template { slot, offset, entries } = template;
-    TemplateAssignment::split(TO, version, *slot, *offset, entries).unwrap().collect()
+    TemplatePart::split(version, *slot, *offset, entries).unwrap().collect()
 }
 
-fn put_all<'a>(
-    assembler: &mut Assembler,
-    parts: impl IntoIterator<Item = &'a TemplateAssignment>,
-) -> StdVec<Template<F>> {
+fn put_all<'a>(assembler: &mut Assembler, parts: impl IntoIterator<Item = &'a TemplatePart>) -> StdVec<Template<F>> {
     parts.into_iter().filter_map(|part| assembler.put(part).unwrap()).collect()
 }
 
@@ -34,7 +32,7 @@ fn templates_of_every_size_survive_splitting() {
         let sent = template(3, len);
         let parts = parts(1, &sent);
         assert_eq!(parts.len(), len.div_ceil(TEMPLATE_PART).max(1));
-        assert!(parts.iter().all(|part| part.to == TO && part.version == 1));
+        assert!(parts.iter().all(|part| part.version == 1));
         let mut assembler = Assembler::new();
         let forth = put_all(&mut assembler, parts.iter());
         let mut assembler = Assembler::new();
@@ -46,8 +44,7 @@ fn templates_of_every_size_survive_splitting() {
 #[test]
 fn split_refuses_templates_that_no_assembler_accepts() {
     let entry = TemplateEntry { hops: 1, ..NO_ENTRY };
-    let split =
-        |entries: &[TemplateEntry]| TemplateAssignment::split(TO, 0, 0, Cell::default(), entries).map(Iterator::count);
+    let split = |entries: &[TemplateEntry]| TemplatePart::split(0, 0, Cell::default(), entries).map(Iterator::count);
     assert_eq!(split(&[entry; MAX_TEMPLATE]), Ok(MAX_PARTS));
     assert_eq!(split(&[entry; MAX_TEMPLATE + 1]), Err(PartError::TooLarge));
     assert_eq!(split(&[entry, NO_ENTRY]), Err(PartError::NoHops));
@@ -58,7 +55,7 @@ fn largest_template_is_reassembled() {
     let entries: StdVec<_> =
         (0..MAX_TEMPLATE).map(|k| TemplateEntry { offset: Cell::new(k as i16, 0), id: RobotId(1), hops: 1 }).collect();
     let mut assembler = TemplateAssembler::<MAX_TEMPLATE>::new();
-    let split = TemplateAssignment::split(TO, 0, 0, Cell::default(), &entries).unwrap();
+    let split = TemplatePart::split(0, 0, Cell::default(), &entries).unwrap();
     let whole: StdVec<_> = split.filter_map(|part| assembler.put(&part).unwrap()).collect();
     assert_eq!(whole.len(), 1);
     assert_eq!(whole[0].entries[..], entries[..]);
@@ -91,7 +88,7 @@ fn invalid_parts_return_their_error_and_change_nothing() {
     assembler.put(&parts[0]).unwrap();
     assembler.put(&parts[2]).unwrap();
     let before = assembler.clone();
-    let mut refuses = |change: &dyn Fn(&mut TemplateAssignment), of: usize, error| {
+    let mut refuses = |change: &dyn Fn(&mut TemplatePart), of: usize, error| {
         let mut part = parts[of].clone();
         change(&mut part);
         assert_eq!(assembler.put(&part), Err(error), "{part:?}");
@@ -168,21 +165,53 @@ fn newer_version_replaces_unfinished_and_finished_ones() {
     }
 }
 
+fn order(part: &TemplatePart, is_restarted: bool) -> GridOrder {
+    GridOrder::Template { part: part.clone(), is_restarted }
+}
+
 #[test]
-fn any_version_is_accepted_after_forget() {
+fn any_version_is_accepted_from_a_restarted_sender() {
     let sent = template(3, 4);
     let mut assembler = Assembler::new();
     assert_eq!(put_all(&mut assembler, &parts(9, &sent)).len(), 1);
-    assert_eq!(put_all(&mut assembler, &parts(8, &sent)).len(), 0);
-    assembler.forget();
-    assert_eq!(assembler, Assembler::default());
-    assert_eq!(put_all(&mut assembler, &parts(8, &sent)).len(), 1);
+    let older = parts(8, &sent);
+    for part in &older {
+        assert_eq!(assembler.order(&order(part, false)), Ok(None));
+    }
+    assert_eq!(assembler.order(&order(&older[0], true)), Ok(None));
+    assert_eq!(assembler.order(&order(&older[1], false)), Ok(Some(sent)));
+}
+
+#[test]
+fn orders_that_are_not_parts_and_bad_parts_are_of_no_use() {
+    let mut assembler = Assembler::new();
+    assert_eq!(assembler.order(&GridOrder::Goal(Cell::default())), Err(OfAnotherLaw));
+    let mut bad = parts(1, &template(3, 4))[0].clone();
+    bad.parts = 0;
+    assert_eq!(assembler.order(&order(&bad, false)), Err(OfAnotherLaw));
+    assert_eq!(assembler, Assembler::new());
+}
+
+/// A third entry fits only if no robot has a large number.
+#[test]
+fn a_full_part_with_any_robots_fits_an_order() {
+    let far = Cell::new(i16::MIN, i16::MAX);
+    let entry = TemplateEntry { offset: far, id: RobotId(u32::MAX), hops: u8::MAX };
+    let part = TemplatePart::split(255, 255, far, &[entry; TEMPLATE_PART]).unwrap().next().unwrap();
+    let (_, bytes) = order(&part, true).encode::<MAX_ORDER>(Grid::ID).unwrap();
+    assert_eq!(bytes.len(), 30);
+    assert_eq!(GridOrder::decode(Grid::ID, Grid::ID, &bytes), Some(order(&part, false)));
+    assert!(bytes.len() + 4 + 5 + 1 > MAX_ORDER);
 }
 
 #[test]
 fn assembler_has_its_documented_size() {
     assert_eq!(size_of::<TemplateEntry>(), 12);
     assert_eq!(size_of::<TemplateAssembler<24>>(), 12 * 24 + 24);
+}
+
+fn cell() -> impl Strategy<Value = Cell> {
+    any::<(i16, i16)>().prop_map(|(x, y)| Cell::new(x, y))
 }
 
 fn any_template() -> impl Strategy<Value = Template<F>> {
@@ -254,8 +283,7 @@ proptest! {
                 hops,
                 ..NO_ENTRY
             };
-            let part = TemplateAssignment {
-                to: TO,
+            let part = TemplatePart {
                 version,
                 part,
                 parts,
@@ -268,7 +296,7 @@ proptest! {
             let Ok(Some(whole)) = result else { continue };
             prop_assert!(whole.entries.iter().all(|e| e.id == RobotId(ahead.into())));
             for (place, entry) in whole.entries.iter().enumerate() {
-                let came = |part: &TemplateAssignment| {
+                let came = |part: &TemplatePart| {
                     part.version == version
                         && part.slot == whole.slot
                         && usize::from(part.part) == place / TEMPLATE_PART

@@ -276,8 +276,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.cells.payload(here, heading, radio)
     }
 
-    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) {
-        self.cells.receive(from, message, radio);
+    fn receive(&mut self, from: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) -> bool {
+        self.cells.receive(from, message, radio)
     }
 
     fn order(&mut self, order: &GridOrder) -> bool {

@@ -3,9 +3,10 @@
 use super::*;
 use crate::geom::Vec2;
 use crate::land::{LandPatch, PATCH_TILES};
-use crate::wire::RequestKind::Redirect;
+use crate::neighbor::Neighbor;
 
 const STEP: Duration = Duration::from_millis(100);
+const VALID: Duration = Duration::from_millis(1200);
 
 /// Moves north-east and counts the calls.
 #[derive(Default)]
@@ -22,22 +23,25 @@ impl Law<f32> for Counting {
 
     fn decide(
         &mut self,
-        _: &View<'_, f32>,
+        _: &View<'_, f32, Grid>,
         _: &OnGrid<'_>,
         mut tools: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
         self.decisions += 1;
-        tools.radio.send(RobotId(9), &GridMessage::Request(Redirect));
+        tools.radio.send(RobotId(9), &GridMessage::Redirect, tools.radio.valid);
         let action = Action::Moves([Dir::NorthEast, Dir::South].into_iter().collect());
         Ok(Decision { action, status: Status::default() })
     }
 
-    fn receive(&mut self, _: RobotId, message: GridMessage) -> bool {
-        self.redirections += u32::from(message == GridMessage::Request(Redirect));
+    fn receive(&mut self, _: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) -> bool {
+        if *message == GridMessage::Redirect {
+            self.redirections += 1;
+            radio.decide_at_once();
+        }
         true
     }
 
-    fn order(&mut self, order: GridOrder) -> bool {
+    fn order(&mut self, order: &GridOrder) -> bool {
         self.orders += 1;
         matches!(order, GridOrder::Goal(_))
     }
@@ -47,14 +51,18 @@ impl Law<f32> for Counting {
     }
 
     fn report(&self) -> Report {
-        Report { goal: Some(Cell::new(9, 5)), target: Some(Cell::new(9, 5)), leader: RobotId(4), slot: 3 }
+        let there = Some(Cell::new(9, 5));
+        Report { goal: there, target: there, leader: RobotId(4), slot: 3, stopped_until: Some(tick(3)) }
     }
 }
 
-type Told = (View<'static, f32>, InCells<'static, f32>);
+type Told = (View<'static, f32, Grid>, InCells<'static, f32>);
+
+/// No robot is known.
+const NO_ROBOT: &&[Neighbor<f32, GridPayload>] = &(&[] as &[_]);
 
 fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
-    let input = View {
+    let scene = Scene {
         id: RobotId(1),
         now: Instant::from_micros(0) + STEP.saturating_mul(n),
         tick: STEP,
@@ -70,17 +78,16 @@ fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
             step_s: 0.1,
         },
         nearby: &[],
-        neighbors: &[],
         ages: config(1).ages,
-        is_stopped: false,
         sent_to: None,
+        cells: None,
     };
     let here = InCells {
         grid: OnGrid { cell: CellState { cell, busy: Duration::ZERO }, window: None },
         plane: InPlane { max_speed_mps, obstacles: &[] },
         in_cell: InCell { offset_m: Vec2::new(offset_m[0], offset_m[1]), cell_m: 2.0 },
     };
-    (input, here)
+    (View { scene, known: NO_ROBOT }, here)
 }
 
 fn counting() -> CellFollower<f32, Counting> {
@@ -89,22 +96,22 @@ fn counting() -> CellFollower<f32, Counting> {
 
 fn decide<G>(law: &mut G, (input, here): &Told) -> Result<Decision<f32>, BadInput>
 where
-    G: for<'a> Law<f32, Surroundings<'a> = InCells<'a, f32>, Workspace = (), Protocol: Protocol<Payload = ()>>,
+    G: for<'a> Law<f32, Surroundings<'a> = InCells<'a, f32>, Workspace = (), Protocol = Grid>,
 {
-    with_requests(law, (input, here)).0
+    with_messages(law, (input, here)).0
 }
 
-fn with_requests<G>(
+fn with_messages<G>(
     law: &mut G,
-    (input, here): (&View<'_, f32>, &InCells<'_, f32>),
+    (input, here): (&View<'_, f32, Grid>, &InCells<'_, f32>),
 ) -> (Result<Decision<f32>, BadInput>, usize)
 where
-    G: for<'a> Law<f32, Surroundings<'a> = InCells<'a, f32>, Workspace = (), Protocol: Protocol<Payload = ()>>,
+    G: for<'a> Law<f32, Surroundings<'a> = InCells<'a, f32>, Workspace = (), Protocol = Grid>,
 {
     let mut outgoing = Outgoing::default();
-    let radio = Radio::new(input.now, &mut outgoing);
+    let radio = Radio::new(input.now, VALID, &mut outgoing);
     let decision = law.decide(input, here, Tools { rng: &mut Rng::new(1), radio, workspace: &mut () });
-    (decision, outgoing.requests.len())
+    (decision, outgoing.messages.len())
 }
 
 /// Also returns the number of decisions of the law inside.
@@ -141,11 +148,11 @@ fn on_rough_terrain_the_law_decides_less_often() {
 }
 
 #[test]
-fn requests_are_sent_once_per_decision() {
+fn messages_are_sent_once_per_decision() {
     let mut guidance = counting();
     let mut asks = |n| {
         let (view, here) = told(Cell::new(5, 5), [0.0; 2], 1.0, n);
-        with_requests(&mut guidance, (&view, &here)).1
+        with_messages(&mut guidance, (&view, &here)).1
     };
     assert_eq!([0, 1, 19, 20].map(&mut asks), [1, 0, 0, 1]);
 }
@@ -168,7 +175,7 @@ fn the_law_does_not_decide_again_while_the_robot_advances_in_its_cell() {
     let mut guidance = counting();
     let mut count = |velocity: [f32; 2], n| {
         let mut told = told(Cell::new(5, 5), [0.0; 2], 1.0, n);
-        told.0.body.velocity_mps = Vec3::new(velocity[0], velocity[1], 0.0);
+        told.0.scene.body.velocity_mps = Vec3::new(velocity[0], velocity[1], 0.0);
         ask(&mut guidance, &told).1
     };
     // North-east at more and at less than half of 1 m/s, then in another direction.
@@ -202,7 +209,7 @@ impl Law<f32> for Stays {
 
     fn decide(
         &mut self,
-        _: &View<'_, f32>,
+        _: &View<'_, f32, Grid>,
         _: &OnGrid<'_>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
@@ -216,15 +223,20 @@ fn messages_orders_and_reports_are_forwarded() {
     let there = told(Cell::new(5, 5), [0.0; 2], 1.0, 0);
     assert_eq!(ask(&mut law, &there).1, 1);
     let patch = LandPatch::from_bytes(Cell::new(0, 0), [0; PATCH_TILES]);
-    assert!(law.receive(RobotId(2), GridMessage::Land(patch)));
+    let receive = |law: &mut CellFollower<f32, Counting>, message| {
+        let mut outgoing = Outgoing::default();
+        law.receive(RobotId(2), &message, &mut Radio::new(there.0.now, VALID, &mut outgoing));
+    };
+    receive(&mut law, GridMessage::Land(patch));
     assert_eq!(ask(&mut law, &there).1, 1, "a patch changes no decision");
-    assert!(law.receive(RobotId(2), GridMessage::Request(Redirect)));
-    assert_eq!(ask(&mut law, &there).1, 2, "at once");
-    assert!(law.order(GridOrder::Goal(Cell::new(1, 1))));
-    assert!(!law.order(GridOrder::FormationGoal(Cell::new(1, 1))));
+    receive(&mut law, GridMessage::Redirect);
+    assert_eq!([ask(&mut law, &there).1, ask(&mut law, &there).1], [2, 2], "at once, and once");
+    assert!(law.order(&GridOrder::Goal(Cell::new(1, 1))));
+    assert!(!law.order(&GridOrder::FormationGoal(Cell::new(1, 1))));
     assert_eq!((law.inside().redirections, law.inside().orders), (1, 2));
     assert_eq!([76, 77].map(|id| law.needs(RobotId(id))), [false, true]);
     let shown = law.report();
+    assert_eq!(shown.stopped_until, Some(tick(3)));
     // The target is that of the last decision.
     assert_eq!((shown.leader, shown.slot, shown.target), (RobotId(4), 3, Some(Cell::new(9, 5))));
 }
@@ -246,7 +258,7 @@ fn a_robot_in_the_plane_moves_to_its_goal_cell() {
     let law = CellFollower::new(law, 1.0);
     let mut agent = Agent::<f32, _, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
     let (mut ws, mut at_m) = (workspace(), [11.0_f32, 11.0]);
-    agent.order(GridOrder::Goal(Cell::new(12, 8)));
+    agent.order(&GridOrder::Goal(Cell::new(12, 8)));
     let mut cells = Vec::new();
     for n in 0..200 {
         let [x, y] = at_m.map(|x| (x / 2.0).floor());

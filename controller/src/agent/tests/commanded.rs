@@ -2,7 +2,7 @@
 
 use super::plane::{RADIUS_MM, Robot, STEP, body_at, in_plane, length, orca, place, step_number, waypoint};
 use super::*;
-use crate::geom::Position;
+use crate::geom::{Position, Vec2};
 use crate::parameters::{Parameter, Rejected};
 use crate::scalar::Q16;
 
@@ -21,8 +21,8 @@ fn east(millis: i32) -> Wish<f32> {
 fn without_a_command_behaviour_is_unchanged() {
     let mut plain = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
     let mut wrapped = robot([0.0; 2]);
-    plain.agent.order(WaypointOrder::first(place(2000, 500)));
-    wrapped.agent.order(WaypointOrder::first(place(2000, 500)));
+    plain.agent.order(&WaypointOrder::first(place(2000, 500)));
+    wrapped.agent.order(&WaypointOrder::first(place(2000, 500)));
     for n in 0..40 {
         let now = step_number(n);
         let other = bytes(2, 0, n as u16, &[body_at([1000, 250], [0, 0], Mode::Cruise)]);
@@ -67,7 +67,7 @@ fn an_excessive_velocity_is_limited_and_a_non_finite_one_refused() {
 fn a_robot_follows_the_operator_and_then_its_own_law() {
     fn check<S: Scalar>() {
         let mut robot = robot::<S>([0.0; 2]);
-        robot.agent.order(WaypointOrder::first(place(-1000, 0)));
+        robot.agent.order(&WaypointOrder::first(place(-1000, 0)));
         robot
             .agent
             .law_mut()
@@ -132,19 +132,27 @@ fn a_released_robot_is_passive_and_a_holding_robot_gives_way() {
 }
 
 #[test]
-fn a_stop_request_does_not_override_the_operator() {
-    let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.law_mut().command(east(5000)).unwrap();
-    let stop = Message::Request(Request {
-        to: RobotId(1),
-        origin: RobotId(2),
-        number: 1,
-        kind: RequestKind::Stop,
-        valid_ms: 5000,
-    });
-    let _ = robot.step(step_number(0), &bytes(2, 0, 0, &[stop]));
-    let _ = robot.step(step_number(1), &[]);
-    assert_eq!(robot.velocity_mps, [0.5, 0.0]);
+fn a_stop_does_not_override_the_operator() {
+    type Steered = Guided<f32, CellFollower<f32, RouteGuidance<CELLS, VISITS>>>;
+    let law: Steered = Guided::new(CellFollower::new(RouteGuidance::new(RouteParams::default()), 1.0), 1.0, 0.01);
+    let mut agent = Agent::<f32, _, NEIGHBORS>::new(&in_plane(1), law, Unguarded, Postcard);
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+    agent.law_mut().command(east(5000)).unwrap();
+    let mut workspace = workspace();
+    let mut step = |agent: &mut Agent<f32, Steered, NEIGHBORS>, n, inbox: &[u8]| {
+        let surroundings = InCells {
+            grid: inputs(&FLAT, Cell::new(5, 5), &[]).surroundings,
+            plane: InPlane { max_speed_mps: 1.0, obstacles: &[] },
+            in_cell: InCell { offset_m: Vec2::ZERO, cell_m: 1.0 },
+        };
+        let inputs = Inputs { state: KinematicState::default(), surroundings, inbox };
+        (agent.step(&inputs, step_number(n), &mut *workspace).command, agent.mode())
+    };
+    let commanded = (Command::Velocity(Vec3::new(0.5, 0.0, 0.0)), Mode::Cruise);
+    assert_eq!(step(&mut agent, 0, &bytes(2, 0, 0, &[stop(2, 1, 1)])), commanded);
+    assert_eq!(step(&mut agent, 1, &[]), commanded);
+    agent.law_mut().command(Wish::Own).unwrap();
+    assert_eq!(step(&mut agent, 2, &[]), (Command::Velocity(Vec3::ZERO), Mode::Hold), "its own law obeys");
 }
 
 #[test]
@@ -152,7 +160,7 @@ fn on_the_grid_a_cell_replaces_the_own_goal_and_velocities_are_refused() {
     type GridAgent = Agent<f32, Guided<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
     let guidance = Guided::new(RouteGuidance::new(RouteParams::default()), 0.0, 0.0);
     let mut agent = GridAgent::new(&config(1), guidance, Unguarded, Postcard);
-    agent.order(GridOrder::Goal(Cell::new(9, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(9, 5)));
     let mut workspace = workspace();
     let mut heading = |agent: &mut GridAgent, n: u32| {
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(n), &mut workspace);
@@ -178,7 +186,7 @@ fn on_the_grid_a_cell_replaces_the_own_goal_and_velocities_are_refused() {
 #[test]
 fn a_cell_is_refused_by_a_law_with_waypoints() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.order(WaypointOrder::first(place(1000, 0)));
+    robot.agent.order(&WaypointOrder::first(place(1000, 0)));
     let cell = Wish::Cell(Cell::new(3, 4));
     assert_eq!(robot.agent.law_mut().command(cell), Err(WrongTask));
     let _ = robot.step(step_number(0), &[]);
@@ -190,7 +198,7 @@ fn the_passive_mode_is_left_through_idle() {
     for has_place in [false, true] {
         let mut robot = robot::<f32>([0.0; 2]);
         if has_place {
-            robot.agent.order(WaypointOrder::first(place(1000, 0)));
+            robot.agent.order(&WaypointOrder::first(place(1000, 0)));
         }
         let mut modes = Vec::new();
         for (n, wish) in [Wish::Off, Wish::Own, Wish::Own].into_iter().enumerate() {
@@ -235,7 +243,7 @@ fn parameters_keep_their_values_and_reject_values_out_of_range() {
 #[test]
 fn a_new_speed_and_beacon_period_apply_from_the_next_step() {
     let mut robot = robot::<f32>([0.0; 2]);
-    robot.agent.order(WaypointOrder::first(place(9000, 0)));
+    robot.agent.order(&WaypointOrder::first(place(9000, 0)));
     let _ = robot.step(step_number(0), &[]);
     assert_eq!(robot.velocity_mps, [1.0, 0.0]);
     assert!(robot.agent.set_parameter("speed_mps", 0.25).is_ok());

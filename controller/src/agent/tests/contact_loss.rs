@@ -21,7 +21,7 @@ fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
         let angle = (f64::from(i) + f64::from(rng.below(20)) / 100.0) / f64::from(count) * core::f64::consts::TAU;
         let at_m = [2.0 * libm::cos(angle), 2.0 * libm::sin(angle)];
         let mut robot = Robot::new(&one_step_late(i + 1), waypoint(), safety(), at_m);
-        let _ = robot.agent.order(WaypointOrder::first(place(-(at_m[0] * 1e3) as i32, -(at_m[1] * 1e3) as i32)));
+        let _ = robot.agent.order(&WaypointOrder::first(place(-(at_m[0] * 1e3) as i32, -(at_m[1] * 1e3) as i32)));
         robot
     };
     (0..count).map(mover).collect()
@@ -106,7 +106,7 @@ fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
     fn check<S: Scalar>() {
         let mover = |id, at_m: [f64; 2], to_mm: [i32; 2]| {
             let mut robot: Mover<S> = Robot::new(&one_step_late(id), waypoint(), safety(), at_m);
-            let _ = robot.agent.order(WaypointOrder::first(place(to_mm[0], to_mm[1])));
+            let _ = robot.agent.order(&WaypointOrder::first(place(to_mm[0], to_mm[1])));
             robot
         };
         // The third robot keeps the first one in contact.
@@ -130,7 +130,7 @@ fn a_robot_listens_before_it_moves() {
     let contact_loss = ContactLossPolicy { listen: STEP.saturating_mul(3), ..DEFAULT };
     let config = AgentConfig { contact_loss, ..in_plane(1) };
     let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.order(WaypointOrder::first(place(90_000, 0)));
+    let _ = robot.agent.order(&WaypointOrder::first(place(90_000, 0)));
     for n in 0..6 {
         let wait = robot.step(step_number(n), &[]).wait;
         assert_eq!((length(robot.velocity_mps) > 0.0, wait), (n > 2, (n <= 2).then_some(Wait::Radio)), "step {n}");
@@ -198,7 +198,7 @@ fn a_robot_may_have_driven_on_for_a_beacon_period_and_the_lag() {
 fn left_alone(hears: bool, silence: ContactLossPolicy<f32>) -> (f64, Mode, bool) {
     let config = AgentConfig { contact_loss: silence, ..in_plane(1) };
     let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.order(WaypointOrder::first(place(90_000, 0)));
+    let _ = robot.agent.order(&WaypointOrder::first(place(90_000, 0)));
     let inbox = bytes(2, 0, 0, &[super::plane::body_at([-60_000, 0], [0, 0], Mode::Idle)]);
     let mut is_told = false;
     for n in 0..60 {
@@ -230,7 +230,7 @@ fn a_robot_continues_when_contact_is_restored() {
     let silence = ContactLossPolicy { stands_after: STEP.saturating_mul(40), ..DEFAULT };
     let mut robot =
         Robot::new(&AgentConfig { contact_loss: silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.order(WaypointOrder::first(place(90_000, 0)));
+    let _ = robot.agent.order(&WaypointOrder::first(place(90_000, 0)));
     for n in 0..60 {
         let far = super::plane::body_at([-60_000, 0], [0, 0], Mode::Idle);
         let inbox = bytes(2, 0, n as u16, &[far]);

@@ -5,13 +5,13 @@ use super::*;
 /// The first move of robot 2 in (5, 5), which heads north-east, `ticks` after it heard `others`.
 fn first_move(others: &[(u32, Beacon)], cells: &[u8], ticks: u16) -> Dir {
     let (mut route, mut formation) = (route_agent(2), formation_agent(2));
-    route.order(GridOrder::Goal(Cell::new(60, 60)));
-    formation.order(GridOrder::Goal(Cell::new(60, 60)));
+    route.order(&GridOrder::Goal(Cell::new(60, 60)));
+    formation.order(&GridOrder::Goal(Cell::new(60, 60)));
     let mut first = [Dir::Stay; 2];
     for n in 0..=ticks {
         // The formation of robots 1 to 3 takes the others for strangers.
         let inbox = [0, 3].map(|offset| match n {
-            0 => others.iter().flat_map(|&(id, it)| bytes(id + offset, 0, 0, &[Message::Beacon(it)])).collect(),
+            0 => others.iter().flat_map(|(id, it)| bytes(id + offset, 0, 0, &[Message::Beacon(it.clone())])).collect(),
             _ => Vec::new(),
         });
         let here = |inbox| inputs(cells, Cell::new(5, 5), inbox);
@@ -29,7 +29,7 @@ fn first_move(others: &[(u32, Beacon)], cells: &[u8], ticks: u16) -> Dir {
 }
 
 fn beacon(x: i16, y: i16, heading: Dir, busy_ms: u16) -> Beacon {
-    Beacon { heading, busy_ms, ..beacon_at(x, y) }
+    on_grid(GridPayload { heading, busy_ms, ..in_cell(x, y) })
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn a_diagonal_under_way_or_announced_is_not_crossed() {
             beacon(5, 6, Dir::NorthWest, 7000),
             beacon(6, 5, Dir::SouthEast, 1410),
         ] {
-            let first = first_move(&[(id, crossing)], &FLAT, 0);
+            let first = first_move(&[(id, crossing.clone())], &FLAT, 0);
             assert!(!matches!(first, Dir::NorthEast | Dir::Stay), "{first:?} across {crossing:?}");
         }
         for beside in [
@@ -54,7 +54,7 @@ fn a_diagonal_under_way_or_announced_is_not_crossed() {
             beacon(4, 5, Dir::NorthEast, 0),
             beacon(6, 5, Dir::Stay, 0),
         ] {
-            assert_eq!(first_move(&[(id, beside)], &FLAT, 0), Dir::NorthEast, "beside {beside:?}");
+            assert_eq!(first_move(&[(id, beside.clone())], &FLAT, 0), Dir::NorthEast, "beside {beside:?}");
         }
     }
 }
@@ -64,7 +64,7 @@ fn a_beacon_is_a_tick_old() {
     let ended = beacon(5, 6, Dir::NorthWest, 1000);
     assert_eq!(first_move(&[(1, ended)], &FLAT, 0), Dir::NorthEast, "it is free now");
     let longer = beacon(5, 6, Dir::NorthWest, 3500);
-    assert_ne!(first_move(&[(1, longer)], &FLAT, 2), Dir::NorthEast);
+    assert_ne!(first_move(&[(1, longer.clone())], &FLAT, 2), Dir::NorthEast);
     assert_eq!(first_move(&[(1, longer)], &FLAT, 3), Dir::NorthEast);
 }
 

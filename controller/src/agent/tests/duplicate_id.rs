@@ -8,7 +8,7 @@ type Walker = Robot<f32, WaypointGuidance<f32>, OrcaSafety<f32, 16>>;
 
 fn walker(boot: u8, at_m: [f64; 2], goal_mm: [i32; 2]) -> Walker {
     let mut robot = Robot::new(&AgentConfig { boot, ..one_step_late(7) }, waypoint(), orca(), at_m);
-    let _ = robot.agent.order(WaypointOrder::first(place(goal_mm[0], goal_mm[1])));
+    let _ = robot.agent.order(&WaypointOrder::first(place(goal_mm[0], goal_mm[1])));
     robot
 }
 
@@ -123,7 +123,7 @@ fn the_own_duplicate_stays_in_a_full_table_and_its_orders_are_ignored() {
     let mut robot = walker(0, [0.0; 2], [0, 0]);
     let crowd = |n: u16| (1..=6).chain(8..=12).flat_map(move |id| frame(id, 0, n, &standing(1000 + 500 * id as i32)));
     for n in 0..5 {
-        let goal = Message::Goal(GoalAssignment { to: RobotId::NONE, version: 9, target: Cell::new(1, 1) });
+        let goal = goal(0, 9, Cell::new(1, 1));
         let own = [frame(7, 0, 2 * n + 20, &standing(90_000)), frame(7, 0, 2 * n + 21, &goal)].concat();
         let inbox: Vec<u8> = own.into_iter().chain(crowd(n)).collect();
         let out = robot.step(step_number(n.into()), &inbox);

@@ -1,12 +1,11 @@
-//! Tests of requests along the chain, lost leaders, and orders during a run.
+//! Tests of stops along the chain, lost leaders, and orders during a run.
 
 use super::*;
 use crate::formation::Recovery;
 use crate::template::TemplateEntry;
-use crate::wire::Ack;
 
-fn goal(version: u8, x: i16) -> Message {
-    Message::Goal(GoalAssignment { to: RobotId::NONE, version, target: Cell::new(x, 5) })
+fn goal_at(number: u8, x: i16) -> Message {
+    goal(0, number, Cell::new(x, 5))
 }
 
 /// A template for a robot `behind` cells west of robot 1, with `others` more neighbours.
@@ -15,25 +14,17 @@ fn parts(to: u32, version: u8, behind: i16, others: u32) -> Vec<Message> {
     let entries: Vec<TemplateEntry> =
         neighbors.map(|(id, x)| TemplateEntry { offset: Cell::new(x, 0), id: RobotId(id), hops: 1 }).collect();
     let offset = Cell::new(-behind, 0);
-    TemplateAssignment::split(RobotId(to), version, 1, offset, &entries).unwrap().map(Message::Template).collect()
-}
-
-fn requests(out: &Outputs<f32>) -> Vec<Request> {
-    let requests = sent(out).into_iter().filter_map(|frame| match frame.message {
-        Message::Request(request) => Some(request),
-        _ => None,
-    });
-    requests.collect()
+    template_orders(to, TemplatePart::split(version, 1, offset, &entries).unwrap())
 }
 
 #[test]
 fn a_leader_does_not_wait_for_a_failed_or_arrived_robot() {
     for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise), (Mode::Arrived, Mode::Cruise)] {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
-        agent.order(GridOrder::Goal(Cell::new(60, 5)));
-        let behind = Beacon { mode, leader: RobotId(1), ..beacon_at(-5, 5) };
+        agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+        let behind = Beacon { mode, ..behind(1, -5, 5) };
         for n in 0..2 {
-            let inbox = bytes(2, 0, n, &[Message::Beacon(behind)]);
+            let inbox = bytes(2, 0, n, &[Message::Beacon(behind.clone())]);
             let inputs = inputs(&FLAT, Cell::new(5, 5), &inbox);
             let _ = agent.step(&inputs, tick(n.into()), &mut ws);
         }
@@ -44,12 +35,12 @@ fn a_leader_does_not_wait_for_a_failed_or_arrived_robot() {
 #[test]
 fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
-    let behind = Beacon { leader: RobotId(1), ..beacon_at(-5, 5) };
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+    let behind = behind(1, -5, 5);
     let patience = u32::from(FormationParams::default().patience);
     let mut held = vec![];
     for n in 0..patience + 20 {
-        let inbox = bytes(2, 0, n as u16, &[Message::Beacon(behind)]);
+        let inbox = bytes(2, 0, n as u16, &[Message::Beacon(behind.clone())]);
         let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n), &mut ws);
         if agent.mode() == Mode::Hold {
             held.push(n);
@@ -61,10 +52,10 @@ fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
 #[test]
 fn a_leader_does_not_wait_for_a_robot_that_does_not_follow_it() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
-    let alone = Beacon { leader: RobotId::NONE, ..beacon_at(-5, 5) };
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+    let alone = beacon_at(-5, 5);
     for n in 0..5 {
-        let inbox = bytes(2, 0, n, &[Message::Beacon(alone)]);
+        let inbox = bytes(2, 0, n, &[Message::Beacon(alone.clone())]);
         let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
         assert_eq!(agent.mode(), Mode::Cruise);
     }
@@ -90,12 +81,12 @@ fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
         }
         agent.target()
     };
-    let (goal, parts) = ([goal(1, 60)], parts(2, 1, 6, 0));
+    let (goal, parts) = ([goal_at(1, 60)], parts(2, 1, 6, 0));
     assert_eq!(target_after(&[&goal]), Some(Cell::new(57, 5)));
     assert_eq!(target_after(&[&goal, &parts]), Some(Cell::new(54, 5)));
     assert_eq!(target_after(&[&parts, &goal]), Some(Cell::new(54, 5)));
     let (mut agent, mut ws) = (formation_agent(2), workspace());
-    agent.order(GridOrder::Goal(Cell::new(40, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(40, 5)));
     let inbox = bytes(99, 0, 0, &parts);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
     assert_eq!(agent.target(), Some(Cell::new(40, 5)));
@@ -110,8 +101,8 @@ fn one_goal_for_all_robots_turns_the_whole_formation() {
     for n in 0..120_u32 {
         let mut inbox = core::mem::take(&mut air);
         match n {
-            0 => inbox.extend(bytes(99, 0, 0, &[goal(1, 40)])),
-            12 => inbox.extend(bytes(99, 0, 1, &[goal(2, -30)])),
+            0 => inbox.extend(bytes(99, 0, 0, &[goal_at(1, 40)])),
+            12 => inbox.extend(bytes(99, 0, 1, &[goal_at(2, -30)])),
             _ => {}
         }
         for (agent, cell) in agents.iter_mut().zip(&mut cells) {
@@ -132,7 +123,7 @@ fn one_goal_for_all_robots_turns_the_whole_formation() {
 #[test]
 fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let mut leaders = vec![];
     for n in 0..100_u32 {
         let silent = (20..60).contains(&n);
@@ -142,7 +133,7 @@ fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
         if leaders.last() != Some(&(agent.leader().0)) {
             leaders.push(agent.leader().0);
         }
-        assert!(requests(&out).is_empty());
+        assert!(asked(&out).is_empty());
         assert_ne!(agent.mode(), Mode::Hold);
     }
     assert_eq!(leaders, [2, 0, 2]);
@@ -152,12 +143,9 @@ fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
 fn cyclic_leader_chains_end() {
     for [second, first] in [[1, 2], [2, 1], [3, 3], [7, 7], [0, 0]] {
         let (mut agent, mut ws) = (formation_agent(3), workspace());
-        agent.order(GridOrder::Goal(Cell::new(60, 5)));
+        agent.order(&GridOrder::Goal(Cell::new(60, 5)));
         for n in 0..3 {
-            let beacon = |x, leader| {
-                let leader = RobotId(leader);
-                Message::Beacon(Beacon { leader, ..beacon_at(x, 5) })
-            };
+            let beacon = |x, leader| Message::Beacon(behind(leader, x, 5));
             let mut inbox = bytes(2, 0, n, &[beacon(10, second)]);
             inbox.extend(bytes(1, 0, n, &[beacon(13, first)]));
             let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
@@ -179,7 +167,7 @@ fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin(
         let ahead = if n < 6 { 0 } else { 6 };
         let cells = [16 + ahead, 13 + ahead, 10].map(|x| Cell::new(x, 5));
         for (i, agent) in agents.iter_mut().enumerate() {
-            agent.order(GridOrder::Goal(Cell::new(100, 5)));
+            agent.order(&GridOrder::Goal(Cell::new(100, 5)));
             let inbox: Vec<u8> = (0..3_usize)
                 .filter(|&from| Rng::keyed(5, from as u32, i as u32, n).below(2) == 0)
                 .filter(|&from| from != 2 || n < 60)
@@ -196,36 +184,52 @@ fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin(
     }
     let (first, last) = (held[0], *held.last().unwrap());
     assert!(first < 45, "{held:?}");
-    // Robot 3 falls silent at 60; its last request is valid for 12 ticks and some retries.
+    // Robot 3 falls silent at 60; its last stop is valid for 12 ticks and some retries.
     assert!((50..105).contains(&last), "{held:?}");
 }
 
 #[test]
-fn a_stop_of_a_restarted_robot_is_cancelled() {
+fn a_stop_of_a_restarted_robot_holds_until_it_expires() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let beacon = || Message::Beacon(beacon_at(2, 5));
-    let inbox = bytes(2, 0, 0, &[beacon(), stop(2, 1, 7, RequestKind::Stop)]);
+    let inbox = bytes(2, 0, 0, &[beacon(), stop(2, 1, 7)]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
     assert_eq!(agent.mode(), Mode::Hold);
-    let inbox = bytes(2, 1, 0, &[beacon()]);
-    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
-    assert_eq!(agent.mode(), Mode::Cruise);
-    let inbox = bytes(2, 1, 1, &[stop(2, 1, 0, RequestKind::Stop)]);
-    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(2), &mut ws);
+    for (n, mode) in [(1, Mode::Hold), (11, Mode::Hold), (13, Mode::Cruise)] {
+        let inbox = bytes(2, 1, n as u16, &[beacon()]);
+        let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n), &mut ws);
+        assert_eq!(agent.mode(), mode);
+    }
+    let inbox = bytes(2, 1, 14, &[stop(2, 1, 0)]);
+    let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(14), &mut ws);
     assert_eq!(agent.mode(), Mode::Hold);
+}
+
+#[test]
+fn a_restarted_robot_can_stop_another_one_again() {
+    let (mut agent, mut ws) = (route_agent(1), workspace());
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+    let mut mode_after = |boot, sequence, message, n| {
+        let inbox = bytes(2, boot, sequence, &[Message::Beacon(beacon_at(2, 5)), message]);
+        let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n), &mut ws);
+        agent.mode()
+    };
+    assert_eq!(mode_after(0, 0, stop(2, 1, 7), 0), Mode::Hold);
+    assert_eq!(mode_after(1, 0, resume(2, 1, 7), 1), Mode::Cruise, "number 7 of another start");
+    assert_eq!(mode_after(1, 2, stop(2, 1, 8), 2), Mode::Hold);
 }
 
 #[test]
 fn a_repeated_redirection_is_followed_once() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(5, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(5, 5)));
     let mut moved = vec![];
     for n in 0..4 {
-        let inbox = bytes(2, 0, n, &[stop(2, 1, 0, RequestKind::Redirect)]);
+        let inbox = bytes(2, 0, n, &[redirect(1, 0)]);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
         moved.push(out.command != Command::Hold);
-        let ack = |frame: &Frame| matches!(frame.message, Message::Ack(Ack { accepted: true, .. }));
+        let ack = |frame: &Frame| matches!(frame.message, Message::Ack(_));
         assert!(sent(&out).iter().any(ack), "a repeat says that the answer was lost");
     }
     assert_eq!(moved, [true, false, false, false]);
@@ -235,11 +239,11 @@ fn a_repeated_redirection_is_followed_once() {
 fn after_a_long_sleep_a_robot_sends_and_no_stop_is_active() {
     for sleep in [60_u32, 36 * 60, 50 * 60, 70 * 60] {
         let (mut agent, mut ws) = (formation_agent(2), workspace());
-        agent.order(GridOrder::Goal(Cell::new(60, 5)));
+        agent.order(&GridOrder::Goal(Cell::new(60, 5)));
         let leader = Message::Beacon(beacon_at(13, 5));
-        let inbox = [bytes(1, 0, 0, &[leader]), bytes(3, 0, 0, &[stop(3, 2, 0, RequestKind::Stop)])];
+        let inbox = [bytes(1, 0, 0, &[leader]), bytes(3, 0, 0, &[stop(3, 2, 0)])];
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox.concat()), tick(0), &mut ws);
-        assert!(!requests(&out).is_empty());
+        assert!(!asked(&out).is_empty());
         let woken = tick(sleep);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), woken, &mut ws);
         let is_beacon = |frame: &Frame| matches!(frame.message, Message::Beacon(_));
@@ -250,7 +254,7 @@ fn after_a_long_sleep_a_robot_sends_and_no_stop_is_active() {
         for n in 1..10 {
             let now = woken + Duration::from_micros(n * TICK);
             let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), now, &mut ws);
-            late.extend(requests(&out));
+            late.extend(asked(&out));
         }
         assert!(agent.link.is_quiet(), "after {sleep} s");
     }
@@ -262,7 +266,7 @@ fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
         let cells = [1_u8; 1];
         let count = usize::from(width * height);
         let (mut agent, mut ws) = (formation_agent(1), workspace());
-        agent.order(GridOrder::Goal(Cell::new(60, 5)));
+        agent.order(&GridOrder::Goal(Cell::new(60, 5)));
         let mut inputs = inputs(&FLAT, Cell::new(5, 5), &[]);
         inputs.surroundings.window = Window::new(&cells[..count], origin, width, height);
         let out = agent.step(&inputs, tick(0), &mut ws);
@@ -284,9 +288,9 @@ fn a_recovering_leader_heads_for_its_scattered_followers() {
         let formation = FormationParams { recovery, ..FormationParams::default() };
         agent.law = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut ws = workspace();
-        agent.order(GridOrder::Goal(Cell::new(60, 5)));
-        let behind = Beacon { leader: RobotId(1), ..beacon_at(-5, 5) };
-        let inbox = bytes(2, 0, 0, &[Message::Beacon(behind), stop(2, 1, 0, RequestKind::Stop)]);
+        agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+        let behind = behind(1, -5, 5);
+        let inbox = bytes(2, 0, 0, &[Message::Beacon(behind), stop(2, 1, 0)]);
         let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
         out.command
     };
@@ -299,30 +303,30 @@ fn a_recovering_leader_heads_for_its_scattered_followers() {
 #[test]
 fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
-    let mut asked = vec![];
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
+    let mut said = vec![];
     for n in 0..5 {
         let inbox = bytes(9, 0, n, &[Message::Beacon(beacon_at(2, 5))]);
         let at = Cell::new(5, 5);
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
-        asked.extend(requests(&out).iter().map(|ask| (n, ask.to, ask.kind)));
-        let distance = agent.law().graph_distance(RobotId(1), at, agent.neighbors());
+        said.extend(asked(&out).into_iter().map(|(to, message)| (n, to, message)));
+        let distance =
+            agent.law().graph_distance(RobotId(1), at, agent.neighbors().iter().filter_map(GridNeighbor::told));
         assert_eq!((distance.less, distance.more), (2, 1));
     }
-    assert_eq!(asked, [(3, RobotId(9), RequestKind::Redirect)]);
+    assert_eq!(said, [(3, RobotId(9), GridMessage::Redirect)]);
 }
 
 #[test]
 fn a_robot_leads_although_its_own_leader_is_out_of_range() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
     let anyone = [TemplateEntry { offset: Cell::new(3, 0), id: RobotId::NONE, hops: 1 }];
-    let order = TemplateAssignment::split(RobotId(3), 1, 2, Cell::new(-6, 0), &anyone);
-    let order: Vec<Message> = order.unwrap().map(Message::Template).collect();
-    agent.order(GridOrder::Goal(Cell::new(5, 60)));
+    let order = template_orders(3, TemplatePart::split(1, 2, Cell::new(-6, 0), &anyone).unwrap());
+    agent.order(&GridOrder::Goal(Cell::new(5, 60)));
     let mut at = Cell::new(5, 5);
     for n in 0..6_i16 {
         let mut inbox = if n == 0 { bytes(99, 0, 0, &order) } else { vec![] };
-        let beacon = Beacon { leader: RobotId(1), heading: Dir::East, ..beacon_at(9 + n, 5) };
+        let beacon = on_grid(GridPayload { leader: RobotId(1), heading: Dir::East, ..in_cell(9 + n, 5) });
         inbox.extend(bytes(2, 0, n as u16, &[Message::Beacon(beacon)]));
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n as u32), &mut ws);
         assert_eq!(agent.leader(), RobotId(2));
@@ -346,7 +350,7 @@ fn terrain_costs_of_the_whole_formation_count_in_any_window() {
         let formation = FormationParams { footprint: 16, ..FormationParams::default() };
         let guidance = FormationGuidance::new(RouteParams::default(), formation, template);
         let mut agent = FormationAgent::new(&config(1), guidance, Unguarded, Postcard);
-        agent.order(GridOrder::Goal(Cell::new(40, 0)));
+        agent.order(&GridOrder::Goal(Cell::new(40, 0)));
         let mut inputs = inputs(&FLAT, at, &[]);
         let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(0, -3))]);
         inputs.inbox = &inbox;

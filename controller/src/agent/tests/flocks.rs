@@ -37,8 +37,8 @@ fn an_alpha_flock_keeps_its_distances_and_follows_its_reference() {
         let guidance = LatticeGuidance::new(params, true);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
         let reference = Waypoint { velocity_mps: crate::geom::Vec3::new(0.25, 0.0, 0.0), ..place(1000, 0) };
-        assert!(robot.agent.order(WaypointOrder::first(reference)));
-        assert!(!robot.agent.order(WaypointOrder { index: 1, waypoint: reference }), "there is one");
+        assert!(robot.agent.order(&WaypointOrder::first(reference)));
+        assert!(!robot.agent.order(&WaypointOrder { index: 1, waypoint: reference }), "there is one");
         robot
     };
     let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 0.6]), new(3, [0.5, 0.3])];
@@ -61,7 +61,7 @@ fn an_alpha_flock_limits_an_absurd_speed() {
     let guidance = LatticeGuidance::new(LatticeParams::<f32>::new(1.0), true);
     let mut robot = Robot::new(&one_step_late(1), guidance, Unguarded, [0.0; 2]);
     robot.velocity_mps = [f64::MAX, 0.0];
-    let _ = robot.agent.order(WaypointOrder::first(place(1000, 0)));
+    let _ = robot.agent.order(&WaypointOrder::first(place(1000, 0)));
     let out = robot.step(step_number(0), &[]);
     assert!(matches!(out.command, Command::Velocity(v) if v.norm() <= 1.001), "{:?}", out.command);
 }
@@ -72,9 +72,9 @@ fn a_goal_flock_moves_to_the_centre_and_then_to_single_goals() {
         let params = GoalParams::new(0.5, 1.0);
         let guidance = GoalFlockGuidance::new(params, 1.0, 7);
         let mut robot = Robot::new(&one_step_late(id), guidance, Unguarded, at_m);
-        assert!(!robot.agent.order(WaypointOrder { index: 1, waypoint: place(0, 0) }), "not before number 0");
-        assert!(robot.agent.order(WaypointOrder::first(place(20_000, 8_000))));
-        assert!(robot.agent.order(WaypointOrder { index: 1, waypoint: place(20_000, -8_000) }));
+        assert!(!robot.agent.order(&WaypointOrder { index: 1, waypoint: place(0, 0) }), "not before number 0");
+        assert!(robot.agent.order(&WaypointOrder::first(place(20_000, 8_000))));
+        assert!(robot.agent.order(&WaypointOrder { index: 1, waypoint: place(20_000, -8_000) }));
         robot
     };
     let mut robots = [new(1, [0.0, 0.0]), new(2, [0.0, 1.0]), new(3, [1.0, 0.5])];
@@ -100,8 +100,8 @@ fn a_goal_flock_follows_goals_that_move() {
         Robot::new(&one_step_late(1), GoalFlockGuidance::new(GoalParams::new(0.5, 1.0), 1.0, 7), Unguarded, [0.0; 2]);
     let goal = |at, velocity_mps| Waypoint { velocity_mps, ..place(10_000, at) };
     let north = crate::geom::Vec3::new(0.0, 0.4, 0.0);
-    assert!(robot.agent.order(WaypointOrder::first(goal(2_000, north))));
-    assert!(robot.agent.order(WaypointOrder { index: 1, waypoint: goal(-2_000, north) }));
+    assert!(robot.agent.order(&WaypointOrder::first(goal(2_000, north))));
+    assert!(robot.agent.order(&WaypointOrder { index: 1, waypoint: goal(-2_000, north) }));
     let mut robots = [robot];
     run(&mut robots, 0..600);
     let [robot] = &mut robots;
@@ -109,7 +109,7 @@ fn a_goal_flock_follows_goals_that_move() {
     let was_m = [2.0, -2.0][drawn];
     assert!(distance(robot.at_m, [10.0, was_m + 0.4 * 60.0]) <= 0.6, "{:?}", robot.at_m);
     let index = u8::try_from(drawn).unwrap();
-    assert!(robot.agent.order(WaypointOrder { index, waypoint: place(10_000, 0) }));
+    assert!(robot.agent.order(&WaypointOrder { index, waypoint: place(10_000, 0) }));
     run(&mut robots, 600..1600);
     assert!(distance(robots[0].at_m, [10.0, 0.0]) <= 0.6, "{:?}", robots[0].at_m);
 }
@@ -159,7 +159,7 @@ fn goal_flocks_of_different_numbers_do_not_gather() {
         };
         let mut robots = [new(1, 3, [0.0, 0.0]), new(2, other, [1.5, 0.0])];
         run(&mut robots, 0..100);
-        assert_eq!(robots[0].agent.neighbors()[0].slot, other);
+        assert_eq!(robots[0].agent.neighbors()[0].flock, other);
         distance(robots[0].at_m, robots[1].at_m)
     };
     assert!(parted(3) < 1.2);

@@ -8,23 +8,16 @@ fn corridor() -> [u8; 121] {
     cells
 }
 
-fn request_of(out: &Outputs<f32>) -> Option<(RobotId, RequestKind)> {
-    sent(out).into_iter().find_map(|frame| match frame.message {
-        Message::Request(request) => Some((request.to, request.kind)),
-        _ => None,
-    })
-}
-
 /// Returns the step in which robot 2, moving along `way`, asks robot `other` to redirect.
 fn asks(other: u32, place: Cell, mode: Mode, way: &[Cell]) -> Option<u16> {
     let (mut agent, mut ws) = (route_agent(2), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     (0..20).find(|&n| {
-        let beacon = Beacon { cell: place, mode, ..Beacon::default() };
+        let beacon = Beacon { mode, ..beacon_at(place.x, place.y) };
         let inbox = bytes(other, 0, n, &[Message::Beacon(beacon)]);
         let at = way[usize::from(n) % way.len()];
         let out = agent.step(&inputs(&corridor(), at, &inbox), tick(n.into()), &mut ws);
-        request_of(&out).is_some_and(|request| request == (RobotId(other), RequestKind::Redirect))
+        asked(&out) == [(RobotId(other), GridMessage::Redirect)]
     })
 }
 
@@ -45,7 +38,7 @@ fn an_arrived_robot_is_asked_by_a_robot_that_returns_repeatedly() {
 #[test]
 fn a_robot_without_another_route_moves_back() {
     let (mut agent, mut ws) = (route_agent(2), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let step = |agent: &mut RouteAgent, ws: &mut _, inbox: &[u8], n| match agent
         .step(&inputs(&corridor(), Cell::new(5, 5), inbox), tick(n), ws)
         .command
@@ -54,7 +47,7 @@ fn a_robot_without_another_route_moves_back() {
         Command::Hold | Command::Velocity(_) => heapless::Vec::new(),
     };
     assert_eq!(step(&mut agent, &mut ws, &[], 0)[0], Dir::East);
-    let inbox = bytes(1, 0, 0, &[stop(1, 2, 0, RequestKind::Redirect)]);
+    let inbox = bytes(1, 0, 0, &[redirect(2, 0)]);
     assert_eq!(step(&mut agent, &mut ws, &inbox, 1), [Dir::West]);
     assert_eq!(step(&mut agent, &mut ws, &[], 2)[0], Dir::East, "once is enough");
 }
@@ -72,8 +65,8 @@ fn an_arrived_robot_makes_way_to_varying_cells() {
                 Unguarded,
                 Postcard,
             );
-            agent.order(GridOrder::Goal(Cell::new(5, 5)));
-            let inbox = bytes(1, 0, 0, &[stop(1, 2, 0, RequestKind::Redirect)]);
+            agent.order(&GridOrder::Goal(Cell::new(5, 5)));
+            let inbox = bytes(1, 0, 0, &[redirect(2, 0)]);
             let out = agent.step(&inputs(&cells, Cell::new(5, 5), &inbox), tick(0), &mut workspace());
             let Command::Move(moves) = out.command else { panic!("{seed}: {:?}", out.command) };
             first.push(moves[0]);

@@ -5,7 +5,7 @@ use crate::agent::{CELLS, GridWorkspace, MAP_TILES, OnGrid, RouteGuidance, Share
 use crate::grid::{BLOCKED, Window};
 use crate::land::{LandPatch, MapParams, PATCH_TILES, Tile, tile_of};
 use crate::route::RouteParams;
-use crate::wire::{Header, Message, encode};
+use crate::wire::{Broadcast, Header, Message, encode};
 use heapless::Vec;
 
 type Sharer = Agent<f32, RouteGuidance<CELLS, VISITS, 0, SharedMap<MAP_TILES>>, NEIGHBORS>;
@@ -16,6 +16,11 @@ fn sharer(id: u32) -> Sharer {
     let config = AgentConfig::new(RobotId(id), 0.0, TICK);
     let law = RouteGuidance::with_map(RouteParams::default(), SharedMap::new(MapParams::default()));
     Agent::new(&config, law, Unguarded, Postcard)
+}
+
+fn said(patch: LandPatch) -> Message {
+    let (protocol, content) = GridMessage::Land(patch).encode(Grid::ID).unwrap();
+    Message::Broadcast(Broadcast { protocol, content })
 }
 
 fn step(
@@ -47,8 +52,8 @@ fn step(
 #[test]
 fn a_map_patch_follows_each_beacon_and_is_stored_by_receivers() {
     let (mut one, mut two) = (sharer(1), sharer(2));
-    one.order(GridOrder::Goal(Cell::new(50, 5)));
-    two.order(GridOrder::Goal(Cell::new(50, 5)));
+    one.order(&GridOrder::Goal(Cell::new(50, 5)));
+    two.order(&GridOrder::Goal(Cell::new(50, 5)));
     let mut now = Instant::from_micros(0);
     let mut said = Vec::<u8, OUTBOX>::new();
     for _ in 0..6 {
@@ -57,7 +62,7 @@ fn a_map_patch_follows_each_beacon_and_is_stored_by_receivers() {
         now = now + TICK;
     }
     let messages = crate::wire::frames(&said).map(|frame| crate::wire::decode(frame).unwrap().message);
-    let kinds: std::vec::Vec<bool> = messages.map(|message| matches!(message, Message::Land(_))).collect();
+    let kinds: std::vec::Vec<bool> = messages.map(|message| matches!(message, Message::Broadcast(_))).collect();
     assert_eq!(kinds, [false, true]);
     let known = two.law().map().inside().get(tile_of(Cell::new(5, 5)));
     assert_eq!(known.ticks_16(), Some(64));
@@ -68,7 +73,7 @@ fn moves_among_lies(liar: &dyn Fn(Cell) -> [LandPatch; 3]) -> Option<u32> {
     let land = |cell: Cell| if cell.x == 20 && (-6..7).contains(&cell.y) { BLOCKED } else { 2 };
     let goal = Cell::new(40, 0);
     let mut robot = sharer(1);
-    robot.order(GridOrder::Goal(goal));
+    robot.order(&GridOrder::Goal(goal));
     let (mut cell, mut now) = (Cell::new(0, 0), Instant::from_micros(0));
     let mut sequence = 0;
     for moves in 0..1000 {
@@ -76,7 +81,7 @@ fn moves_among_lies(liar: &dyn Fn(Cell) -> [LandPatch; 3]) -> Option<u32> {
         for patch in liar(cell) {
             let header = Header { boot: 1, sender: RobotId(9), sequence };
             sequence += 1;
-            encode(header, &Message::Land(patch), &mut inbox).unwrap();
+            encode(header, &said(patch), &mut inbox).unwrap();
         }
         (cell, _) = step(&mut robot, &land, cell, now, &inbox);
         now = now + TICK;

@@ -4,10 +4,11 @@ use super::*;
 use crate::cost::Gain;
 use crate::formation::{Prediction, Recovery};
 use crate::grid::Norm;
+use crate::land::{LandPatch, PATCH_TILES};
 use crate::route::{ExitRule, Replan};
 use crate::shuffle::Sharpness;
 use crate::template::TemplateEntry;
-use crate::wire::arbitrary;
+use crate::wire::{Broadcast, Bytes, arbitrary};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -25,33 +26,75 @@ fn cell() -> impl Strategy<Value = Cell> {
     (coordinate(), coordinate()).prop_map(|(x, y)| Cell::new(x, y))
 }
 
+/// A message or an order that robots on the grid understand.
+fn content<const N: usize>(value: &impl Content) -> (ProtocolId, Bytes<N>) {
+    value.encode(Grid::ID).unwrap()
+}
+
+fn grid_order() -> impl Strategy<Value = GridOrder> {
+    let entry = (cell(), few(), any::<u8>()).prop_map(|(offset, id, hops)| TemplateEntry { offset, id, hops });
+    let part = (any::<[u8; 4]>(), cell(), vec(entry, 0..=TEMPLATE_PART));
+    let part = part.prop_map(|([version, part, parts, slot], offset, entries)| {
+        let entries = entries.into_iter().collect();
+        let part = TemplatePart { version, part: part % 4, parts: parts % 5, slot, offset, entries };
+        GridOrder::Template { part, is_restarted: false }
+    });
+    prop_oneof![cell().prop_map(GridOrder::Goal), cell().prop_map(GridOrder::FormationGoal), part]
+}
+
+fn grid_message() -> impl Strategy<Value = GridMessage> {
+    let stop = (few(), any::<u16>()).prop_map(|(origin, valid_ms)| GridMessage::Stop { origin, valid_ms });
+    let resume = few().prop_map(|origin| GridMessage::Resume { origin });
+    prop_oneof![stop, resume, Just(GridMessage::Redirect)]
+}
+
+fn grid_payload() -> impl Strategy<Value = GridPayload> {
+    let place = (cell(), cell(), any::<u16>(), 0..=8_u8);
+    (place, any::<u8>(), few()).prop_map(|((cell, target, busy_ms, heading), slot, leader)| {
+        // Longer numbers do not fit.
+        let leader = RobotId(leader.0 & 0x0FFF_FFFF);
+        GridPayload { cell, target, busy_ms, heading: Dir::from_index(heading), slot, leader }
+    })
+}
+
+fn few() -> impl Strategy<Value = RobotId> {
+    prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()]
+}
+
+/// Messages of robots and operators to a robot on the grid.
+fn sensible() -> impl Strategy<Value = Message> {
+    let beacon = (arbitrary::beacon(), grid_payload()).prop_map(|(beacon, payload)| {
+        let (protocol, payload) = content(&payload);
+        Message::Beacon(Beacon { protocol, payload, ..beacon })
+    });
+    let law = (any::<u8>(), grid_message()).prop_map(|(number, message)| {
+        let (protocol, content) = content(&message);
+        Message::Law(Addressed { to: OWN, number, protocol, content })
+    });
+    let order = (few(), any::<u8>(), grid_order());
+    let order = order.prop_map(|(to, number, order)| Grid::order(to, number, &order).unwrap());
+    let land = (cell(), any::<[u8; PATCH_TILES]>()).prop_map(|(at, bytes)| {
+        let patch = LandPatch::from_bytes(crate::land::tile_of(at), bytes);
+        let (protocol, content) = content(&GridMessage::Land(patch));
+        Message::Broadcast(Broadcast { protocol, content })
+    });
+    prop_oneof![4 => beacon, 2 => law, 2 => order, 1 => land]
+}
+
 /// Valid frames, mostly from few robots, which concern this one and refer to each other.
 pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
-    let few = || prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
     let sender = few().prop_filter("it has a sender", |id| id.is_some());
     let header = (0..3_u8, sender, 0..40_u16);
-    let subject = (few(), few(), cell(), cell());
-    (header, arbitrary::message(), subject).prop_map(|(header, mut message, subject)| {
+    let message = prop_oneof![3 => sensible(), 1 => arbitrary::message()];
+    (header, message, few()).prop_map(|(header, mut message, to)| {
         let (boot, sender, sequence) = header;
-        let (to, who, here, there) = subject;
         match &mut message {
-            Message::Beacon(beacon) => {
-                (beacon.cell, beacon.target, beacon.leader) = (here, there, who);
-            }
-            Message::Request(request) => (request.to, request.origin) = (OWN, who),
+            Message::Law(message) => message.to = OWN,
             Message::Ack(ack) => (ack.to, ack.boot) = (OWN, 0),
-            Message::Goal(goal) => (goal.to, goal.target) = (to, there),
-            Message::Template(part) => {
-                (part.to, part.offset) = (OWN, here);
-                for entry in &mut part.entries {
-                    (entry.offset, entry.id) = (there, who);
-                }
-            }
-            Message::Waypoint(waypoint) => waypoint.to = to,
+            Message::Order(order) => order.to = if to == RobotId(1) { OWN } else { to },
             Message::Key(key) => key.to = to,
             Message::KeyHeld(held) => held.to = to,
-            Message::Land(patch) if to == OWN => patch.corner = crate::land::tile_of(here),
-            Message::Land(_) | Message::Payload(_) | Message::Lost(_) => {}
+            Message::Beacon(_) | Message::Broadcast(_) | Message::Lost(_) => {}
         }
         let header = Header { boot, sender, sequence };
         (header, message)
@@ -193,7 +236,7 @@ where
     let mut agent = Agent::<f32, G, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
     let mut ws = workspace();
     if let Some(goal) = goal {
-        agent.order(GridOrder::Goal(goal));
+        agent.order(&GridOrder::Goal(goal));
     }
     for step in steps {
         let inbox = step.inbox();

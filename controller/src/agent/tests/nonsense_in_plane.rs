@@ -11,7 +11,6 @@ use crate::neighbor::StalenessInflation;
 use crate::obstacle::Obstacle;
 use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
-use crate::wire::WaypointAssignment;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -55,21 +54,17 @@ fn near() -> impl Strategy<Value = (Header, Message)> {
     let numbers = ([millimetres(), millimetres(), millimetres()], any::<[i16; 3]>(), any::<(u16, bool, u8)>());
     let message = numbers.prop_map(|(position_mm, velocity, (radius, is_place, index))| {
         if is_place {
-            Message::Waypoint(WaypointAssignment {
-                to: RobotId::NONE,
-                version: radius as u8,
-                index: index % 6,
-                position_mm,
-                velocity_mmps: velocity,
-            })
+            let velocity_mps = Vec3::from_milli(velocity.map(i32::from));
+            let waypoint = Waypoint { velocity_mps, ..Waypoint::fixed(Position::from_mm(position_mm)) };
+            let order = WaypointOrder { index: index % 6, waypoint };
+            Waypoints::order(RobotId::NONE, radius as u8, &order).unwrap()
         } else {
             Message::Beacon(Beacon {
                 position_mm,
                 velocity_mmps: velocity.map(|v| v / 8),
                 radius_mm: radius / 64,
                 mode: if index > 200 { Mode::Fault } else { Mode::Cruise },
-                cell: Cell::new(i16::from(index % 9), 2),
-                ..Beacon::default()
+                ..beacon_at((index % 9).into(), 2)
             })
         }
     });

@@ -1,23 +1,29 @@
-//! Tests of the payloads that laws send after their beacons.
+//! Tests of the payloads in beacons.
 
 use super::*;
 use crate::auth::Key;
-use crate::geom::Position;
-use crate::neighbor::{Neighbor, NeighborTable};
-use crate::wire::{MAX_PAYLOAD, PayloadBytes, Sealed, Wire};
-use proptest::prelude::{any, prop_assert_eq, proptest};
+use crate::neighbor::Neighbor;
+use crate::wire::{Bytes, MAX_PAYLOAD, Never, Sealed, Wire};
+use core::marker::PhantomData;
+use proptest::prelude::{any, prop_assert, prop_assert_eq, proptest};
 
-type Told = (u8, i16, f32);
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Told(u8, i16, f32);
 
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+impl Content for Told {}
+
+#[derive(Clone, Debug, Default)]
 struct Teller {
     own: Told,
-    heard: Vec<(u32, Told)>,
+    heard: Vec<(u32, Option<Told>)>,
+    peers: usize,
 }
 
+#[derive(Clone, Debug)]
 struct Tells;
 
 impl Protocol for Tells {
+    const ID: ProtocolId = ProtocolId(64);
     type Payload = Told;
     type Message = Never;
     type Order = Never;
@@ -30,20 +36,25 @@ impl Law<f32> for Teller {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32, Told>,
+        view: &View<'_, f32, Tells>,
         _: &InPlane<'_, f32>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        self.heard = view.neighbors.iter().map(|other| (other.id.0, other.payload)).collect();
+        self.heard = view.neighbors().map(|other| (other.id.0, other.payload)).collect();
+        self.peers = view.peers().count();
+        for (other, told) in view.peers() {
+            assert_eq!(view.neighbor(other.id).and_then(|other| other.payload), Some(told));
+        }
+        assert_eq!(view.neighbor(RobotId(99)), None);
         Ok(Decision::default())
     }
 
-    fn payload(&mut self, _: &mut Radio<'_, Never>) -> Told {
+    fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Tells>) -> Told {
         self.own
     }
 }
 
-const OWN: Told = (7, -300, 1.5);
+const OWN: Told = Told(7, -300, 1.5);
 
 fn teller<G: Law<f32>, W: Wire>(id: u32, law: G, wire: W) -> Agent<f32, G, 4, Unguarded, W> {
     Agent::new(&config(id), law, Unguarded, wire)
@@ -58,26 +69,28 @@ where
 }
 
 fn law(own: Told) -> Teller {
-    Teller { own, heard: Vec::new() }
+    Teller { own, ..Teller::default() }
 }
 
-fn told(payload: Told) -> Message {
-    Message::Payload(PayloadBytes::of(&payload).unwrap())
+/// A beacon with these bytes of a protocol.
+fn telling(protocol: u8, bytes: &[u8]) -> Message {
+    let payload = Bytes::from_slice(bytes).unwrap();
+    Message::Beacon(Beacon { protocol: ProtocolId(protocol), payload, ..Beacon::default() })
 }
 
-fn beacon() -> Message {
-    Message::Beacon(beacon_at(3, 4))
+fn encoded(told: Told) -> Bytes<MAX_PAYLOAD> {
+    told.encode(Tells::ID).unwrap().1
 }
 
 #[test]
-fn a_payload_follows_each_beacon_and_is_stored_with_the_neighbour() {
-    let (mut one, mut two) = (teller(1, law(OWN), Postcard), teller(2, law((9, 0, 0.0)), Postcard));
+fn a_beacon_carries_the_payload_and_it_is_stored_with_the_neighbour() {
+    let (mut one, mut two) = (teller(1, law(OWN), Postcard), teller(2, law(Told(9, 0, 0.0)), Postcard));
     let out = step(&mut one, 0, &[]);
-    let kinds: Vec<bool> = sent(&out).iter().map(|frame| frame.message == told(OWN)).collect();
-    assert_eq!(kinds, [false, true]);
+    let [Frame { message: Message::Beacon(beacon), .. }] = &sent(&out)[..] else { panic!("a beacon") };
+    assert_eq!((beacon.protocol, &beacon.payload), (ProtocolId(64), &encoded(OWN)));
     let _ = step(&mut two, 0, &out.outbox);
-    assert_eq!(two.neighbors().iter().map(|other| other.payload).collect::<Vec<_>>(), [OWN]);
-    assert_eq!(two.law().heard, [(1, OWN)]);
+    assert_eq!(two.neighbors().iter().map(|other| other.payload).collect::<Vec<_>>(), [Some(OWN)]);
+    assert_eq!((&two.law().heard[..], two.law().peers), (&[(1, Some(OWN))][..], 1));
 }
 
 #[test]
@@ -89,30 +102,31 @@ fn a_wrapper_sends_the_payload_of_the_law_inside() {
 }
 
 #[test]
-fn a_payload_is_kept_between_beacons_and_discarded_after_a_restart() {
+fn the_payload_of_the_latest_beacon_counts() {
     let mut agent = teller(1, law(OWN), Postcard);
-    let mut hear = |n, inbox: &[u8]| {
-        let _ = step(&mut agent, n, inbox);
-        agent.neighbors().first().map(|other| other.payload)
+    let mut hear = |boot, sequence, told: Told| {
+        let _ = step(&mut agent, 0, &bytes(2, boot, sequence, &[telling(64, &encoded(told))]));
+        agent.neighbors()[0].payload
     };
-    assert_eq!(hear(0, &bytes(2, 0, 0, &[told(OWN)])), None, "a payload alone makes no robot known");
-    assert_eq!(hear(0, &bytes(2, 0, 1, &[beacon()])), Some(Told::default()));
-    assert_eq!(hear(0, &bytes(2, 0, 2, &[told(OWN)])), Some(OWN));
-    assert_eq!(hear(0, &bytes(2, 0, 4, &[beacon()])), Some(OWN));
-    assert_eq!(hear(0, &bytes(2, 0, 3, &[told((1, 1, 1.0))])), Some(OWN), "an older one came later");
-    assert_eq!(hear(0, &bytes(2, 1, 0, &[beacon()])), Some(Told::default()), "its computer has restarted");
+    let late = Told(1, 1, 1.0);
+    assert_eq!(hear(0, 2, OWN), Some(OWN));
+    assert_eq!(hear(0, 1, late), Some(OWN), "an older one came later");
+    assert_eq!(hear(0, 3, late), Some(late));
+    assert_eq!(hear(1, 0, OWN), Some(OWN), "its computer has restarted");
 }
 
 #[test]
-fn bytes_that_do_not_decode_change_nothing() {
-    let mut agent = teller(1, law(OWN), Postcard);
-    let _ = step(&mut agent, 0, &bytes(2, 0, 0, &[beacon(), told(OWN)]));
-    let right = PayloadBytes::of(&OWN).unwrap();
-    for (wrong, sequence) in [&right.as_slice()[..6], &[right.as_slice(), &[0]].concat(), &[]].into_iter().zip(2..) {
-        let wrong = Message::Payload(PayloadBytes::new(wrong).unwrap());
-        let out = step(&mut agent, 0, &bytes(2, 0, sequence, &[wrong]));
-        assert_eq!(out.received, 1);
-        assert_eq!(agent.neighbors()[0].payload, OWN);
+fn a_robot_whose_payload_does_not_decode_is_known_without_one() {
+    let right = encoded(OWN);
+    for (protocol, wrong) in
+        [(64, &right[..6]), (64, &[&right[..], &[0]].concat()), (64, &[]), (65, &right), (1, &right), (0, &[])]
+    {
+        let mut agent = teller(1, law(OWN), Postcard);
+        let _ = step(&mut agent, 0, &bytes(2, 0, 0, &[telling(64, &right)]));
+        assert_eq!(agent.law().peers, 1);
+        let out = step(&mut agent, 0, &bytes(2, 0, 1, &[telling(protocol, wrong)]));
+        assert_eq!((out.received, out.rejected), (1, 0));
+        assert_eq!((&agent.law().heard[..], agent.law().peers), (&[(2, None)][..], 0), "{protocol}");
     }
 }
 
@@ -120,48 +134,123 @@ fn bytes_that_do_not_decode_change_nothing() {
 fn with_a_key_a_forged_payload_is_refused() {
     let wire = |passphrase: &[u8]| Sealed::<4>::at_start(&Key::of_passphrase(passphrase), 0).unwrap();
     let mut one = teller(1, law(OWN), wire(b"swarm"));
-    let (mut two, mut forger) = (teller(2, law(OWN), wire(b"swarm")), teller(1, law((1, 1, 1.0)), wire(b"guessed")));
+    let mut two = teller(2, law(OWN), wire(b"swarm"));
+    let mut forger = teller(1, law(Told(1, 1, 1.0)), wire(b"guessed"));
     let _ = step(&mut two, 0, &step(&mut one, 0, &[]).outbox);
-    assert_eq!(two.law().heard, [(1, OWN)]);
+    let known = [(1, Some(OWN))];
+    assert_eq!(two.law().heard, known);
     let out = step(&mut two, 1, &step(&mut forger, 1, &[]).outbox);
-    assert_eq!((out.refused.forged, &two.law().heard[..]), (2, &[(1, OWN)][..]));
+    assert_eq!((out.refused.forged, &two.law().heard[..]), (1, &known[..]));
+}
+
+/// Says the same in each beacon.
+struct Says<P>(P);
+
+#[derive(Clone, Debug)]
+struct Of<P>(PhantomData<P>);
+
+impl<P: Content + Copy + Default + Send + Sync> Protocol for Of<P> {
+    const ID: ProtocolId = ProtocolId(64);
+    type Payload = P;
+    type Message = Never;
+    type Order = Never;
+}
+
+impl<P: Content + Copy + Default + Send + Sync> Law<f32> for Says<P> {
+    type Surroundings<'a> = InPlane<'a, f32>;
+    type Protocol = Of<P>;
+    type Workspace = ();
+
+    fn decide(
+        &mut self,
+        _: &View<'_, f32, Of<P>>,
+        _: &InPlane<'_, f32>,
+        _: Tools<'_, f32, Self>,
+    ) -> Result<Decision<f32>, BadInput> {
+        Ok(Decision::default())
+    }
+
+    fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Of<P>>) -> P {
+        self.0
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Sixteen([u8; 16]);
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Seventeen([u8; 17]);
+impl Content for Sixteen {}
+impl Content for Seventeen {}
+
+/// The protocol, the bytes, and the payload that a robot with the same law knows.
+fn said<P: Content + Copy + Default + Send + Sync>(payload: P) -> (ProtocolId, Vec<u8>, Option<P>) {
+    let (mut one, mut two) = (teller(1, Says(payload), Postcard), teller(2, Says(payload), Postcard));
+    let out = step(&mut one, 0, &[]);
+    let _ = step(&mut two, 0, &out.outbox);
+    let [Frame { message: Message::Beacon(beacon), .. }] = &sent(&out)[..] else { panic!("a beacon") };
+    (beacon.protocol, beacon.payload.to_vec(), two.neighbors()[0].payload)
 }
 
 #[test]
-fn an_empty_payload_costs_no_byte_on_the_air_or_in_memory() {
+fn a_payload_of_16_bytes_is_sent_and_one_of_17_is_sent_as_none() {
+    assert_eq!(MAX_PAYLOAD, 16);
+    let fits = Sixteen([7; 16]);
+    assert_eq!(said(fits), (ProtocolId(64), vec![7; 16], Some(fits)));
+    assert_eq!(said(Seventeen([7; 17])), (ProtocolId::NONE, vec![], None));
+}
+
+#[test]
+fn a_law_that_says_nothing_sends_no_payload_and_knows_none() {
+    struct Silent;
+    impl Law<f32> for Silent {
+        type Surroundings<'a> = InPlane<'a, f32>;
+        type Protocol = ();
+        type Workspace = ();
+        fn decide(
+            &mut self,
+            _: &View<'_, f32>,
+            _: &InPlane<'_, f32>,
+            _: Tools<'_, f32, Self>,
+        ) -> Result<Decision<f32>, BadInput> {
+            Ok(Decision::default())
+        }
+    }
+    let mut agent = teller(1, Silent, Postcard);
+    let out = step(&mut agent, 0, &bytes(2, 0, 0, &[telling(64, &encoded(OWN))]));
+    let [Frame { message: Message::Beacon(beacon), .. }] = &sent(&out)[..] else { panic!("a beacon") };
+    assert_eq!((beacon.protocol, beacon.payload.len()), (ProtocolId::NONE, 0));
+    assert_eq!((out.received, agent.neighbors()[0].payload), (1, None));
     assert_eq!(size_of::<Neighbor<f32>>(), size_of::<Neighbor<f32, [u8; 0]>>());
-    assert_eq!(size_of::<Neighbor<f32, [u8; 16]>>(), size_of::<Neighbor<f32>>() + 16);
-    let mut agent = route_agent(1);
-    let heard = bytes(2, 0, 0, &[beacon(), told(OWN)]);
-    let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &heard), tick(0), &mut workspace());
-    assert_eq!((sent(&out).len(), out.received, out.rejected), (1, 2, 0));
-    let without = Neighbor::<f32>::from_beacon(RobotId(2), &beacon_at(3, 4), tick(0));
-    assert_eq!(agent.neighbors(), [without]);
+    assert!(size_of::<Neighbor<f32, [u8; 16]>>() <= size_of::<Neighbor<f32>>() + 16);
 }
 
 #[test]
-fn a_payload_that_is_too_long_is_not_sent() {
-    assert_eq!(PayloadBytes::of(&[u32::MAX; 4]), None);
-    assert_eq!(PayloadBytes::of(&[[u8::MAX; 16]]).unwrap().as_slice().len(), MAX_PAYLOAD);
-    assert_eq!(PayloadBytes::new(&[0; MAX_PAYLOAD + 1]), None);
-    let mut table = NeighborTable::<f32, 1, u8>::new(config(1).ages);
-    table.tell(RobotId(1), Some(3));
-    let heard = Neighbor::from_beacon(RobotId(2), &beacon_at(1, 1), tick(0));
-    let _ = table.put(heard, Position::default(), tick(0), |_| false);
-    table.tell(RobotId(1), Some(3));
-    assert_eq!(table.as_slice()[0].payload, 0);
-    table.tell(RobotId(2), Some(3));
-    assert_eq!(table.as_slice()[0].payload, 3);
+fn bytes_of_another_protocol_or_of_another_length_are_no_content() {
+    let (id, bytes) = OWN.encode::<MAX_PAYLOAD>(Tells::ID).unwrap();
+    assert_eq!((id, bytes.len()), (Tells::ID, 1 + 2 + 4));
+    assert_eq!(Told::decode(Tells::ID, id, &bytes), Some(OWN));
+    assert_eq!(Told::decode(Tells::ID, ProtocolId(65), &bytes), None);
+    assert_eq!(Told::decode(ProtocolId(65), id, &bytes), None);
+    assert_eq!(Told::decode(Tells::ID, id, &bytes[..6]), None);
+    assert_eq!(Told::decode(Tells::ID, id, &[&bytes[..], &[0]].concat()), None);
+    assert_eq!(OWN.encode::<7>(Tells::ID).map(|(_, bytes)| bytes.len()), Some(7));
+    assert_eq!(OWN.encode::<6>(Tells::ID), None);
+    assert_eq!(u64::MAX.encode::<9>(Tells::ID), None);
+    assert_eq!(Some(3_u8).encode::<2>(Tells::ID).map(|(_, bytes)| bytes.to_vec()), Some(vec![1, 3]));
+    assert_eq!(().encode::<0>(Tells::ID), Some((Tells::ID, Bytes::new())));
+    assert!(Told::EXISTS && !Never::EXISTS && Never::decode(Tells::ID, Tells::ID, &[]).is_none());
 }
 
 proptest! {
     #[test]
     fn any_bytes_decode_to_a_value_or_to_none(bytes in proptest::collection::vec(any::<u8>(), 0..=MAX_PAYLOAD)) {
-        let bytes = PayloadBytes::new(&bytes).unwrap();
-        if let Some(value) = bytes.get::<Told>() {
-            let again = PayloadBytes::of(&value).and_then(|bytes| bytes.get::<Told>()).unwrap();
+        if let Some(value) = Told::decode(Tells::ID, Tells::ID, &bytes) {
+            let again = Told::decode(Tells::ID, Tells::ID, &encoded(value)).unwrap();
             prop_assert_eq!((again.0, again.1, again.2.to_bits()), (value.0, value.1, value.2.to_bits()));
         }
-        prop_assert_eq!(bytes.get::<[u8; 17]>(), None);
+        prop_assert!(Seventeen::decode(Tells::ID, Tells::ID, &bytes).is_none());
+        let any = AnyPayload::decode(AnyProtocol::ID, Tells::ID, &bytes).unwrap();
+        let again = any.encode::<MAX_PAYLOAD>(AnyProtocol::ID);
+        prop_assert_eq!(again.map(|(id, again)| (id, again.to_vec())), Some((Tells::ID, bytes)));
     }
 }

@@ -8,7 +8,6 @@ use crate::geom::{Position, Vec2, Vec3};
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::scalar::Q16;
-use crate::wire::{GoalAssignment, WaypointAssignment};
 
 pub(super) const STEP: Duration = Duration::from_millis(100);
 pub(super) const RADIUS_MM: i32 = 200;
@@ -155,7 +154,7 @@ fn a_robot_without_a_waypoint_is_idle_and_sends_its_position() {
 #[test]
 fn a_robot_moves_straight_to_its_waypoint_and_stops_there() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
-    assert!(robot.agent.order(WaypointOrder::first(place(3000, 4000))));
+    assert!(robot.agent.order(&WaypointOrder::first(place(3000, 4000))));
     for n in 0..50 {
         let _ = robot.step(step_number(n), &[]);
         assert!((robot.speed() - 1.0).abs() < 1e-5, "step {n}");
@@ -176,7 +175,7 @@ fn a_robot_moves_straight_to_its_waypoint_and_stops_there() {
 fn a_robot_follows_a_moving_waypoint() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [1.0, 0.0]);
     let _ =
-        robot.agent.order(WaypointOrder::first(Waypoint { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..place(1000, 0) }));
+        robot.agent.order(&WaypointOrder::first(Waypoint { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..place(1000, 0) }));
     for n in 0..100 {
         let _ = robot.step(step_number(n), &[]);
         let age_s = f64::from(n + 1) * 0.1;
@@ -190,7 +189,7 @@ fn a_robot_follows_a_moving_waypoint() {
 #[test]
 fn beacons_carry_the_next_velocity() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.order(WaypointOrder::first(place(-6000, 8000)));
+    let _ = robot.agent.order(&WaypointOrder::first(place(-6000, 8000)));
     let beacon = said(&robot.step(step_number(0), &[]));
     assert_eq!(beacon.velocity_mmps, [-600, 800, 0]);
 }
@@ -199,7 +198,7 @@ fn beacons_carry_the_next_velocity() {
 fn a_body_with_a_lag_sends_the_velocity_that_it_will_have() {
     for lag_s in [0.001, 0.1, 0.4, 2.0_f32] {
         let mut robot = Robot::new(&AgentConfig { lag_s, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
-        let _ = robot.agent.order(WaypointOrder::first(place(-60_000, 80_000)));
+        let _ = robot.agent.order(&WaypointOrder::first(place(-60_000, 80_000)));
         let own = [0.3, 0.25];
         robot.velocity_mps = own;
         let beacon = said(&robot.step(step_number(0), &[]));
@@ -232,13 +231,13 @@ fn evades(mode: Mode) -> bool {
         assert_eq!((robot.agent.mode(), &out.command), (mode, &Command::Hold));
         return robot.speed() > 0.0;
     }
-    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), own);
-    let mut inbox = inbox;
+    let law = Guided::new(waypoint::<f32>(), 1.0, 0.01);
+    let mut robot = Robot::new(&in_plane(1), law, orca(), own);
     match mode {
-        Mode::Arrived => drop(robot.agent.order(WaypointOrder::first(place(0, 0)))),
+        Mode::Arrived => drop(robot.agent.order(&WaypointOrder::first(place(0, 0)))),
         Mode::Hold => {
-            let _ = robot.agent.order(WaypointOrder::first(place(0, 9000)));
-            inbox = bytes(2, 0, 0, &[coming, stop(2, 1, 0, RequestKind::Stop)]);
+            let _ = robot.agent.order(&WaypointOrder::first(place(0, 9000)));
+            robot.agent.law_mut().command(Wish::Hold).unwrap();
         }
         _ => {}
     }
@@ -314,8 +313,8 @@ fn a_silent_neighbour_is_extrapolated_then_grows_then_expires() {
 fn swap<S: Scalar>() -> Vec<[[f64; 2]; 2]> {
     let mut one = Robot::new(&one_step_late(1), waypoint::<S>(), orca(), [-2.0, 0.0]);
     let mut two = Robot::new(&one_step_late(2), waypoint::<S>(), orca(), [2.0, 0.0]);
-    let _ = one.agent.order(WaypointOrder::first(place(2000, 0)));
-    let _ = two.agent.order(WaypointOrder::first(place(-2000, 0)));
+    let _ = one.agent.order(&WaypointOrder::first(place(2000, 0)));
+    let _ = two.agent.order(&WaypointOrder::first(place(-2000, 0)));
     let mut heard = [Vec::new(), Vec::new()];
     let mut track = Vec::new();
     for n in 0..80 {
@@ -376,7 +375,7 @@ fn a_desired_velocity_of_nan_is_ignored() {
 #[test]
 fn a_goal_on_the_grid_changes_nothing_for_a_law_with_waypoints() {
     let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
-    let goal = Message::Goal(GoalAssignment { to: RobotId::NONE, version: 1, target: Cell::new(3, 4) });
+    let goal = goal(0, 1, Cell::new(3, 4));
     let after_three = |is_told: bool, hears: &[Message]| {
         let mut robot = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
         if is_told {
@@ -400,8 +399,10 @@ fn a_robot_without_a_speed_is_in_fault_and_stands() {
     fn check<G>(mut law: G)
     where
         G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()>,
+        OrderOf<G, f32>: TryFrom<AnyOrder>,
     {
-        let _ = OrderOf::<G, f32>::waypoint(0, place(1000, 0)).map(|order| law.order(order));
+        let order = AnyOrder::Waypoint(WaypointOrder::first(place(1000, 0)));
+        let _ = OrderOf::<G, f32>::try_from(order).map(|order| law.order(&order));
         let config = one_step_late(1);
         let mut agent = Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law, orca(), Postcard);
         let inputs = Inputs {

@@ -10,8 +10,8 @@ fn wire(passphrase: &[u8]) -> Sealed<4> {
     Sealed::at_start(&Key::of_passphrase(passphrase), 0).unwrap()
 }
 
-fn goal(x: i16) -> Message {
-    Message::Goal(GoalAssignment { to: RobotId::NONE, version: x as u8, target: Cell::new(x, 5) })
+fn goal_at(x: i16) -> Message {
+    goal(0, x as u8, Cell::new(x, 5))
 }
 
 fn said<W: Wire>(by: &mut W, sequence: u16, message: &Message) -> Vec<u8> {
@@ -26,11 +26,11 @@ fn only_fresh_authentic_frames_are_obeyed_and_all_others_are_counted() {
     let guidance = RouteGuidance::new(RouteParams::default());
     let mut agent = SealedAgent::new(&config(1), guidance, Unguarded, wire(b"swarm"));
     let mut friend = wire(b"swarm");
-    let first = said(&mut friend, 0, &goal(20));
+    let first = said(&mut friend, 0, &goal_at(20));
     let attacks = [
-        said(&mut Postcard, 1, &goal(30)),
-        said(&mut wire(b"guessed"), 2, &goal(31)),
-        said(&mut wire(b"guessed"), 3, &goal(32)),
+        said(&mut Postcard, 1, &goal_at(30)),
+        said(&mut wire(b"guessed"), 2, &goal_at(31)),
+        said(&mut wire(b"guessed"), 3, &goal_at(32)),
         first.clone(),
     ];
     let mut ws = workspace();
@@ -45,7 +45,7 @@ fn only_fresh_authentic_frames_are_obeyed_and_all_others_are_counted() {
     let refused = Refused { unsigned: 1, forged: 2, replayed: 1, no_room: 0 };
     assert_eq!((out.received, out.rejected, out.refused), (0, 4, refused));
     assert_eq!(target, Some(Cell::new(20, 5)));
-    let (out, target) = hear(&said(&mut friend, 1, &goal(40)), 2);
+    let (out, target) = hear(&said(&mut friend, 1, &goal_at(40)), 2);
     assert_eq!((out.received, target), (1, Some(Cell::new(40, 5))));
     let mut listener = wire(b"swarm");
     let mut outbox = out.outbox.as_slice();
@@ -64,12 +64,12 @@ fn a_robot_with_an_exhausted_counter_reports_it_and_still_receives() {
         for sequence in [0, 1] {
             out.clear();
             let header = Header { boot: 0, sender: RobotId(1), sequence };
-            let _ = wire.encode(header, &goal(1), &mut out);
+            let _ = wire.encode(header, &goal_at(1), &mut out);
         }
     }
     let mut agent = SealedAgent::new(&config(1), guidance, Unguarded, wire);
     let mut ws = workspace();
-    let friend = said(&mut Sealed::<4>::at_start(&Key::of_passphrase(b"swarm"), 0).unwrap(), 0, &goal(20));
+    let friend = said(&mut Sealed::<4>::at_start(&Key::of_passphrase(b"swarm"), 0).unwrap(), 0, &goal_at(20));
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &friend), tick(0), &mut ws);
     assert!(out.outbox.is_empty() && out.events.contains(&Event::Muted), "{:?}", out.events);
     assert_eq!((out.received, agent.target()), (1, Some(Cell::new(20, 5))));

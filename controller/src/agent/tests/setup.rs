@@ -76,7 +76,6 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
     for step in 0..steps {
         let now = Instant::from_micros(step * 50_000);
         let beacon = Beacon {
-            time: now,
             position_mm: [900 - 20 * step as i32, 30, 0],
             velocity_mmps: [-400, 0, 0],
             radius_mm: 150,
@@ -115,7 +114,7 @@ fn each_law_takes_either_a_cell_or_a_waypoint() {
     let takes = guidances().map(|setup| {
         let mut law: AnyLaw<f32, CELLS, VISITS, TEMPLATE> = setup.law(());
         let waypoint = WaypointOrder::first(Waypoint::fixed(crate::geom::Position::ORIGIN));
-        [AnyOrder::Grid(GridOrder::Goal(Cell::new(3, 4))), AnyOrder::Waypoint(waypoint)].map(|order| law.order(order))
+        [AnyOrder::Grid(GridOrder::Goal(Cell::new(3, 4))), AnyOrder::Waypoint(waypoint)].map(|order| law.order(&order))
     });
     let (waypoint, none, cell) = ([false, true], [false, false], [true, false]);
     assert_eq!(takes, [waypoint, waypoint, waypoint, waypoint, none, cell, cell]);

@@ -25,7 +25,7 @@ type Seer<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>, Tracker<S>>;
 
 fn seer<S: Scalar>(id: u32, at_m: [f64; 2], goal: Waypoint<S>) -> Seer<S> {
     let mut robot = Robot::seeing(&in_plane(id), waypoint(), orca(), at_m, Tracker::new(params()));
-    robot.agent.order(WaypointOrder::first(goal.cast()));
+    robot.agent.order(&WaypointOrder::first(goal.cast()));
     robot
 }
 

@@ -97,17 +97,12 @@ fn lost_robots_that_return_cannot_repeat_a_frame() {
 
 #[test]
 fn acknowledgements_leave_room_for_the_beacon() {
-    let request = |number: u8| {
-        let kind = RequestKind::Redirect;
-        let request = Request { to: RobotId(1), origin: RobotId(2), number, kind, valid_ms: 1000 };
-        bytes(2, 0, number.into(), &[Message::Request(request)])
-    };
-    for requests in [1, 20, 60] {
-        let inbox: Vec<u8> = (0..requests).flat_map(request).collect();
-        let out = walker(&in_plane(1)).step(step_number(0), &inbox);
+    for count in [1, 20, 60] {
+        let inbox: Vec<u8> = (0..count).flat_map(|n| bytes(2, 0, n.into(), &[redirect(1, n)])).collect();
+        let out = route_agent(1).step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut workspace());
         let sent: Vec<Message> = sent(&out).into_iter().map(|frame| frame.message).collect();
         let acks = sent.iter().filter(|message| matches!(message, Message::Ack(_))).count();
-        assert!(acks >= usize::from(requests).min(14), "{acks} of {requests}");
-        assert!(matches!(sent.last(), Some(Message::Beacon(_))), "{requests}");
+        assert!(acks >= usize::from(count).min(14), "{acks} of {count}");
+        assert!(matches!(sent.last(), Some(Message::Beacon(_))), "{count}");
     }
 }

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 /// Waits of a robot that moves 10 m east while the others repeat their messages.
 fn waits(others: &[Message], steps: u16) -> Vec<Option<Wait>> {
     let mut robot = Robot::new(&in_plane(9), waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.order(WaypointOrder::first(place(10_000, 0)));
+    let _ = robot.agent.order(&WaypointOrder::first(place(10_000, 0)));
     let mut step = |n: u16| {
         let say = |(id, message): (usize, &Message)| bytes(id as u32 + 1, 0, n, std::slice::from_ref(message));
         let inbox: Vec<u8> = others.iter().enumerate().flat_map(say).collect();
@@ -45,7 +45,7 @@ fn a_robot_without_contact_waits_for_the_radio() {
     };
     let mut robot =
         Robot::new(&AgentConfig { contact_loss: silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
-    let _ = robot.agent.order(WaypointOrder::first(place(90_000, 0)));
+    let _ = robot.agent.order(&WaypointOrder::first(place(90_000, 0)));
     let far = bytes(2, 0, 0, &[body_at([-60_000, 0], [0, 0], Mode::Idle)]);
     for n in 0..60 {
         let out = robot.step(step_number(n), if n == 0 { &far } else { &[] });
@@ -61,7 +61,7 @@ fn a_wall_is_reported_as_the_way_and_a_door_as_a_turn() {
     };
     let last = |obstacles: &[Obstacle<f32>], others: &[Message]| {
         let mut agent = Agent::<f32, _, 8, _>::new(&in_plane(9), waypoint(), safety(), Postcard);
-        let _ = agent.order(WaypointOrder::first(place(10_000, 0)));
+        let _ = agent.order(&WaypointOrder::first(place(10_000, 0)));
         let mut wait = None;
         for n in 0..10_u16 {
             let say = |(id, message): (usize, &Message)| bytes(id as u32 + 1, 0, n, std::slice::from_ref(message));
@@ -87,18 +87,18 @@ fn moved(wall: &Obstacle<f32>, x_m: f32) -> Obstacle<f32> {
 }
 
 #[test]
-fn on_the_grid_blocked_moves_and_stop_requests_are_reported() {
+fn on_the_grid_blocked_moves_and_stops_are_reported() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.order(GridOrder::Goal(Cell::new(60, 5)));
+    agent.order(&GridOrder::Goal(Cell::new(60, 5)));
     let mut step =
         |n: u32, x: i16, inbox: &[u8]| agent.step(&inputs(&FLAT, Cell::new(x, 5), inbox), tick(n), &mut ws).wait;
     assert_eq!(step(0, 5, &[]), None);
     assert_eq!(step(1, 6, &[]), None);
     assert_eq!(step(2, 6, &[]), Some(Wait::Robots));
     assert_eq!(step(3, 7, &[]), None);
-    let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(2, 5)), stop(2, 1, 7, RequestKind::Stop)]);
+    let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(2, 5)), stop(2, 1, 7)]);
     assert_eq!(step(4, 8, &inbox), Some(Wait::Stopped));
-    let inbox = bytes(2, 0, 2, &[stop(2, 1, 8, RequestKind::Resume)]);
+    let inbox = bytes(2, 0, 2, &[resume(2, 1, 8)]);
     assert_eq!(step(5, 8, &inbox), None);
 }
 
@@ -106,7 +106,7 @@ fn on_the_grid_blocked_moves_and_stop_requests_are_reported() {
 fn a_robot_arrives_beside_its_occupied_goal_until_it_is_free() {
     for mode in [Mode::Idle, Mode::Arrived, Mode::Fault, Mode::Passive] {
         let mut robot = Robot::new(&in_plane(9), waypoint::<f32>(), orca(), [0.0; 2]);
-        let _ = robot.agent.order(WaypointOrder::first(place(2000, 0)));
+        let _ = robot.agent.order(&WaypointOrder::first(place(2000, 0)));
         for n in 0..120 {
             let on_it = body_at([2030, if n < 60 { 20 } else { 3000 }], [0, 0], mode);
             let wait = robot.step(step_number(n), &bytes(2, 0, n as u16, &[on_it])).wait;
@@ -125,7 +125,7 @@ fn a_robot_arrives_beside_its_occupied_goal_until_it_is_free() {
 fn a_robot_beside_its_goal_takes_it_when_it_becomes_free() {
     let mover = |id, at_m: [f64; 2]| {
         let mut robot: Mover<f32> = Robot::new(&one_step_late(id), waypoint(), safety(), at_m);
-        let _ = robot.agent.order(WaypointOrder::first(place(0, 0)));
+        let _ = robot.agent.order(&WaypointOrder::first(place(0, 0)));
         robot
     };
     let mut robots = [mover(1, [0.0, 0.0]), mover(2, [-3.0, 0.0])];
@@ -133,7 +133,7 @@ fn a_robot_beside_its_goal_takes_it_when_it_becomes_free() {
     assert!(least > 0.0 && have_arrived, "{least} m");
     assert!(robots.iter().any(|robot| length(robot.at_m) > 0.4));
     let [first, _] = &mut robots;
-    let _ = first.agent.order(WaypointOrder::first(place(0, 4000)));
+    let _ = first.agent.order(&WaypointOrder::first(place(0, 4000)));
     let (least, have_arrived) = run(&mut robots, 200, |_, _, _| false);
     assert!(least > 0.0 && have_arrived, "{least} m");
     assert!(length(robots[1].at_m) < 0.02, "{:?}", robots[1].at_m);
@@ -156,7 +156,7 @@ proptest! {
                 let at_m = [2.5 * libm::cos(angle), 2.5 * libm::sin(angle)];
                 let mut robot = Robot::new(&one_step_late(i + 1), waypoint(), safety(), at_m);
                 let goal = at_m.map(|x| (-x / 2.5 * f64::from(apart_mm)) as i32);
-                let _ = robot.agent.order(WaypointOrder::first(place(goal[0], goal[1])));
+                let _ = robot.agent.order(&WaypointOrder::first(place(goal[0], goal[1])));
                 robot
             }).collect();
             let is_lost = |n: i32, from: usize, to: usize| {

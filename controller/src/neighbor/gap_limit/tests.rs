@@ -3,7 +3,7 @@ use crate::neighbor::Ages;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Q16;
-use crate::wire::Beacon;
+use crate::wire::{Beacon, ProtocolId};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
@@ -42,7 +42,7 @@ impl<S: Scalar> Mover<S> {
     }
 
     fn news(&self, step: i32) -> Neighbor<S> {
-        let heard = Neighbor::from_beacon(self.body.id, &Beacon::default(), moment(step));
+        let heard = Neighbor::from_beacon(self.body.id, &Beacon::default(), ProtocolId::NONE, moment(step));
         let Body { radius_m, velocity_mps, .. } = self.body;
         Neighbor { position: self.position(), velocity_mps, radius_m, ..heard }
     }

@@ -1,7 +1,6 @@
 use super::*;
 use crate::rand::Rng;
-use crate::wire::{Due, Requests, Retry};
-use RequestKind::{Redirect, Resume, Stop};
+use crate::wire::{Ack, Addressed, Due, OutgoingMessages, ProtocolId, Retry};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
@@ -9,6 +8,7 @@ const MEMORY: Duration = Duration::from_millis(5_000);
 const OWN: RobotId = RobotId(9);
 const A: RobotId = RobotId(2);
 const B: RobotId = RobotId(3);
+const THIRD: RobotId = RobotId(4);
 /// The clock wraps within each test.
 const START: Instant = Instant::from_micros(u32::MAX - 150_000);
 
@@ -20,152 +20,170 @@ fn frame(sender: RobotId, boot: u8) -> Header {
     Header { boot, sender, sequence: 0 }
 }
 
-fn request(origin: RobotId, number: u8, kind: RequestKind, valid_ms: u16) -> Request {
-    Request { to: OWN, origin, number, kind, valid_ms }
+/// Takes a message, unless it is a repeat.
+fn receive_in<const C: usize>(
+    messages: &mut IncomingMessages<C>,
+    header: Header,
+    number: u8,
+    subject: u32,
+    now: Instant,
+) -> bool {
+    let is_repeat = messages.is_repeat(header, number, subject, now);
+    if !is_repeat {
+        messages.note(header, number, subject, now);
+    }
+    !is_repeat
 }
 
-/// Returns (accepted, new).
-fn receive<const S: usize>(
-    orders: &mut Orders<S>,
+/// The same for the first start of `sender`.
+fn receive<const C: usize>(
+    messages: &mut IncomingMessages<C>,
     sender: RobotId,
     number: u8,
-    kind: RequestKind,
+    subject: u32,
     now: Instant,
-) -> (bool, bool) {
-    let request = request(sender, number, kind, 1_000);
-    let answer = orders.receive(frame(sender, 0), &request, now);
-    assert_eq!((answer.ack.to, answer.ack.boot), (sender, 0));
-    assert_eq!(answer.ack.number, number);
-    (answer.ack.accepted, answer.is_new)
-}
-
-const NEW: (bool, bool) = (true, true);
-const REPEATED: (bool, bool) = (true, false);
-const REFUSED: (bool, bool) = (false, false);
-
-#[test]
-fn a_stop_lasts_for_its_validity_and_repeats_do_not_prolong_it() {
-    let mut orders = Orders::<2>::new(MEMORY);
-    assert!(!orders.is_stopped(START));
-    assert_eq!(receive(&mut orders, A, 7, Stop, START), NEW);
-    assert_eq!(receive(&mut orders, A, 7, Stop, after(900)), REPEATED);
-    assert_eq!(orders.stopped_until(after(900)), Some(after(1_000)));
-    assert!(orders.is_stopped(after(999)));
-    assert!(!orders.is_stopped(after(1_000)));
-    assert_eq!(receive(&mut orders, A, 7, Stop, after(2_000)), REPEATED);
-    assert!(!orders.is_stopped(after(2_000)));
-    assert_eq!(receive(&mut orders, A, 8, Stop, after(2_000)), NEW);
-    assert!(orders.is_stopped(after(2_999)));
+) -> bool {
+    receive_in(messages, frame(sender, 0), number, subject, now)
 }
 
 #[test]
-fn resume_lifts_the_stop_of_its_own_origin_only() {
-    let mut orders = Orders::<4>::new(MEMORY);
-    // A asks for itself and passes on the stop of B; B also asks directly.
-    for (sender, origin, number) in [(A, A, 1), (A, B, 2), (B, B, 1)] {
-        let stop = request(origin, number, Stop, 1_000);
-        assert!(orders.receive(frame(sender, 0), &stop, START).is_new);
+fn a_message_is_new_once_and_its_repeats_are_not() {
+    let mut messages = IncomingMessages::<2>::new(MEMORY);
+    assert!(receive(&mut messages, A, 7, 1, START));
+    for millis in [0, 900, 2_000] {
+        assert!(!receive(&mut messages, A, 7, 1, after(millis)));
     }
-    for (sender, origin, number, stopped) in [(A, B, 3, true), (B, B, 2, true), (A, A, 4, false)] {
-        let resume = request(origin, number, Resume, 1_000);
-        assert!(orders.receive(frame(sender, 0), &resume, START).is_new);
-        assert_eq!(orders.is_stopped(START), stopped);
-    }
+    assert!(receive(&mut messages, A, 8, 1, after(2_000)));
+    assert!(receive(&mut messages, B, 8, 1, after(2_000)), "of another robot");
 }
 
 #[test]
-fn the_robot_is_stopped_until_the_last_active_stop_ends() {
-    let mut orders = Orders::<2>::new(MEMORY);
-    let long = request(A, 1, Stop, u16::MAX);
-    assert!(orders.receive(frame(A, 0), &long, START).is_new);
-    assert_eq!(receive(&mut orders, B, 1, Stop, START), NEW);
-    assert_eq!(orders.stopped_until(START), Some(after(65_535)));
-    assert!(orders.is_stopped(after(65_534)));
-    assert!(!orders.is_stopped(after(65_535)));
-    let none = request(B, 2, Stop, 0);
-    assert!(orders.receive(frame(B, 0), &none, START).is_new);
-    assert!(!orders.is_stopped(after(65_535)));
-}
-
-#[test]
-fn a_stop_that_comes_after_the_resume_sent_later_is_ignored() {
+fn a_message_that_comes_after_one_sent_later_is_ignored_unless_its_subject_differs() {
     for number in [1, 127, 255, 0] {
-        let mut orders = Orders::<2>::new(MEMORY);
-        let resume = u8::wrapping_add(number, 1);
-        assert_eq!(receive(&mut orders, A, resume, Resume, START), NEW);
-        assert_eq!(receive(&mut orders, A, number, Stop, after(10)), REFUSED);
-        assert!(!orders.is_stopped(after(10)));
-        assert_eq!(receive(&mut orders, A, number, Redirect, after(10)), NEW);
-        assert_eq!(receive(&mut orders, A, number, Redirect, after(20)), REPEATED);
+        let mut messages = IncomingMessages::<2>::new(MEMORY);
+        let later = u8::wrapping_add(number, 1);
+        assert!(receive(&mut messages, A, later, 1, START));
+        assert!(!receive(&mut messages, A, number, 1, after(10)));
+        assert!(receive(&mut messages, A, number, 0, after(10)));
+        assert!(!receive(&mut messages, A, number, 0, after(20)));
     }
 }
 
 #[test]
 fn a_number_more_than_32_behind_counts_as_new() {
-    for (behind, expected) in [(0, REPEATED), (1, REFUSED), (32, REFUSED), (33, NEW)] {
-        let mut orders = Orders::<1>::new(MEMORY);
-        receive(&mut orders, A, 20, Resume, START);
+    for (behind, is_new) in [(0, false), (1, false), (32, false), (33, true)] {
+        let mut messages = IncomingMessages::<1>::new(MEMORY);
+        assert!(receive(&mut messages, A, 20, 1, START));
         let number = u8::wrapping_sub(20, behind);
-        assert_eq!(receive(&mut orders, A, number, Resume, START), expected);
+        assert_eq!(receive(&mut messages, A, number, 1, START), is_new);
     }
 }
 
 #[test]
-fn a_request_is_remembered_until_its_repeats_cease() {
-    let mut orders = Orders::<1>::new(MEMORY);
-    assert_eq!(receive(&mut orders, A, 1, Redirect, START), NEW);
-    assert_eq!(receive(&mut orders, A, 1, Redirect, after(4_999)), REPEATED);
-    assert_eq!(receive(&mut orders, A, 1, Redirect, after(9_998)), REPEATED);
-    assert_eq!(receive(&mut orders, A, 1, Redirect, after(14_998)), NEW);
+fn a_message_is_remembered_until_its_repeats_cease() {
+    let mut messages = IncomingMessages::<1>::new(MEMORY);
+    assert!(receive(&mut messages, A, 1, 0, START));
+    assert!(!receive(&mut messages, A, 1, 0, after(4_999)));
+    assert!(!receive(&mut messages, A, 1, 0, after(9_998)));
+    assert!(receive(&mut messages, A, 1, 0, after(14_998)));
 }
 
 #[test]
-fn a_restarted_sender_may_use_any_number_and_its_old_requests_can_be_dropped() {
-    let mut orders = Orders::<3>::new(MEMORY);
-    let stop = request(A, 5, Stop, 1_000);
-    assert!(orders.receive(frame(A, 0), &stop, START).is_new);
-    assert!(orders.receive(frame(A, 1), &stop, START).is_new);
-    assert!(!orders.receive(frame(A, 1), &stop, START).is_new);
-    assert_eq!(receive(&mut orders, B, 5, Stop, START), NEW);
-    orders.forget(A);
-    assert!(orders.is_stopped(START));
-    orders.forget(B);
-    assert!(!orders.is_stopped(START));
+fn a_restarted_sender_may_use_any_number_and_its_old_messages_can_be_dropped() {
+    let mut messages = IncomingMessages::<3>::new(MEMORY);
+    assert!(receive_in(&mut messages, frame(A, 0), 5, 1, START));
+    assert!(receive_in(&mut messages, frame(A, 1), 5, 1, START));
+    assert!(!receive_in(&mut messages, frame(A, 1), 5, 1, START));
+    assert!(receive(&mut messages, B, 5, 1, START));
+    messages.forget(A);
+    assert!(!receive(&mut messages, B, 5, 1, START));
+    assert!(receive_in(&mut messages, frame(A, 1), 5, 1, START));
+    messages.forget(A);
+    messages.forget(B);
+    assert_eq!(messages, IncomingMessages::new(MEMORY));
 }
 
 #[test]
-fn entries_without_a_stop_are_evicted_when_the_table_is_full() {
-    let mut none = Orders::<0>::new(MEMORY);
-    assert_eq!(receive(&mut none, A, 1, Stop, START), REFUSED);
-    assert_eq!(receive(&mut none, A, 2, Resume, START), REPEATED);
-    assert!(!none.is_stopped(START));
+fn a_full_table_drops_the_entry_that_was_heard_longest_ago() {
+    let mut none = IncomingMessages::<0>::new(MEMORY);
+    assert!([0, 1].into_iter().all(|_| receive(&mut none, A, 1, 1, START)), "without room repeats count as new");
+    let mut messages = IncomingMessages::<2>::new(MEMORY);
+    assert!(receive(&mut messages, A, 1, 1, START));
+    assert!(receive(&mut messages, B, 1, 1, after(1)));
+    // A repeat counts.
+    assert!(!receive(&mut messages, A, 1, 1, after(2)));
+    assert!(receive(&mut messages, THIRD, 1, 1, after(3)));
+    assert!(!receive(&mut messages, A, 1, 1, after(4)));
+    assert!(receive(&mut messages, B, 1, 1, after(5)));
+    assert!(receive(&mut messages, THIRD, 1, 1, after(6)));
+}
 
-    let mut orders = Orders::<2>::new(MEMORY);
-    assert_eq!(receive(&mut orders, A, 1, Stop, START), NEW);
-    assert_eq!(receive(&mut orders, A, 2, Redirect, after(1)), NEW);
-    // The redirection is evicted, although it was received last.
-    assert_eq!(receive(&mut orders, B, 1, Stop, after(2)), NEW);
-    let full = orders.clone();
-    let third = RobotId(4);
-    assert_eq!(receive(&mut orders, third, 1, Stop, after(3)), REFUSED);
-    assert_eq!(receive(&mut orders, third, 2, Redirect, after(3)), REFUSED);
-    assert_eq!(receive(&mut orders, third, 3, Resume, after(3)), REPEATED);
-    assert_eq!(orders, full);
-    assert_eq!(receive(&mut orders, A, 3, Resume, after(3)), NEW);
-    assert_eq!(receive(&mut orders, third, 4, Stop, after(3)), NEW);
-    assert_eq!(receive(&mut orders, B, 2, Resume, after(3)), NEW);
-    assert_eq!(orders.stopped_until(after(3)), Some(after(1_003)));
+/// Whether an order is given to the law, which has a use for it.
+fn gives<const C: usize>(orders: &mut IncomingOrders<C>, header: Header, number: u8, subject: u32) -> bool {
+    let is_news = orders.is_news(header, number, Some(subject));
+    if is_news {
+        orders.note(header, number, subject);
+    }
+    is_news
 }
 
 #[test]
-fn of_two_entries_without_a_stop_the_staler_is_evicted() {
-    let mut orders = Orders::<2>::new(MEMORY);
-    receive(&mut orders, A, 1, Resume, START);
-    receive(&mut orders, B, 1, Resume, after(1));
-    receive(&mut orders, A, 1, Resume, after(2));
-    receive(&mut orders, RobotId(4), 1, Stop, after(3));
-    assert_eq!(receive(&mut orders, A, 1, Resume, after(4)), REPEATED);
-    assert_eq!(receive(&mut orders, B, 1, Resume, after(5)), NEW);
+fn an_order_counts_once_and_older_ones_about_its_subject_do_not() {
+    for first in [0, 100, 255] {
+        let number = |ahead: u8| u8::wrapping_add(first, ahead);
+        let mut orders = IncomingOrders::<2>::new();
+        assert!(gives(&mut orders, frame(A, 0), first, 0));
+        for (ahead, is_news) in [(0, false), (255, false), (128, false), (1, true), (0, false), (128, true), (1, false)]
+        {
+            assert_eq!(gives(&mut orders, frame(A, 0), number(ahead), 0), is_news, "{first} + {ahead}");
+        }
+        assert!(gives(&mut orders, frame(A, 0), first, 1), "another subject");
+    }
+}
+
+#[test]
+fn an_order_that_was_of_no_use_stays_news() {
+    let orders = IncomingOrders::<2>::new();
+    for _ in 0..3 {
+        assert!(orders.is_news(frame(A, 0), 5, Some(0)));
+    }
+}
+
+#[test]
+fn orders_of_another_or_of_a_restarted_operator_count_at_any_number() {
+    let mut orders = IncomingOrders::<2>::new();
+    assert!(gives(&mut orders, frame(A, 0), 100, 0));
+    for by in [frame(A, 1), frame(B, 1), frame(A, 0)] {
+        assert!(gives(&mut orders, by, 7, 0));
+        assert!(!gives(&mut orders, by, 7, 0));
+        assert!(!gives(&mut orders, by, 6, 0));
+    }
+}
+
+#[test]
+fn an_order_without_a_subject_is_always_news_and_tells_a_change_of_its_operator() {
+    let mut orders = IncomingOrders::<2>::new();
+    assert!(gives(&mut orders, frame(A, 0), 3, 0));
+    for (by, is_restarted) in [(A, true), (A, false), (B, true), (B, false), (A, true)] {
+        for _ in 0..2 {
+            assert!(orders.is_news(frame(by, 0), 3, None));
+        }
+        assert_eq!(orders.is_restarted(frame(by, 0)), is_restarted);
+    }
+    assert!(orders.is_restarted(frame(A, 1)));
+    assert!(!gives(&mut orders, frame(A, 0), 3, 0), "the others are unchanged");
+}
+
+#[test]
+fn a_full_table_of_orders_drops_the_subject_that_it_met_first() {
+    let mut none = IncomingOrders::<0>::default();
+    assert!(gives(&mut none, frame(A, 0), 1, 0) && gives(&mut none, frame(A, 0), 1, 0));
+    let mut orders = IncomingOrders::<2>::default();
+    for (number, subject) in [(1, 0), (1, 1), (2, 0), (1, 2)] {
+        assert!(gives(&mut orders, frame(A, 0), number, subject));
+    }
+    assert!(!gives(&mut orders, frame(A, 0), 1, 1) && !gives(&mut orders, frame(A, 0), 1, 2));
+    assert!(gives(&mut orders, frame(A, 0), 2, 0));
 }
 
 /// Loses, duplicates and delays packets, so that they overtake each other.
@@ -176,118 +194,133 @@ struct Radio {
 }
 
 impl Radio {
-    fn carry<T: Copy>(&mut self, packet: T, now: i32, air: &mut StdVec<(i32, T)>) {
+    fn carry<T: Clone>(&mut self, packet: &T, now: i32, air: &mut StdVec<(i32, T)>) {
         for _ in 0..1 + self.rng.below(2) {
             if self.rng.below(100) >= self.loss_percent {
-                air.push((now + 1 + self.rng.below(self.longest_ms) as i32, packet));
+                air.push((now + 1 + self.rng.below(self.longest_ms) as i32, packet.clone()));
             }
         }
     }
 
-    fn arrived<T: Copy>(air: &mut StdVec<(i32, T)>, now: i32) -> StdVec<T> {
-        let packets = air.iter().filter(|p| p.0 <= now).map(|p| p.1).collect();
+    fn arrived<T: Clone>(air: &mut StdVec<(i32, T)>, now: i32) -> StdVec<T> {
+        let packets = air.iter().filter(|p| p.0 <= now).map(|p| p.1.clone()).collect();
         air.retain(|p| p.0 > now);
         packets
     }
 }
 
+const SUBJECTS: usize = 3;
+const PROTOCOL: ProtocolId = ProtocolId(70);
+
 struct Asked {
-    kind: RequestKind,
-    valid_ms: i32,
+    subject: usize,
+    value: u8,
+    number: Option<u8>,
     sends: u32,
-    delivered: Option<i32>,
+    is_delivered: bool,
     /// Acknowledged, replaced or expired.
     ends: u32,
     expired: bool,
 }
 
-/// Random requests for 20 s, compared with a model. Returns how many expired.
+impl Asked {
+    fn is_pending(&self) -> bool {
+        self.ends == 0
+    }
+
+    /// Whether the sender still waits for its acknowledgement.
+    fn is_in(&self, messages: &OutgoingMessages<4>) -> bool {
+        self.number.is_none_or(|number| messages.clone().acknowledged(OWN, &Ack { to: A, boot: 3, number }))
+    }
+}
+
+/// Random messages about three subjects for 20 s, compared with a model. Their content is the
+/// subject and one of two values. Returns how many expired.
 fn converse(mut radio: Radio, start: Instant) -> u32 {
     let retry = Retry::default();
-    let mut requests = Requests::<4>::new(A, 3, retry);
-    let mut orders = Orders::<4>::new(MEMORY);
+    let mut outgoing = OutgoingMessages::<4>::new(A, 3, retry);
+    let mut incoming = IncomingMessages::<4>::new(MEMORY);
     let mut asked: StdVec<Asked> = StdVec::new();
     let mut places = [usize::MAX; 256];
-    let (mut to_b, mut to_a) = (StdVec::new(), StdVec::new());
-    let mut decisive: Option<usize> = None;
+    let (mut to_b, mut to_a) = (StdVec::<(i32, Addressed)>::new(), StdVec::<(i32, Ack)>::new());
+    let mut prevails = [None; SUBJECTS];
 
     for millis in (0..40_000).step_by(10) {
         let now = start + Duration::from_millis(millis);
         if millis < 20_000 && radio.rng.below(25) == 0 {
-            let kind = [Stop, Resume, Redirect][radio.rng.below(3) as usize];
-            let valid_ms = 300 + radio.rng.below(5_000) as u16;
-            let older = requests.clone();
-            let number = requests.ask(OWN, A, kind, valid_ms, now).unwrap();
-            if requests != older {
-                if kind.is_standing() && requests.len() == older.len() {
-                    let replaced = asked.iter_mut().rfind(|a| a.kind.is_standing() && a.ends == 0);
-                    replaced.unwrap().ends += 1;
+            let (subject, value) = (radio.rng.below(SUBJECTS as u32) as usize, radio.rng.below(2) as u8);
+            let valid = Duration::from_millis(300 + radio.rng.below(5_000) as i32);
+            let older = outgoing.clone();
+            let content = [subject as u8, value].into();
+            outgoing.send(OWN, subject as u32, (PROTOCOL, &content), valid, now).unwrap();
+            let pending = asked.iter_mut().rfind(|a| a.subject == subject && a.is_pending());
+            assert_eq!(outgoing == older, pending.as_ref().is_some_and(|a| a.value == value));
+            if outgoing != older {
+                if let Some(replaced) = pending {
+                    replaced.ends += 1;
                 }
-                places[usize::from(number)] = asked.len();
-                asked.push(Asked {
-                    kind,
-                    valid_ms: valid_ms.into(),
-                    sends: 0,
-                    delivered: None,
-                    ends: 0,
-                    expired: false,
-                });
+                let number = None;
+                asked.push(Asked { subject, value, number, sends: 0, is_delivered: false, ends: 0, expired: false });
             }
         }
-        while let Some(due) = requests.poll(now) {
+        while let Some(due) = outgoing.poll(now) {
             match due {
-                Due::Send(request) => {
-                    let place = places[usize::from(request.number)];
-                    asked[place].sends += 1;
-                    radio.carry((place, request), millis, &mut to_b);
+                Due::Send(message) => {
+                    let [subject, value] = message.content[..] else { panic!("{message:?}") };
+                    let is_it = |a: &Asked| a.subject == usize::from(subject) && a.is_pending();
+                    let place = asked.iter().rposition(is_it).unwrap();
+                    let known = &mut asked[place];
+                    assert_eq!((message.to, message.protocol, value), (OWN, PROTOCOL, known.value));
+                    assert_eq!(*known.number.get_or_insert(message.number), message.number);
+                    known.sends += 1;
+                    places[usize::from(message.number)] = place;
+                    radio.carry(&message, millis, &mut to_b);
                 }
-                Due::Expired(request) => {
-                    let place = places[usize::from(request.number)];
-                    asked[place].ends += 1;
-                    asked[place].expired = true;
+                Due::Expired(to) => {
+                    assert_eq!(to, OWN);
+                    let gone = asked.iter_mut().find(|a| a.is_pending() && !a.is_in(&outgoing)).unwrap();
+                    gone.ends += 1;
+                    gone.expired = true;
                 }
             }
         }
-        for (place, request) in Radio::arrived(&mut to_b, millis) {
-            let answer = orders.receive(frame(A, 3), &request, now);
-            let standing = request.kind.is_standing();
-            let is_latest =
-                !asked[place + 1..].iter().any(|a| a.kind.is_standing() == standing && a.delivered.is_some());
-            let first = asked[place].delivered.is_none();
-            assert_eq!(answer.is_new, first && is_latest, "request {place}");
-            assert_eq!(answer.ack.accepted, is_latest);
-            asked[place].delivered.get_or_insert(millis);
-            if answer.is_new && standing {
-                decisive = Some(place);
+        for message in Radio::arrived(&mut to_b, millis) {
+            let place = places[usize::from(message.number)];
+            let subject = asked[place].subject;
+            let is_new = receive_in(&mut incoming, frame(A, 3), message.number, subject as u32, now);
+            let is_latest = !asked[place + 1..].iter().any(|a| a.subject == subject && a.is_delivered);
+            assert_eq!(is_new, !asked[place].is_delivered && is_latest, "message {place}");
+            asked[place].is_delivered = true;
+            if is_new {
+                prevails[subject] = Some(place);
             }
-            radio.carry(answer.ack, millis, &mut to_a);
+            radio.carry(&Ack { to: A, boot: 3, number: message.number }, millis, &mut to_a);
         }
         for ack in Radio::arrived(&mut to_a, millis) {
-            if requests.acknowledged(OWN, &ack).is_some() {
+            if outgoing.acknowledged(OWN, &ack) {
                 let place = places[usize::from(ack.number)];
-                assert!(asked[place].delivered.is_some());
+                assert!(asked[place].is_delivered);
                 asked[place].ends += 1;
             }
         }
-        let stopped = decisive.is_some_and(|place| {
-            let stop = &asked[place];
-            stop.kind == Stop && millis < stop.delivered.unwrap() + stop.valid_ms
-        });
-        assert_eq!(orders.is_stopped(now), stopped, "at {millis} ms");
+        for (subject, place) in prevails.into_iter().enumerate() {
+            let last = asked.iter().rposition(|a| a.subject == subject && a.is_delivered);
+            assert_eq!(place, last, "at {millis} ms");
+        }
     }
-    assert!(requests.is_empty() && asked.len() > 10);
-    for request in &asked {
-        assert_eq!(request.ends, 1);
-        assert!(request.sends <= u32::from(retry.attempts));
+    assert!(outgoing.is_empty() && asked.len() > 10);
+    for message in &asked {
+        assert_eq!(message.ends, 1);
+        assert!(message.sends <= u32::from(retry.attempts));
     }
-    asked.iter().map(|request| u32::from(request.expired)).sum()
+    asked.iter().map(|message| u32::from(message.expired)).sum()
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn over_any_radio_each_request_acts_once_and_the_last_one_prevails(
+    fn over_any_radio_each_message_acts_once_and_the_last_one_prevails(
         seed in any::<u64>(), start in any::<u32>(), loss_percent in 0..=100_u32,
         longest_ms in 1..600_u32,
     ) {
@@ -296,7 +329,7 @@ proptest! {
     }
 
     #[test]
-    fn over_a_lossless_radio_no_request_expires(
+    fn over_a_lossless_radio_no_message_expires(
         seed in any::<u64>(), longest_ms in 1..90_u32,
     ) {
         let radio = Radio { rng: Rng::new(seed), loss_percent: 0, longest_ms };

@@ -1,8 +1,9 @@
 use super::*;
 use crate::auth::{Master, ReplayGuard};
-use crate::grid::Cell;
 use crate::robot::RobotId;
-use crate::wire::{Ack, Beacon, DecodeError, GoalAssignment, Header, KeyHeld, Message, OperatorWire, Sealed, Wire};
+use crate::wire::{
+    Ack, Addressed, Beacon, DecodeError, Header, KeyHeld, Message, OperatorWire, ProtocolId, Sealed, Wire,
+};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::vec::Vec;
@@ -45,8 +46,9 @@ fn beacon() -> Message {
     Message::Beacon(Beacon::default())
 }
 
-fn goal(to: u32) -> Message {
-    Message::Goal(GoalAssignment { to: RobotId(to), version: 1, target: Cell::new(1, 2) })
+fn order(to: u32) -> Message {
+    let content = heapless::Vec::from_slice(&[0, 1, 0, 2, 0]).unwrap();
+    Message::Order(Addressed { to: RobotId(to), number: 1, protocol: ProtocolId(1), content })
 }
 
 #[test]
@@ -137,14 +139,14 @@ fn only_the_operator_can_give_orders() {
     let mut operator = operator();
     let (mut insider, mut listener) = (robot(1, 0, 0), robot(2, 0, 0));
     for (n, to) in [2, 0].into_iter().enumerate() {
-        let frame = said(&mut insider, OPERATOR.0, n as u16, &goal(to));
+        let frame = said(&mut insider, OPERATOR.0, n as u16, &order(to));
         assert_eq!(read(&mut listener, &frame), Err(DecodeError::Forged), "to {to}");
     }
     let mut out = Bytes::new();
-    operator.say(RobotId(2), &goal(2), &mut out).unwrap();
-    assert_eq!(read(&mut listener, &out), Ok(goal(2)));
+    operator.say(RobotId(2), &order(2), &mut out).unwrap();
+    assert_eq!(read(&mut listener, &out), Ok(order(2)));
     assert_eq!(read(&mut listener, &out), Err(DecodeError::Replayed));
-    let ack = Message::Ack(Ack { to: RobotId(2), boot: 0, number: 1, accepted: true });
+    let ack = Message::Ack(Ack { to: RobotId(2), boot: 0, number: 1 });
     let frame = said(&mut insider, 1, 7, &ack);
     assert_eq!(read(&mut listener, &frame), Ok(ack));
 }

@@ -1,5 +1,5 @@
 use super::super::arbitrary;
-use super::super::{decode, encode};
+use super::super::{Addressed, Bytes, ProtocolId, decode, encode};
 use super::*;
 use crate::digest::digest;
 use crate::robot::RobotId;
@@ -22,13 +22,14 @@ fn header(sender: u32, sequence: u16) -> Header {
     Header { boot: 3, sender: RobotId(sender), sequence }
 }
 
-fn goal() -> Message {
-    Message::Goal(super::super::GoalAssignment { to: RobotId(2), version: 4, target: crate::grid::Cell::new(-3, 8) })
+fn order() -> Message {
+    let content = Bytes::from_slice(&[0, 0xFD, 0xFF, 8, 0]).unwrap();
+    Message::Order(Addressed { to: RobotId(2), number: 4, protocol: ProtocolId(1), content })
 }
 
 fn said<W: Wire>(by: &mut W, header: Header) -> StdVec<u8> {
     let mut out = Vec::<u8, 64>::new();
-    by.encode(header, &goal(), &mut out).unwrap();
+    by.encode(header, &order(), &mut out).unwrap();
     assert_eq!(out.pop(), Some(0));
     out.to_vec()
 }
@@ -60,8 +61,9 @@ fn a_sealed_frame_has_the_golden_bytes() {
     let (body, crc) = content.split_at(content.len() - 2);
     assert_eq!(X25.checksum(body).to_le_bytes(), crc);
     let (text, code) = body.split_at(body.len() - 4);
-    // version | tagged, boot, sender, sequence, goal: kind, to, version, x, y (zigzag); epoch.
-    assert_eq!(text, [0x83, 3, 12, 2, 1, 4, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0]);
+    // version | tagged, boot, sender, sequence; order: kind, to, number, protocol, length, content;
+    // epoch.
+    assert_eq!(text, [0x84, 3, 12, 2, 1, 4, 2, 4, 1, 5, 0, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0]);
     assert_eq!(code, &Mac::new(&key()).of(&[text])[..4]);
     let plain = said(&mut Postcard, header(12, 0x0102));
     assert_eq!(frame.len(), plain.len() + TAG_LEN);
@@ -72,7 +74,7 @@ fn a_frame_with_the_key_is_accepted_once_and_others_never() {
     let frame = said(&mut sealed(0), header(1, 0));
     let mut receiver = sealed(0);
     let heard = receiver.decode(&frame).unwrap();
-    assert_eq!((heard.header, heard.message), (header(1, 0), goal()));
+    assert_eq!((heard.header, heard.message), (header(1, 0), order()));
     assert_eq!(receiver.decode(&frame), Err(DecodeError::Replayed));
     let plain = said(&mut Postcard, header(1, 1));
     assert_eq!(receiver.decode(&plain), Err(DecodeError::Unsigned));
@@ -118,13 +120,13 @@ fn frames_per_start_and_starts_are_limited() {
     for _ in 1..1 << WRAP_BITS {
         for sequence in [1, 0] {
             out.clear();
-            sender.encode(header(1, sequence), &goal(), &mut out).unwrap();
+            sender.encode(header(1, sequence), &order(), &mut out).unwrap();
         }
     }
     out.clear();
-    assert!(sender.encode(header(1, 1), &goal(), &mut out).is_ok());
+    assert!(sender.encode(header(1, 1), &order(), &mut out).is_ok());
     let before = out.clone();
-    let end = sender.encode(header(1, 0), &goal(), &mut out);
+    let end = sender.encode(header(1, 0), &order(), &mut out);
     assert_eq!((end, &out), (Err(EncodeError::Exhausted), &before));
     let mut receiver = sealed(0);
     let first = said(&mut sealed(1), header(1, 0));

@@ -42,7 +42,7 @@ pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let reference =
         Waypoint { velocity_mps: Vec3::new(0.25, 0.0, 0.0), ..Waypoint::fixed(Position::from_mm([1000, 0, 0])) };
     for mover in &mut movers {
-        mover.agent.order(WaypointOrder::first(reference));
+        mover.agent.order(&WaypointOrder::first(reference));
     }
     run(&scene(&BALL, 400), &mut movers, &mut (), probe)
 }
@@ -60,7 +60,7 @@ pub(super) fn goals<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     for mover in &mut movers {
         for (index, goal) in (0..).zip([[9000, 4000, 0], [9000, -4000, 0]]) {
             let waypoint = Waypoint::fixed(Position::from_mm(goal));
-            mover.agent.order(WaypointOrder { index, waypoint });
+            mover.agent.order(&WaypointOrder { index, waypoint });
         }
     }
     run(&scene(&[], 400), &mut movers, &mut (), probe)

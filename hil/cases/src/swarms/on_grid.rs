@@ -3,16 +3,14 @@ use crate::land::Land;
 use crate::medium::{Faults, INBOX};
 use crate::{Probe, Summary};
 use heapless::Vec;
-use staya_controller::agent::{AgentConfig, GridOrder, Unguarded};
+use staya_controller::agent::{AgentConfig, Grid, GridMessage, GridOrder, Protocol as _, TemplatePart, Unguarded};
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::route::RouteParams;
 use staya_controller::scalar::Scalar;
 use staya_controller::template::Template;
-use staya_controller::wire::{
-    GoalAssignment, Header, Message, Postcard, Request, RequestKind, TemplateAssignment, Wire,
-};
+use staya_controller::wire::{Addressed, Content as _, Header, Message, Postcard, Wire};
 
 const LAND: Land = Land { size: 28, roughness_log2: 2, walls: &[(9, 7, 12), (18, 14, 19)] };
 const OPERATOR: RobotId = RobotId(200);
@@ -40,7 +38,7 @@ fn add_travellers<S: Scalar>(walkers: &mut Vec<Walker<S, Route>, ROBOTS>) {
     for (index, (cell, goal)) in corners.into_iter().zip(corners.into_iter().rev()).enumerate() {
         let guidance = Route::new(RouteParams::default());
         let mut agent = GridAgent::new(&config(index), guidance, Unguarded, Postcard);
-        agent.order(GridOrder::Goal(goal));
+        agent.order(&GridOrder::Goal(goal));
         let _ = walkers.push(Walker { agent, cell, free_at_ms: 0 });
     }
 }
@@ -82,7 +80,7 @@ fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -
     let mut walkers = Vec::new();
     add_members(&mut walkers, params, &Postcard, template);
     for (walker, place) in walkers.iter_mut().zip(PLACES) {
-        walker.agent.order(GridOrder::Goal(GOAL + place));
+        walker.agent.order(&GridOrder::Goal(GOAL + place));
     }
     let scene = Scene { land: LAND, faults: Faults::default(), ticks: 300 };
     run(&scene, &mut walkers, Postcard, |_, _| {}, probe)
@@ -108,6 +106,8 @@ struct Operator<W> {
 }
 
 impl<W: Wire> Operator<W> {
+    /// Number of its only goal and of its only templates.
+    const VERSION: u8 = 1;
     const STOP: core::ops::Range<u32> = 60..66;
     const RESUME: core::ops::Range<u32> = 80..90;
 
@@ -115,29 +115,38 @@ impl<W: Wire> Operator<W> {
         let index = (tick & 3) as usize;
         let to = RobotId(index as u32 + 1);
         let Template { slot, offset, entries } = template(index);
-        if let Ok(parts) = TemplateAssignment::split(to, 1, slot, offset, &entries) {
+        if let Ok(parts) = TemplatePart::split(Self::VERSION, slot, offset, &entries) {
             // A tick has no room for both parts.
             let turn = (tick >> 2) as usize;
             for part in parts.filter(|part| usize::from(part.part) == turn & 1) {
-                self.say(Message::Template(part), out);
+                self.order(to, &GridOrder::Template { part, is_restarted: false }, out);
             }
         }
-        let goal = GoalAssignment { to: RobotId::NONE, version: 1, target: GOAL };
-        self.say(Message::Goal(goal), out);
-        let request = |number, kind| {
-            Message::Request(Request { to: RobotId(1), origin: OPERATOR, number, kind, valid_ms: 30_000 })
-        };
+        self.order(RobotId::NONE, &GridOrder::FormationGoal(GOAL), out);
         if Self::STOP.contains(&tick) {
-            self.say(request(1, RequestKind::Stop), out);
+            self.send(1, &GridMessage::Stop { origin: OPERATOR, valid_ms: 30_000 }, out);
         }
         if Self::RESUME.contains(&tick) {
-            self.say(request(2, RequestKind::Resume), out);
+            self.send(2, &GridMessage::Resume { origin: OPERATOR }, out);
         }
     }
 
-    fn say(&mut self, message: Message, out: &mut Vec<u8, INBOX>) {
+    fn order(&mut self, to: RobotId, order: &GridOrder, out: &mut Vec<u8, INBOX>) {
+        if let Some(order) = Grid::order(to, Self::VERSION, order) {
+            self.say(&order, out);
+        }
+    }
+
+    /// Sends a message to the top leader.
+    fn send(&mut self, number: u8, message: &GridMessage, out: &mut Vec<u8, INBOX>) {
+        if let Some((protocol, content)) = message.encode(Grid::ID) {
+            self.say(&Message::Law(Addressed { to: RobotId(1), number, protocol, content }), out);
+        }
+    }
+
+    fn say(&mut self, message: &Message, out: &mut Vec<u8, INBOX>) {
         let header = Header { boot: 0, sender: OPERATOR, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
-        let _ = self.wire.encode(header, &message, out);
+        let _ = self.wire.encode(header, message, out);
     }
 }

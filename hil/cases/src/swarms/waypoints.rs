@@ -72,7 +72,7 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
     let mut movers = Vec::new();
     add_movers(&mut movers, starts, |_| waypoint(), safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
-        mover.agent.order(WaypointOrder::first(Waypoint::fixed(Position::from_mm(*goal))));
+        mover.agent.order(&WaypointOrder::first(Waypoint::fixed(Position::from_mm(*goal))));
     }
     run(scene, &mut movers, &mut (), probe)
 }
@@ -134,7 +134,7 @@ pub(super) fn route_in_plane<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let mut movers = Vec::new();
     add_movers(&mut movers, &starts, guidance, safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
-        mover.agent.order(GridOrder::Goal(goal));
+        mover.agent.order(&GridOrder::Goal(goal));
     }
     let scene = Scene { land: Some(land), ticks: 700, ..scene(&[]) };
     run(&scene, &mut movers, &mut workspace(), probe)

@@ -16,14 +16,16 @@ mod program {
     #[cfg(not(part = "nrf51"))]
     use staya_cases::Case;
     use staya_cases::{Probe, Summary, WorstCase};
-    use staya_controller::agent::{Agent, Inputs, Law, OUTBOX, Outputs, Safety};
+    use staya_controller::agent::{Agent, Grid, GridPayload, Inputs, Law, OUTBOX, Outputs, Protocol as _, Safety};
     use staya_controller::grid::{Cell, Dir};
     use staya_controller::robot::{Mode, RobotId};
     #[cfg(all(part = "stm32f405", not(debug_assertions)))]
     use staya_controller::scalar::Fast32;
     use staya_controller::scalar::{Q16, Scalar};
     use staya_controller::time::Instant;
-    use staya_controller::wire::{Beacon, DecodeError, EncodeError, Frame, Header, Message, Postcard, Wire};
+    use staya_controller::wire::{
+        Beacon, Content as _, DecodeError, EncodeError, Frame, Header, Message, Postcard, Wire,
+    };
     use staya_firmware::{runtime, stack};
     #[cfg(not(part = "nrf51"))]
     use {
@@ -183,18 +185,23 @@ mod program {
         let (mut saying, mut hearing) = (Meter::new(), Meter::new());
         for sequence in 0..64_u16 {
             let header = Header { boot: 1, sender: RobotId(7), sequence };
+            let payload = GridPayload {
+                cell: Cell::new(98, -98),
+                target: Cell::new(98, 70),
+                busy_ms: 400,
+                heading: Dir::NorthWest,
+                slot: 4,
+                leader: RobotId(1),
+            };
+            let (protocol, payload) = payload.encode(Grid::ID).unwrap_or_default();
             let beacon = Message::Beacon(Beacon {
-                time: Instant::from_micros(u32::from(sequence) * 100_000),
                 position_mm: [12_345 + i32::from(sequence), -678_901, 4_000],
                 velocity_mmps: [250, -3, 1],
                 radius_mm: 150,
-                cell: Cell::new(98, -98),
-                heading: Dir::NorthWest,
-                busy_ms: 400,
-                leader: RobotId(1),
-                slot: 4,
                 mode: Mode::Cruise,
-                target: Cell::new(98, 70),
+                flock: 0,
+                protocol,
+                payload,
             });
             let mut out = Vec::<u8, OUTBOX>::new();
             let said = saying.measure(|| encode(&mut own, header, black_box(&beacon), &mut out));

@@ -111,7 +111,7 @@ fn reset_of_the_device_is_detected_and_it_rejoins() {
         let mut shadow = Large::new();
         shadow.configure(&setup, Some(&task), &[]).expect("fits");
         for tick in 0..300 {
-            let inbox = inbox(tick, Instant::from_micros(tick * 100_000));
+            let inbox = inbox(tick);
             let packed = pack(&Obstacle::Wall([Vec2::new(9.0, 1.0), Vec2::new(9.0, -1.0)]));
             let step = StepInputs {
                 tick,
@@ -269,7 +269,7 @@ proptest! {
         prop_assert_eq!(shadow.configure(&setup, Some(&task), &[]), Ok(digest));
         for tick in 0..20 {
             let now = Instant::from_micros(tick * 100_000);
-            let inbox = inbox(tick, now);
+            let inbox = inbox(tick);
             let surroundings = Some(PackedSurroundings { max_speed_mps: 1.0, in_cell: None, obstacles: &[] });
             let step = StepInputs {
                 tick, now, state: KinematicState::default(), cell: None, window: None, surroundings, inbox: &inbox,

@@ -17,7 +17,7 @@ use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::template::Template;
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Format, Postcard, RequestKind};
+use staya_controller::wire::{Format, Postcard};
 
 fn content(frame: &[u8]) -> usize {
     let mut deframer = crate::frame::Deframer::<16384>::new();
@@ -100,7 +100,7 @@ fn longest_setup_fits() {
         &mut agent.ages.stale_after,
         &mut agent.ages.expire_after,
         &mut agent.retry.interval,
-        &mut agent.stop_valid,
+        &mut agent.message_valid,
         &mut agent.plausibility.settle,
     ] {
         *span = LATE;
@@ -276,7 +276,7 @@ proptest! {
         };
         let event = |n: &u32| match n % 4 {
             0 => Event::NeighborFound(RobotId(*n)),
-            1 => Event::RequestExpired { to: RobotId(*n), kind: RequestKind::Stop },
+            1 => Event::MessageExpired(RobotId(*n)),
             2 => Event::ModeChanged { from: Mode::Idle, to: Mode::Hold },
             _ => Event::NoRoute,
         };

@@ -7,12 +7,13 @@ use crate::session::{About, Session};
 use crate::surroundings::PackedSurroundings;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Command, Decision, InPlane, KinematicState, Law, Never, Protocol, Setup, Status, Task, Tools,
-    View, Waypoint,
+    Action, BadInput, Command, Decision, InPlane, KinematicState, Law, Protocol, Setup, Status, Task, Tools, View,
+    Waypoint,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Instant;
+use staya_controller::wire::{Never, ProtocolId};
 use std::vec::Vec;
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -21,9 +22,11 @@ struct East {
     gain_mmps: u16,
 }
 
+#[derive(Clone, Debug)]
 enum Bytes {}
 
 impl Protocol for Bytes {
+    const ID: ProtocolId = ProtocolId(64);
     type Payload = u8;
     type Message = Never;
     type Order = Never;
@@ -36,7 +39,7 @@ impl<S: Scalar> Law<S> for East {
 
     fn decide(
         &mut self,
-        _: &View<'_, S, u8>,
+        _: &View<'_, S, Bytes>,
         _: &InPlane<'_, S>,
         _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {

@@ -1,8 +1,8 @@
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use staya_controller::agent::{
-    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, GuidanceSetup, InPlane, Inputs, KinematicState,
-    OnGrid, RouteSetup, SafetySetup, Setup, Task, Waypoint,
+    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, Grid, GridPayload, GuidanceSetup, InPlane,
+    Inputs, KinematicState, OnGrid, Protocol as _, RouteSetup, SafetySetup, Setup, Task, Waypoint,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -13,7 +13,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::route::{Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Beacon, Format, Header, Message, Wire};
+use staya_controller::wire::{Beacon, Content as _, Format, Header, Message, Wire};
 use staya_link::robot::Controller;
 use staya_link::session::{About, Reaction, Session};
 use staya_mavlink::any::AnyWire;
@@ -96,13 +96,15 @@ impl Scene {
     pub fn hear(&mut self, sender: u32, tick: u32) {
         let [x, y, _] = self.position.mm;
         let aside = (sender % 5) as i32 * 700 - 1400;
+        let cell = self.cell + Cell::new(2, (sender % 3) as i16 - 1);
+        let (protocol, payload) = GridPayload { cell, ..GridPayload::default() }.encode(Grid::ID).expect("fits");
         let beacon = Beacon {
-            time: now(tick),
             position_mm: [x + 1500 + aside / 3, y + aside, 0],
             velocity_mmps: [-400, 20, 0],
             radius_mm: 250,
-            cell: self.cell + Cell::new(2, (sender % 3) as i16 - 1),
             mode: Mode::Cruise,
+            protocol,
+            payload,
             ..Beacon::default()
         };
         let header = Header { boot: 0, sender: RobotId(sender), sequence: tick as u16 };

@@ -4,16 +4,17 @@ use super::model::FlightMode;
 use super::params::Meaning;
 use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::geo::{Global, enu};
-use staya_controller::agent::{Waypoint, Wish};
+use staya_controller::agent::{Grid, GridOrder, Protocol as _, Waypoint, Wish};
 use staya_controller::geom::Vec3;
-use staya_controller::grid::Cell;
-use staya_controller::robot::RobotId;
-use staya_controller::template::TemplateEntry;
 use staya_controller::time::Duration;
-use staya_controller::wire::{GoalAssignment, Header, Message, TEMPLATE_PART, TemplateAssignment, WaypointAssignment};
+use staya_controller::wire::{Addressed, Content as _, Frame, Header, Message};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
-use staya_mavlink::frame::Sender;
+use staya_mavlink::frame::{MAX_FRAME_LEN, Sender, encode_message};
+use staya_mavlink::wire::decode;
+
+/// Kind of an order in `STAYA_MESSAGE`.
+const ORDER: u8 = 2;
 
 #[derive(Clone, Copy, Debug)]
 struct Setpoint {
@@ -157,69 +158,40 @@ impl Vehicle {
     }
 
     pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
-        let Some((boot, sequence, message)) = order(message) else {
+        let Some(Frame { header, message, .. }) = order(from, message) else {
             return;
         };
-        let header = Header { boot, sender: RobotId(from.system.into()), sequence };
         self.confirm(header, &message, out);
         out.actions.push(Action::Tell(header, message));
     }
 
     fn confirm(&mut self, header: Header, message: &Message, out: &mut Out) {
-        if matches!(message, Message::Template(_)) && !self.model.in_formation {
+        let Message::Order(Addressed { number, protocol, content, .. }) = message else {
+            return;
+        };
+        let Some(order) = GridOrder::decode(Grid::ID, *protocol, content) else {
+            return;
+        };
+        if matches!(order, GridOrder::Template { .. }) && !self.model.in_formation {
             return self.refuse("STAYA_TEMPLATE: not in a formation", out);
         }
-        if let Some(text) = self.ordered.hear(header, message) {
+        if let Some(text) = self.ordered.hear(header, *number, &order) {
             self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
         }
     }
 }
 
-/// Boot counter, sequence number and content of an order; `None` for any other message.
-fn order(message: &MavMessage) -> Option<(u8, u16, Message)> {
-    let to = |system: u8| RobotId(system.into());
-    Some(match message {
-        MavMessage::STAYA_GOAL(goal) => {
-            let message = Message::Goal(GoalAssignment {
-                to: to(goal.target_system),
-                version: goal.version,
-                target: Cell::new(goal.target_x, goal.target_y),
-            });
-            (goal.boot, goal.sequence, message)
-        }
-        MavMessage::STAYA_PLACE(place) => {
-            let message = Message::Waypoint(WaypointAssignment {
-                to: to(place.target_system),
-                version: place.version,
-                index: place.index,
-                position_mm: [place.x_mm, place.y_mm, place.z_mm],
-                velocity_mmps: [place.vx_mmps, place.vy_mmps, place.vz_mmps],
-            });
-            (place.boot, place.sequence, message)
-        }
-        MavMessage::STAYA_TEMPLATE(template) => {
-            let count = usize::from(template.count);
-            if count > TEMPLATE_PART {
-                return None;
-            }
-            let places = template.entry_x.iter().zip(&template.entry_y);
-            let robots = template.entry_id.iter().zip(&template.entry_hops);
-            let entries = places.zip(robots).map(|((x, y), (id, hops))| TemplateEntry {
-                offset: Cell::new(*x, *y),
-                id: to(*id),
-                hops: *hops,
-            });
-            let message = Message::Template(TemplateAssignment {
-                to: to(template.target_system),
-                version: template.version,
-                part: template.part,
-                parts: template.parts,
-                slot: template.slot,
-                offset: Cell::new(template.offset_x, template.offset_y),
-                entries: entries.take(count).collect(),
-            });
-            (template.boot, template.sequence, message)
-        }
-        _ => return None,
-    })
+/// An order as robots receive it; `None` for any other message.
+fn order(from: Sender, message: &MavMessage) -> Option<Frame> {
+    let is_order = match message {
+        MavMessage::STAYA_GOAL(_) | MavMessage::STAYA_PLACE(_) | MavMessage::STAYA_TEMPLATE(_) => true,
+        MavMessage::STAYA_MESSAGE(message) => message.kind == ORDER,
+        _ => false,
+    };
+    if !is_order {
+        return None;
+    }
+    let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
+    encode_message(from, message, &mut frame).ok()?;
+    decode(&frame).ok()
 }

@@ -1,7 +1,8 @@
 //! The orders that a vehicle last received.
 
+use staya_controller::agent::GridOrder;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{Header, Message};
+use staya_controller::wire::Header;
 
 type Order = Option<(RobotId, u8, u8)>;
 
@@ -14,18 +15,16 @@ pub(super) struct Ordered {
 
 impl Ordered {
     /// Returns a confirmation the first time that the order is complete. O(1).
-    pub(super) fn hear(&mut self, header: Header, message: &Message) -> Option<String> {
-        let order = |version| Some((header.sender, header.boot, version));
-        match message {
-            Message::Goal(goal) => {
-                let order = order(goal.version);
-                let is_new = core::mem::replace(&mut self.goal, order) != order;
-                is_new.then(|| format!("goal: cell ({}, {})", goal.target.x, goal.target.y))
+    pub(super) fn hear(&mut self, header: Header, number: u8, order: &GridOrder) -> Option<String> {
+        let sent = Some((header.sender, header.boot, number));
+        match order {
+            GridOrder::FormationGoal(target) => {
+                let is_new = core::mem::replace(&mut self.goal, sent) != sent;
+                is_new.then(|| format!("goal: cell ({}, {})", target.x, target.y))
             }
-            Message::Template(part) => {
-                let order = order(part.version);
-                if self.template != order {
-                    (self.template, self.parts) = (order, 0);
+            GridOrder::Template { part, .. } => {
+                if self.template != sent {
+                    (self.template, self.parts) = (sent, 0);
                 }
                 let all = u64::MAX >> (64 - u32::from(part.parts).clamp(1, 64));
                 let had_all = self.parts & all == all;
@@ -33,7 +32,7 @@ impl Ordered {
                 let is_new = !had_all && self.parts & all == all;
                 is_new.then(|| format!("new formation: place {}", u16::from(part.slot) + 1))
             }
-            _ => None,
+            GridOrder::Goal(_) => None,
         }
     }
 }

@@ -1,5 +1,14 @@
 use super::*;
+use staya_controller::wire::{Addressed, Content as _};
 use staya_mavlink::wire::decode;
+
+/// The addressee, the number and the order in a frame.
+fn ordered(message: Message) -> (RobotId, u8, GridOrder) {
+    let Message::Order(Addressed { to, number, protocol, content }) = message else {
+        panic!("{message:?}");
+    };
+    (to, number, GridOrder::decode(Grid::ID, protocol, &content).expect("an order on the grid"))
+}
 
 fn places(graph: &Graph) -> Vec<(i16, i16)> {
     graph.places.iter().map(|place| (place.x, place.y)).collect()
@@ -28,11 +37,11 @@ fn orders_of_every_shape_and_size_are_consistent() {
             for frame in orders(&graph, &robots, &order).expect(name) {
                 let frame = decode(&frame).expect("a sound frame");
                 assert_eq!((frame.header.sender.0, frame.header.boot), (255, 9));
-                match frame.message {
-                    Message::Template(part) => heard[part.to.0 as usize - 1].push(part),
-                    Message::Goal(goal) => {
+                match ordered(frame.message) {
+                    (to, 4, GridOrder::Template { part, .. }) => heard[to.0 as usize - 1].push(part),
+                    (RobotId::NONE, 4, GridOrder::FormationGoal(target)) => {
                         goals += 1;
-                        assert_eq!((goal.target, goal.version), (Cell::new(7, -8), 4));
+                        assert_eq!(target, Cell::new(7, -8));
                     }
                     other => panic!("{other:?}"),
                 }
@@ -57,10 +66,10 @@ fn a_heading_turns_the_shape() {
     let graph = Shape::Column.graph(2, 3).and_then(|graph| graph.turned(Dir::North)).expect("room");
     let order = Order { goal: None, to_all: true, boot: 0, version: 0 };
     let frames = orders(&graph, &[1, 2], &order).expect("room");
-    let Message::Template(part) = decode(&frames[1]).expect("sound").message else {
+    let (to, _, GridOrder::Template { part, .. }) = ordered(decode(&frames[1]).expect("sound").message) else {
         panic!("a template");
     };
-    assert_eq!((part.to.0, part.offset), (2, Cell::new(0, -3)));
+    assert_eq!((to.0, part.offset), (2, Cell::new(0, -3)));
 }
 
 #[test]
@@ -127,8 +136,8 @@ fn nearest_places_have_shorter_paths_without_crossings() {
             let frames = orders(&near, &robots, &order).expect(name);
             let goals: Vec<_> = frames
                 .iter()
-                .filter_map(|frame| match decode(frame).expect("sound").message {
-                    Message::Goal(goal) => Some((goal.to.0 as u8, goal.target)),
+                .filter_map(|frame| match ordered(decode(frame).expect("sound").message) {
+                    (to, _, GridOrder::FormationGoal(target)) => Some((to.0 as u8, target)),
                     _ => None,
                 })
                 .collect();

@@ -358,7 +358,7 @@ where
         let engine = &self.engine;
         let attackers = engine.attackers.iter().map(|attacker| attacker.place_m());
         let keeper = engine.keeper.iter().map(|keeper| keeper.place_m());
-        let heard = engine.ground.heard().map(|(disc, _)| [disc.position_m[0], disc.position_m[1]]);
+        let heard = engine.ground.heard().map(|disc| [disc.position_m[0], disc.position_m[1]]);
         let intruders = heard.take(engine.intruders.len());
         let own = Region::new(self.places(), attackers.chain(keeper).chain(intruders));
         let all = self.wire.gather(encode(&own))?;

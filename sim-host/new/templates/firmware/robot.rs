@@ -93,7 +93,7 @@ where
     let law = MyLaw::new(max_speed_mps, 0.02, 0.6);
     let mut agent: Agent<f32, MyLaw, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>> =
         Agent::new(&config, law, safety, Postcard);
-    agent.order(WaypointOrder::first(Waypoint::fixed(GOAL)));
+    agent.order(&WaypointOrder::first(Waypoint::fixed(GOAL)));
 
     let mut ticker = Ticker::every(embassy_time::Duration::from_micros(TICK.as_micros() as u64));
     loop {

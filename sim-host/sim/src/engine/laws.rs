@@ -118,8 +118,8 @@ impl Law<f32> for ScenarioLaw {
         each!(self, law => payload_as(law, here, heading, radio))
     }
 
-    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) {
-        each!(self, law => receive_as::<f32, _, _>(law, from, message, radio));
+    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
+        each!(self, law => receive_as::<f32, _, _>(law, from, message, radio))
     }
 
     fn order(&mut self, order: &AnyOrder) -> bool {

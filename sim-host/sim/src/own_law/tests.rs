@@ -72,9 +72,10 @@ impl Law<f32> for Convoy {
         Pace((self.pace_mps * 1000.0) as u16)
     }
 
-    fn receive(&mut self, _: RobotId, _: &Halve, _: &mut Radio<'_, Paces>) {
+    fn receive(&mut self, _: RobotId, _: &Halve, _: &mut Radio<'_, Paces>) -> bool {
         self.pace_mps *= 0.5;
         self.halved += 1;
+        true
     }
 
     fn report(&self) -> Report {

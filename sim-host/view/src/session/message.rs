@@ -108,7 +108,7 @@ pub(super) fn event(event: &Event) -> String {
         Event::ModeChanged { from, to } => format!("{from:?} → {to:?}").to_lowercase(),
         Event::NoRoute => "no open route".to_owned(),
         Event::TargetMoved { from, to } => format!("target ({}, {}) → ({}, {})", from.x, from.y, to.x, to.y),
-        Event::RequestExpired { to, kind } => format!("no answer from robot {to} ({kind:?})").to_lowercase(),
+        Event::MessageExpired(id) => format!("no answer from robot {id}"),
         Event::NeighborFound(id) => format!("robot {id} found"),
         Event::NeighborLost(id) => format!("robot {id} lost"),
         Event::NeighborEvicted(id) => format!("no room for robot {id}"),

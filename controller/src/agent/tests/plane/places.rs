@@ -2,14 +2,8 @@
 
 use super::*;
 
-fn order(to: u32, version: u8, index: u8, x_mm: i32) -> Message {
-    Message::Waypoint(WaypointAssignment {
-        to: RobotId(to),
-        version,
-        index,
-        position_mm: [x_mm, 0, 0],
-        velocity_mmps: [0; 3],
-    })
+fn order(to: u32, number: u8, index: u8, x_mm: i32) -> Message {
+    Waypoints::order(RobotId(to), number, &WaypointOrder { index, waypoint: place(x_mm, 0) }).unwrap()
 }
 
 #[test]
@@ -39,22 +33,54 @@ fn a_rejected_waypoint_is_accepted_when_it_is_repeated() {
         let params = crate::flock::goal::GoalParams::new(0.6, 1.0);
         GoalFlockGuidance::<f32>::new(params, 1.0, 1)
     };
-    let goal = |index, position_mm| {
-        Message::Waypoint(WaypointAssignment {
-            to: RobotId(1),
-            version: index,
-            index,
-            position_mm,
-            velocity_mmps: [0; 3],
-        })
+    let goal = |index, x_mm, y_mm| {
+        let order = WaypointOrder { index, waypoint: place(x_mm, y_mm) };
+        Waypoints::order(RobotId(1), index, &order).unwrap()
     };
-    let (first, second) = (goal(0, [40_000, 0, 0]), goal(1, [0, 40_000, 0]));
+    let (first, second) = (goal(0, 40_000, 0), goal(1, 0, 40_000));
     let mut robot = Robot::new(&in_plane(1), guidance(), Unguarded, [0.0; 2]);
     for (n, message) in [second.clone(), first, second].into_iter().enumerate() {
         let _ = robot.step(step_number(n as i32), &bytes(99, 0, n as u16, &[message]));
     }
     let [vx, vy] = robot.velocity_mps;
     assert!(vx > 0.1 && (vx - vy).abs() < 0.05, "to the middle: {vx} {vy}");
+}
+
+#[test]
+fn a_moving_waypoint_is_where_it_was_when_its_frame_was_sent() {
+    for latency in 0..3 {
+        let config = AgentConfig { latency: STEP.saturating_mul(latency), ..in_plane(1) };
+        let mut robot = Robot::new(&config, waypoint::<f32>(), Unguarded, [1.0, 0.0]);
+        let velocity_mps = Vec3::new(0.5, -0.25, 0.0);
+        // The sender's clock is another one.
+        let waypoint = Waypoint { velocity_mps, at: step_number(77), ..place(1000, 0) };
+        let order = Waypoints::order(RobotId(1), 0, &WaypointOrder::first(waypoint)).unwrap();
+        for n in 10..40 {
+            let inbox = if n == 10 { bytes(99, 0, 0, core::slice::from_ref(&order)) } else { vec![] };
+            let _ = robot.step(step_number(n), &inbox);
+        }
+        let age_s = f64::from(30 + latency) * 0.1;
+        let off = [robot.at_m[0] - 1.0 - 0.5 * age_s, robot.at_m[1] + 0.25 * age_s];
+        assert!(length(off) < 0.02, "{latency}: {off:?} m");
+    }
+}
+
+#[test]
+fn a_waypoint_on_the_air_has_millimetres_and_saturated_velocities() {
+    let order = |velocity_mps| {
+        let waypoint = Waypoint { velocity_mps, at: step_number(77), ..place(-1234, i32::MAX) };
+        WaypointOrder { index: 3, waypoint }
+    };
+    let received = |order: &WaypointOrder| {
+        let (_, bytes) = order.encode::<{ crate::wire::MAX_ORDER }>(Waypoints::ID).unwrap();
+        assert_eq!(bytes.len(), 1 + 18);
+        WaypointOrder::decode(Waypoints::ID, Waypoints::ID, &bytes).unwrap()
+    };
+    let said = order(Vec3::new(0.25, -1.5, 0.0));
+    let at = Instant::from_micros(0);
+    assert_eq!(received(&said), WaypointOrder { index: 3, waypoint: Waypoint { at, ..said.waypoint } });
+    let wild = received(&order(Vec3::new(f32::INFINITY, -99.0, f32::NAN))).waypoint.velocity_mps;
+    assert_eq!((wild.x, wild.y, wild.z), (32.767, -32.768, 0.0));
 }
 
 #[test]
@@ -91,9 +117,9 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
     let course = [(5_000, 0), (5_000, 5_000), (0, 5_000)];
     for (index, (x_mm, y_mm)) in (0..).zip(course) {
-        assert!(robot.agent.order(WaypointOrder { index, waypoint: place(x_mm, y_mm) }));
+        assert!(robot.agent.order(&WaypointOrder { index, waypoint: place(x_mm, y_mm) }));
     }
-    assert!(!robot.agent.order(WaypointOrder { index: 4, waypoint: place(9_000, 9_000) }), "there is no number 3 yet");
+    assert!(!robot.agent.order(&WaypointOrder { index: 4, waypoint: place(9_000, 9_000) }), "there is no number 3 yet");
     let mut nearest_m = [f64::INFINITY; 3];
     let mut arrived = Vec::new();
     for n in 0..200 {
@@ -109,7 +135,7 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
     assert!(nearest_m[0] < 0.6 && nearest_m[1] < 0.6 && nearest_m[2] < 0.01, "{nearest_m:?}");
     // 15 m minus two corners, at 1 m/s without stops.
     assert!((130..150).contains(&arrived[0]) && arrived.len() > 40, "{:?}", arrived.first());
-    assert!(robot.agent.order(WaypointOrder::first(place(0, 0))));
+    assert!(robot.agent.order(&WaypointOrder::first(place(0, 0))));
     for n in 200..300 {
         let _ = robot.step(step_number(n), &[]);
     }
@@ -120,7 +146,7 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
 fn first_step(config: &AgentConfig<f32>, tolerance_m: f32, course: &[[i32; 2]], own_mps: f64) -> ([f64; 2], Mode) {
     let mut robot = Robot::new(config, WaypointGuidance::new(1.0, tolerance_m), orca(), [0.0; 2]);
     for (index, [x, y]) in (0..).zip(course) {
-        assert!(robot.agent.order(WaypointOrder { index, waypoint: place(*x, *y) }));
+        assert!(robot.agent.order(&WaypointOrder { index, waypoint: place(*x, *y) }));
     }
     robot.velocity_mps = [own_mps, 0.0];
     let _ = robot.step(step_number(0), &[]);
@@ -177,7 +203,7 @@ fn run_lagging(
 ) -> Vec<([f64; 2], [[f64; 2]; 2], Mode)> {
     let config = AgentConfig { lag_s: stated_s, max_acceleration_mps2: 1.5, ..in_plane(1) };
     let mut robot = Robot::new(&config, WaypointGuidance::new(1.0, tolerance_m), orca(), [0.0; 2]);
-    assert!(robot.agent.order(WaypointOrder::first(goal.cast())));
+    assert!(robot.agent.order(&WaypointOrder::first(goal.cast())));
     let (left, mut own) = (libm::exp(-0.1 / lag_s), [0.0; 2]);
     let step = |n| {
         robot.velocity_mps = own;

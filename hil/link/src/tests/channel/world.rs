@@ -8,10 +8,9 @@ use staya_controller::wire::{Beacon, Header, Message, encode};
 use std::vec::Vec;
 
 /// A beacon of robot 2, which circles around the first one.
-pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
+pub fn inbox(tick: u32) -> Vec<u8> {
     let at = (tick % 400) as i32;
     let beacon = Beacon {
-        time: now,
         position_mm: [at * 50 - 2000, 300 - at, 0],
         velocity_mmps: [500, -10, 0],
         radius_mm: 250,
@@ -57,7 +56,7 @@ impl World {
         let corner = |dx: f32, dy: f32| Vec2::new(dx - x, dy - y);
         Scene {
             now,
-            inbox: inbox(tick, now),
+            inbox: inbox(tick),
             land: (0..121).map(impassability).collect(),
             origin,
             obstacles: [

@@ -3,19 +3,22 @@
 use super::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, Law, Never, Protocol, Radio, Status, Surroundings as _, Tools, View,
+    Action, AnySurroundings, BadInput, Decision, Law, Protocol, Radio, Status, Surroundings as _, Tools, View,
 };
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Dir;
+use staya_controller::wire::{Never, ProtocolId};
 use staya_sim::engine::{simulate_own, simulate_own_from};
 
 /// Goes east, and stops when the sum of what it has heard is large.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Sums(u32);
 
+#[derive(Clone, Debug)]
 enum Numbers {}
 
 impl Protocol for Numbers {
+    const ID: ProtocolId = ProtocolId(64);
     type Payload = u32;
     type Message = Never;
     type Order = Never;
@@ -28,11 +31,11 @@ impl Law<f32> for Sums {
 
     fn decide(
         &mut self,
-        view: &View<'_, f32, u32>,
+        view: &View<'_, f32, Numbers>,
         here: &AnySurroundings<'_, f32>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
-        let heard = view.neighbors.iter().map(|other| other.payload.wrapping_add(other.id.0));
+        let heard = view.peers().map(|(other, number)| number.wrapping_add(other.id.0));
         self.0 = heard.fold(self.0, |sum, number| sum.wrapping_mul(31).wrapping_add(number));
         let action = match here.in_plane() {
             Some(_) => Action::Velocity { wish_mps: Vec3::new(0.3, 0.0, 0.0), way_m: None },
@@ -41,7 +44,7 @@ impl Law<f32> for Sums {
         Ok(Decision { action, status: Status { is_at_goal: self.0.is_multiple_of(37), ..Status::default() } })
     }
 
-    fn payload(&mut self, _: &mut Radio<'_, Never>) -> u32 {
+    fn payload(&mut self, _: &AnySurroundings<'_, f32>, _: Dir, _: &mut Radio<'_, Numbers>) -> u32 {
         self.0
     }
 }

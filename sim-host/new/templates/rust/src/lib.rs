@@ -36,7 +36,7 @@ impl Law<f32> for MyLaw {
     /// The preferred velocity. The safety layer changes it to avoid collisions.
     fn decide(
         &mut self,
-        view: &View<'_, f32>,
+        view: &View<'_, f32, Waypoints>,
         _: &InPlane<'_, f32>,
         _: Tools<'_, f32, Self>,
     ) -> Result<Decision<f32>, BadInput> {
@@ -55,7 +55,7 @@ impl Law<f32> for MyLaw {
         })
     }
 
-    fn order(&mut self, order: WaypointOrder) -> bool {
+    fn order(&mut self, order: &WaypointOrder) -> bool {
         self.goal = Some(order.waypoint);
         order.index == 0
     }

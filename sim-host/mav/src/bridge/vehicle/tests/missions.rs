@@ -1,5 +1,7 @@
 use super::*;
 use crate::bridge::mission::MAV_MISSION_INVALID_PARAM2;
+use staya_controller::agent::{Grid, GridOrder, Protocol, Waypoints};
+use staya_controller::wire::{Addressed, Content as _};
 
 #[test]
 fn a_mission_runs_item_by_item() {
@@ -150,24 +152,53 @@ fn an_item_outside_an_upload_moves_the_vehicle() {
     assert_eq!(ended(bench.give(MavMessage::MISSION_ITEM(there))), MAV_MISSION_ERROR);
 }
 
+/// The header, the addressee, the number and the order that the controller is told.
+fn told<P: Protocol>(out: &Out) -> (Header, u8, u8, P::Order) {
+    let [Action::Tell(header, Message::Order(order))] = &out.actions[..] else {
+        panic!("{:?}", out.actions);
+    };
+    let Addressed { to, number, protocol, content } = order;
+    (*header, to.0 as u8, *number, P::Order::decode(P::ID, *protocol, content).expect("an order of the protocol"))
+}
+
 #[test]
 fn orders_of_the_dialect_reach_the_controller() {
     let mut bench = Bench::new(model());
     let goal = STAYA_GOAL_DATA { sequence: 4, target_x: 3, target_y: -2, boot: 1, target_system: 0, version: 9 };
-    let out = bench.give(MavMessage::STAYA_GOAL(goal));
-    let [Action::Tell(header, Message::Goal(told))] = &out.actions[..] else {
-        panic!("{:?}", out.actions);
-    };
+    let (header, to, number, order) = told::<Grid>(bench.give(MavMessage::STAYA_GOAL(goal)));
     assert_eq!((header.boot, header.sender.0, header.sequence), (1, 255, 4));
-    assert_eq!((told.to.0, told.version, told.target), (0, 9, Cell::new(3, -2)));
+    assert_eq!((to, number, order), (0, 9, GridOrder::FormationGoal(Cell::new(3, -2))));
+    let place = STAYA_PLACE_DATA { x_mm: 5, vy_mmps: -7, version: 3, index: 2, ..STAYA_PLACE_DATA::DEFAULT };
+    let place = STAYA_PLACE_DATA { target_system: 7, sequence: 6, ..place };
+    let (header, to, number, order) = told::<Waypoints>(bench.give(MavMessage::STAYA_PLACE(place)));
+    assert_eq!((header.sequence, to, number, order.index), (6, 7, 3, 2));
+    assert_eq!(order.waypoint.position.mm, [5, 0, 0]);
+    assert_eq!(order.waypoint.velocity_mps, Vec3::from_milli([0, -7, 0]));
     let template = STAYA_TEMPLATE_DATA { target_system: 7, count: 3, parts: 1, ..STAYA_TEMPLATE_DATA::DEFAULT };
     assert!(bench.give(MavMessage::STAYA_TEMPLATE(template.clone())).actions.is_empty());
     let template = STAYA_TEMPLATE_DATA { count: 1, entry_x: [5, 0], entry_id: [6, 0], ..template };
-    let out = bench.give(MavMessage::STAYA_TEMPLATE(template));
-    let [Action::Tell(_, Message::Template(told))] = &out.actions[..] else {
-        panic!("{:?}", out.actions);
+    let (_, to, _, order) = told::<Grid>(bench.give(MavMessage::STAYA_TEMPLATE(template)));
+    let GridOrder::Template { part, .. } = order else {
+        panic!("{order:?}");
     };
-    assert_eq!((told.entries.len(), told.entries[0].offset.x, told.entries[0].id.0), (1, 5, 6));
+    assert_eq!((to, part.entries.len(), part.entries[0].offset.x, part.entries[0].id.0), (7, 1, 5, 6));
+}
+
+/// A ground station gives orders; messages are between robots.
+#[test]
+fn an_order_of_a_users_protocol_reaches_the_controller_and_a_message_does_not() {
+    let mut bench = Bench::new(model());
+    for (kind, is_told) in [(0, false), (1, false), (2, true), (3, false)] {
+        let data = STAYA_MESSAGE_DATA { protocol: 64, number: 5, count: 2, kind, ..STAYA_MESSAGE_DATA::DEFAULT };
+        let mut data = STAYA_MESSAGE_DATA { target_system: 7, ..data };
+        data.bytes[..2].copy_from_slice(&[8, 9]);
+        let out = bench.give(MavMessage::STAYA_MESSAGE(data));
+        assert_eq!(out.actions.len(), usize::from(is_told), "kind {kind}");
+        if let [Action::Tell(_, Message::Order(order))] = &out.actions[..] {
+            assert_eq!((order.to.0, order.number, order.protocol.0, &order.content[..]), (7, 5, 64, &[8, 9][..]));
+        }
+        assert!(bench.texts().is_empty());
+    }
 }
 
 #[test]
