@@ -46,9 +46,11 @@ fn on_host(s: &mut Session) {
         let library = repo.target.join("debug/libstaya_c.a");
         let swarms = ["controller/c/tests/swarms.c", "controller/c/tests/host.c"];
         compare(repo, &program(repo, &library, "cc", "-std=c11", &swarms)?)?;
-        for (compiler, standard, source) in
-            [("cc", "-std=c11", "examples/c/orca_circle.c"), ("c++", "-std=c++17", "examples/c/two_robots.cpp")]
-        {
+        for (compiler, standard, source) in [
+            ("cc", "-std=c11", "examples/c/orca_circle.c"),
+            ("cc", "-std=c11", "examples/c/own_law.c"),
+            ("c++", "-std=c++17", "examples/c/two_robots.cpp"),
+        ] {
             print!("{}", program(repo, &library, compiler, standard, &[source])?);
         }
         Ok(())

@@ -35,7 +35,7 @@ pub fn run(s: &mut Session) {
 /// swarms.
 pub fn run_short(s: &mut Session, parts: &[&'static Part]) {
     for part in parts {
-        replay(s, part, Profile::Firmware, &["lockstep", "replay"]);
+        replay(s, part, Profile::Firmware, &["lockstep", "replay", "replay_mavlink"]);
     }
 }
 
@@ -43,7 +43,10 @@ pub fn run_short(s: &mut Session, parts: &[&'static Part]) {
 fn replay(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) {
     let debug = if profile == Profile::Debug { ", debug" } else { "" };
     on_part(s, &format!("canned swarms on the {}{debug}", part.name), part, (profile, bins), |repo| {
-        let output = emulate::run(repo, part, &profile.elf(repo, part, "replay"), "none")?;
+        let mut output = emulate::run(repo, part, &profile.elf(repo, part, "replay"), "none")?;
+        if is_small(part) {
+            output += &emulate::run(repo, part, &profile.elf(repo, part, "replay_mavlink"), "none")?;
+        }
         compare(repo, &output, |row| is_for(part, row))
     });
 }
@@ -74,13 +77,17 @@ fn misses(part: &Part, said: &str) -> Option<String> {
     })
 }
 
-/// Whether a row of the table is for a part: the one without FPU and with little flash computes in
-/// fixed point only.
+/// Without FPU, and with little flash: it computes in fixed point only, and the swarms are in two
+/// programs.
+fn is_small(part: &Part) -> bool {
+    part.name == "nrf51"
+}
+
+/// Whether a row of the table is for a part.
 fn is_for(part: &Part, row: &str) -> bool {
     let mut words = row.split(' ');
     let (case, number) = (words.next().unwrap_or(""), words.next());
-    let is_small = number == Some("Q16") && !case.starts_with(WORST);
-    part.name != "nrf51" || is_small
+    !is_small(part) || number == Some("Q16") && !case.starts_with(WORST)
 }
 
 /// Compares with the rows of the table that `wanted` names, in order.

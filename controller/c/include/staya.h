@@ -39,7 +39,7 @@
 /**
  * Bytes that suffice for an agent if the library lacks the features `auth` and `grid`.
  */
-#define STAYA_AGENT_SIZE_IN_PLANE 3328
+#define STAYA_AGENT_SIZE_IN_PLANE 3584
 
 /**
  * Alignment of the memory for agents and avoiders, bytes.
@@ -1908,9 +1908,9 @@ StayaStatus staya_set_payload(struct StayaAgent *agent, const uint8_t *bytes, si
  * Sends a message to robot `to` in the next step: at most STAYA_MESSAGE bytes, resent until it is
  * acknowledged, for `valid_us` at most, then STAYA_EVENT_KIND_MESSAGE_EXPIRED. A newer message to
  * the robot replaces it; those to more than four robots at a time are lost. `to` 0: to all, at most
- * STAYA_CONTENT bytes, once, if it fits into the frames of the step. The messages of an idle robot
- * wait. `STAYA_STATUS_TOO_MANY` for too many bytes, or if one message to all or four others wait;
- * `STAYA_STATUS_NUMBER` if `valid_us` is not above 0 and `to` is.
+ * STAYA_CONTENT bytes, once, if it fits into the frames of the step. `STAYA_STATUS_TOO_MANY` for
+ * too many bytes, or if one message to all or four others wait for the step; `STAYA_STATUS_NUMBER`
+ * if `valid_us` is not above 0 and `to` is.
  */
 StayaStatus staya_send(struct StayaAgent *agent,
                        uint32_t to,

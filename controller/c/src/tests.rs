@@ -5,7 +5,8 @@ mod steps;
 
 use crate::Number;
 use crate::agent::{STAYA_AGENT_SIZE, StayaAgent, StayaWaypoint, staya_init};
-use crate::choices::StayaMode;
+use crate::choices::{StayaLaw, StayaMode};
+use crate::external::{STAYA_CONTENT, StayaDecision, StayaMessage};
 use crate::io::{StayaInputs, StayaOutputs};
 use crate::setup::{StayaSetup, staya_setup_defaults};
 use crate::status::StayaStatus;
@@ -13,6 +14,22 @@ use core::mem::MaybeUninit;
 use core::ptr::null_mut;
 use staya_controller::agent::Outputs;
 use staya_controller::robot::Mode;
+
+const TICK_US: i32 = 50_000;
+/// The protocol of the tests' own law.
+const PROTOCOL: u8 = 200;
+const EMPTY: StayaMessage = StayaMessage { from: 0, dropped: 0, is_order: 0, count: 0, bytes: [0; STAYA_CONTENT] };
+const IDLE: StayaDecision = StayaDecision {
+    velocity_mps: [0.0; 3],
+    way_m: [0.0; 3],
+    kind: 0,
+    has_way: 0,
+    is_at_goal: 0,
+    is_stuck: 0,
+    wait: 0,
+    move_count: 0,
+    moves: [0; 8],
+};
 
 #[repr(align(8))]
 struct Memory([u8; STAYA_AGENT_SIZE]);
@@ -35,9 +52,13 @@ fn setup(id: u32) -> StayaSetup {
     let mut setup = MaybeUninit::uninit();
     // SAFETY: valid space, which is filled.
     unsafe {
-        assert_eq!(staya_setup_defaults(setup.as_mut_ptr(), id, 0.1, 50_000), StayaStatus::Ok);
+        assert_eq!(staya_setup_defaults(setup.as_mut_ptr(), id, 0.1, TICK_US), StayaStatus::Ok);
         setup.assume_init()
     }
+}
+
+fn own_law(id: u32) -> StayaSetup {
+    StayaSetup { law: StayaLaw::External as u8, protocol: PROTOCOL, latency_us: TICK_US, ..setup(id) }
 }
 
 fn nothing() -> (StayaInputs, StayaOutputs) {

@@ -192,12 +192,12 @@ impl<S: Scalar> BoidsGuidance<S> {
 
 impl<S: Scalar> Law<S> for BoidsGuidance<S> {
     type Surroundings<'a> = InPlane<'a, S>;
-    type Protocol = ();
+    type Protocol = Waypoints;
     type Workspace = ();
 
     fn decide(
         &mut self,
-        view: &View<'_, S>,
+        view: &View<'_, S, Waypoints>,
         _: &InPlane<'_, S>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {

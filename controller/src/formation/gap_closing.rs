@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The place that a robot holds in its formation, if it is not its own.
 ///
 /// When the holder of the place in front (the nearest with a smaller number) is lost, by the
-/// [`slot`](crate::wire::Beacon::slot) of its beacons, the robot steps into it, and the robot
+/// slot that it tells in its beacons, the robot steps into it, and the robot
 /// behind does the same. If two robots hold one place, the smaller number keeps it and the other
 /// returns to its own. So a robot that comes back finds its own place free.
 ///

@@ -34,12 +34,12 @@ struct Said {
     message: GridMessage,
     number: Option<u8>,
     sends: u32,
-    was_delivered: bool,
+    was_taken: bool,
     /// Acknowledged, replaced, expired, or lost when its sender rebooted.
     ends: u32,
 }
 
-/// The newest message about a subject.
+/// The newest message about a subject that the law took.
 struct Newest {
     boot: u8,
     place: usize,
@@ -57,7 +57,7 @@ struct Robot {
     said: Vec<Said>,
     /// Model: the pending message about each subject.
     pending: BTreeMap<u32, usize>,
-    /// Model: the newest received message about each subject.
+    /// Model: the newest message about each subject that the law took.
     newest: BTreeMap<u32, Newest>,
     /// Model: when the stop of each origin ends.
     stops_ms: BTreeMap<RobotId, i32>,
@@ -109,7 +109,7 @@ impl Robot {
             self.said[*place].ends += 1;
         }
         self.pending.insert(subject, self.said.len());
-        self.said.push(Said { message, number: None, sends: 0, was_delivered: false, ends: 0 });
+        self.said.push(Said { message, number: None, sends: 0, was_taken: false, ends: 0 });
     }
 
     fn poll(&mut self, to: usize, now_ms: i32, now: Instant, air: &mut Vec<Packet>) {
@@ -158,7 +158,8 @@ impl Robot {
         out[..out.len() - 1].to_vec()
     }
 
-    fn receive(&mut self, packet: &Packet, peer: &mut Self, now_ms: i32, now: Instant) -> Option<Vec<u8>> {
+    /// `takes`: the law takes a message that is new.
+    fn receive(&mut self, packet: &Packet, takes: bool, peer: &mut Self, now_ms: i32, now: Instant) -> Option<Vec<u8>> {
         let frame = decode(&packet.bytes).expect("the radio damages nothing here");
         let header = frame.header;
         let arrival = self.window.check(header);
@@ -177,12 +178,18 @@ impl Robot {
             Message::Law(told) => {
                 assert_eq!(told.to, self.id);
                 let message = GridMessage::decode(Grid::ID, told.protocol, &told.content).expect("it was encoded");
-                let is_new = self.incoming.receive(header, told.number, Grid::subject(&message), now);
-                assert_eq!(is_new, self.expects_news(header, &message, packet.place));
-                if is_new {
+                let subject = Grid::subject(&message);
+                let is_repeat = self.incoming.is_repeat(header, told.number, subject, now);
+                assert_eq!(is_repeat, self.expects_repeat(header, subject, packet.place));
+                if !is_repeat && !takes {
+                    return None;
+                }
+                if !is_repeat {
+                    self.incoming.note(header, told.number, subject, now);
+                    self.newest.insert(subject, Newest { boot: header.boot, place: packet.place });
                     self.obey(header.sender, &message, now_ms, now);
                 }
-                peer.said[packet.place].was_delivered = true;
+                peer.said[packet.place].was_taken = true;
                 let ack = Ack { to: header.sender, boot: header.boot, number: told.number };
                 Some(self.encoded(Message::Ack(ack)))
             }
@@ -196,7 +203,7 @@ impl Robot {
                     let place = pending.and_then(|subject| self.pending.remove(&subject));
                     assert_eq!(place, Some(packet.place), "another message was meant");
                     let said = &mut self.said[packet.place];
-                    assert!(said.was_delivered);
+                    assert!(said.was_taken);
                     said.ends += 1;
                 }
                 None
@@ -205,15 +212,10 @@ impl Robot {
         }
     }
 
-    /// Returns whether the message is later than all received ones about its subject.
-    fn expects_news(&mut self, header: Header, message: &GridMessage, place: usize) -> bool {
-        let subject = Grid::subject(message);
+    /// Returns whether the law took this message, or a later one about its subject.
+    fn expects_repeat(&self, header: Header, subject: u32, place: usize) -> bool {
         let newest = self.newest.get(&subject).filter(|newest| newest.boot == header.boot);
-        let is_new = newest.is_none_or(|newest| place > newest.place);
-        if is_new {
-            self.newest.insert(subject, Newest { boot: header.boot, place });
-        }
-        is_new
+        newest.is_some_and(|newest| place <= newest.place)
     }
 
     fn obey(&mut self, from: RobotId, message: &GridMessage, now_ms: i32, now: Instant) {
@@ -290,12 +292,12 @@ impl World {
         moments.map(|moment| moment.max(self.now_ms + GRAIN_MS)).min()
     }
 
-    fn deliver(&mut self, which: usize, keep: bool) {
+    fn deliver(&mut self, which: usize, keep: bool, takes: bool) {
         let (now_ms, now) = (self.now_ms, self.now());
         let packet = self.air.swap_remove(which);
         let [a, b] = &mut self.robots;
         let (robot, peer) = if packet.to == 0 { (a, b) } else { (b, a) };
-        if let Some(bytes) = robot.receive(&packet, peer, now_ms, now) {
+        if let Some(bytes) = robot.receive(&packet, takes, peer, now_ms, now) {
             self.air.push(Packet { to: 1 - packet.to, sent_ms: now_ms, bytes, place: packet.place });
         }
         robot.check(now_ms, now);
@@ -331,8 +333,8 @@ impl World {
             4 if !self.air.is_empty() => {
                 self.air.swap_remove(choice.choose_index(self.air.len())?);
             }
-            keep @ 4..=7 if !self.air.is_empty() => {
-                self.deliver(choice.choose_index(self.air.len())?, keep == 7);
+            what @ 4..=7 if !self.air.is_empty() => {
+                self.deliver(choice.choose_index(self.air.len())?, what == 7, what != 6);
             }
             _ => self.pass(10),
         }
@@ -355,7 +357,7 @@ impl World {
             }
             self.pass(10);
             while !self.air.is_empty() {
-                self.deliver(0, false);
+                self.deliver(0, false, true);
             }
             let now = self.now();
             let is_stop = matches!(message, GridMessage::Stop { .. });
@@ -400,19 +402,19 @@ mod tests {
             for _ in 0..messages {
                 say(&mut world, GridMessage::Redirect);
                 world.pass(STEP_MS);
-                world.deliver(0, false);
+                world.deliver(0, false, true);
                 world.air.truncate(1);
-                world.deliver(0, false);
+                world.deliver(0, false, true);
                 world.air.clear();
             }
             say(&mut world, STOP);
-            world.deliver(0, false);
+            world.deliver(0, false, true);
             world.robots[0].reboot(0);
             world.pass(DELAY_MS / 2 + 10);
             say(&mut world, STOP);
             while !world.air.is_empty() {
                 let oldest = (0..world.air.len()).min_by_key(|at| world.air[*at].sent_ms);
-                world.deliver(oldest.unwrap_or(0), false);
+                world.deliver(oldest.unwrap_or(0), false, true);
             }
             world.end();
         }

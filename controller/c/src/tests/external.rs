@@ -1,12 +1,12 @@
 //! A law over the C interface equals its twin in Rust, step by step.
 
-use super::{Memory, nothing, setup, shows};
+use super::{EMPTY, IDLE, Memory, PROTOCOL, TICK_US, nothing, own_law, setup, shows};
 use crate::agent::*;
-use crate::choices::{StayaAction, StayaCommand, StayaEventKind, StayaLaw};
+use crate::choices::{StayaAction, StayaCommand, StayaEventKind, StayaMode};
 use crate::external::*;
-use crate::io::{StayaInputs, array};
+use crate::io::{StayaInputs, StayaOutputs};
 use crate::layer::Layer;
-use crate::setup::StayaSetup;
+use crate::setup::StayaCell;
 use crate::status::StayaStatus;
 use crate::{NEIGHBORS, Number};
 use serde::{Deserialize, Serialize};
@@ -22,12 +22,11 @@ use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Content, Header, Postcard, ProtocolId, encode, frames};
 use std::collections::BTreeMap;
 
-const OWN: ProtocolId = ProtocolId(200);
-const TICK_US: i32 = 50_000;
-const VALID_US: i32 = 400_000;
+const OWN: ProtocolId = ProtocolId(PROTOCOL);
+const VALID_US: i32 = 200_000;
 /// The robots turn at both ends of this beat.
 const BEAT_MM: i32 = 3_000;
-const ROOM_MM: i32 = 700;
+const ROOM_MM: i32 = 1_200;
 
 /// What the law of both languages knows: all patrol at the pace of the slowest one, and a robot asks
 /// the one ahead to make room.
@@ -130,7 +129,7 @@ impl Law<Number> for Patrol {
 }
 
 /// The same law as a program in C would have it.
-fn step_in_c(agent: *mut StayaAgent, law: &mut Patrol, inputs: &StayaInputs) -> crate::io::StayaOutputs {
+fn step_in_c(agent: *mut StayaAgent, law: &mut Patrol, inputs: &StayaInputs) -> StayaOutputs {
     let (mut messages, mut robots, mut count, mut out) =
         ([EMPTY; STAYA_INBOX], [StayaNeighbor::default(); 16], 0, nothing().1);
     let must = |status| assert_eq!(status, StayaStatus::Ok);
@@ -160,18 +159,11 @@ fn step_in_c(agent: *mut StayaAgent, law: &mut Patrol, inputs: &StayaInputs) -> 
         must(staya_set_payload(agent, law.own_mmps.to_le_bytes().as_ptr(), 2));
         let velocity_mps = [act.east_mps, 0.0, 0.0];
         let kind = StayaAction::Velocity as u8;
-        let decision =
-            StayaDecision { velocity_mps, way_m: velocity_mps, kind, has_way: 1, ..StayaDecision::default() };
+        let decision = StayaDecision { velocity_mps, way_m: velocity_mps, kind, has_way: 1, ..IDLE };
         must(staya_decide(agent, &decision));
         must(staya_act(agent, inputs, &mut out));
     }
     out
-}
-
-const EMPTY: StayaMessage = StayaMessage { from: 0, dropped: 0, is_order: 0, count: 0, bytes: [0; STAYA_CONTENT] };
-
-fn own_law(id: u32) -> StayaSetup {
-    StayaSetup { law: StayaLaw::External as u8, protocol: OWN.0, latency_us: TICK_US, ..setup(id) }
 }
 
 /// A radio that loses four of ten frames for each receiver.
@@ -203,12 +195,12 @@ fn a_law_in_c_equals_its_twin_in_rust_over_a_radio_that_loses_frames() {
         laws.push(law);
         places.push([id as i32 * 900, 0, 0]);
     }
-    // Robot 4 has another law, and a wall of the beat is beyond its place.
+    // Robot 4 has another law.
     let mut stranger = Memory::new();
     let stranger = stranger.agent(&setup(4)).unwrap();
     let mut said = vec![Vec::new(); 5];
     let mut events = BTreeMap::new();
-    let mut orders = 0;
+    let mut rooms = 0;
     for step in 0..600u32 {
         let now = Instant::from_micros(step * TICK_US as u32);
         let mut next = said.clone();
@@ -226,9 +218,9 @@ fn a_law_in_c_equals_its_twin_in_rust_over_a_radio_that_loses_frames() {
             };
             let twin = twins[own].step(&twin_inputs, now, &mut ());
             shows(&out, &twin, twins[own].mode(), &format!("step {step} of {own}"));
-            let law = twins[own].law();
-            assert_eq!(format!("{:?}", laws[own]), format!("{law:?}"));
+            assert_eq!(format!("{:?}", laws[own]), format!("{:?}", twins[own].law()));
             assert_eq!(out.command, StayaCommand::Velocity as u8);
+            rooms += u32::from(laws[own].makes_room > 0);
             let way_mm = out.velocity_mps.map(|mps| (mps * TICK_US as f32 / 1000.0) as i32);
             places[own] = [0, 1, 2].map(|axis| places[own][axis] + way_mm[axis]);
             next[own] = out.outbox[..out.outbox_bytes.into()].to_vec();
@@ -248,13 +240,12 @@ fn a_law_in_c_equals_its_twin_in_rust_over_a_radio_that_loses_frames() {
             let mut frame = heapless::Vec::<u8, 64>::new();
             encode(header, &order, &mut frame).unwrap();
             next[4] = frame.to_vec();
-            orders += 1;
         }
         said = next;
     }
     let kinds = |kind: StayaEventKind| events.get(&(kind as u8)).copied().unwrap_or(0);
-    let counts = [kinds(StayaEventKind::MessageExpired), kinds(StayaEventKind::NeighborFound), orders];
-    assert!(counts.iter().all(|count| *count > 2), "{counts:?}");
+    let counts = [kinds(StayaEventKind::MessageExpired), kinds(StayaEventKind::NeighborFound), rooms];
+    assert!(counts.iter().all(|count| *count > 4), "{counts:?}");
     assert_eq!(laws.iter().map(|law| law.own_mmps).collect::<Vec<_>>(), [300, 250, 150], "the order came");
     assert!(laws.iter().any(|law| law.goes_west) || places.iter().any(|place| place[0] < 900), "no robot turned");
     let mut known = [StayaNeighbor::default(); 4];
@@ -266,5 +257,30 @@ fn a_law_in_c_equals_its_twin_in_rust_over_a_radio_that_loses_frames() {
     let told = known.map(|robot| (robot.id, robot.protocol, robot.payload[..robot.payload_count.into()].to_vec()));
     let pace = |mmps: u16| mmps.to_le_bytes().to_vec();
     assert_eq!(told, [(2, 200, pace(250)), (3, 200, pace(150)), (4, 2, vec![]), (0, 0, vec![])]);
-    let _ = array;
+}
+
+#[test]
+fn moves_from_cell_to_cell_reach_the_body() {
+    let (mut memory, land, cell) = (Memory::new(), [1; 9], StayaCell { x: 4, y: 4 });
+    let agent = memory.agent(&own_law(1)).unwrap();
+    let moves =
+        StayaDecision { kind: StayaAction::Moves as u8, move_count: 2, moves: [2, 8, 0, 0, 0, 0, 0, 0], ..IDLE };
+    let step = |inputs: &StayaInputs| {
+        let mut out = nothing().1;
+        // SAFETY: all pointers are valid.
+        unsafe {
+            assert_eq!(staya_decide(agent, &moves), StayaStatus::Ok);
+            assert_eq!(staya_step(agent, inputs, &mut out), StayaStatus::Ok);
+        }
+        (out.command, out.mode, out.moves[..out.move_count.into()].to_vec())
+    };
+    let mut inputs = StayaInputs { max_speed_mps: 1.0, cell, window_width: 3, window_height: 3, ..nothing().0 };
+    inputs.window_origin = StayaCell { x: 3, y: 3 };
+    let is_fault = (StayaCommand::Hold as u8, StayaMode::Fault as u8, vec![]);
+    assert_eq!(step(&inputs), is_fault, "no window");
+    inputs.window = land.as_ptr();
+    let _ = step(&inputs);
+    assert_eq!(step(&inputs), (StayaCommand::Move as u8, StayaMode::Cruise as u8, vec![2, 8]));
+    inputs.cell_m = 1.0;
+    assert_eq!(step(&inputs), is_fault, "it moves by velocities there");
 }

@@ -1,8 +1,9 @@
-use super::{Memory, nothing, setup, waypoint};
+use super::{EMPTY, IDLE, Memory, PROTOCOL, nothing, own_law, setup, waypoint};
 use crate::agent::*;
 use crate::alone::{StayaAvoider, staya_orca_defaults, staya_orca_init, staya_orca_velocity};
-use crate::choices::{StayaLaw, StayaSafety, StayaWire};
-use crate::io::StayaObstacle;
+use crate::choices::{StayaAction, StayaCommand, StayaLaw, StayaMode, StayaSafety, StayaWire};
+use crate::external::*;
+use crate::io::{StayaInputs, StayaObstacle};
 use crate::parameter::{StayaParameter, staya_get_parameter, staya_parameter, staya_set_parameter};
 use crate::setup::*;
 use crate::status::{StayaStatus, staya_status_name, staya_status_text};
@@ -14,6 +15,8 @@ use core::ptr::{null, null_mut};
 fn null_is_refused_by_every_function() {
     let (setup, mut memory) = (setup(1), Memory::new());
     let agent = memory.agent(&setup).unwrap();
+    let mut memory_of_own = Memory::new();
+    let own = memory_of_own.agent(&own_law(2)).unwrap();
     let (inputs, mut out) = nothing();
     let (mut agents, mut avoider) = (null_mut(), null_mut::<StayaAvoider>());
     let mut orca = MaybeUninit::uninit();
@@ -44,6 +47,19 @@ fn null_is_refused_by_every_function() {
             staya_formation_from_graph(null_mut(), null(), 0, null(), 0, 0, 1),
             staya_orca_init(null_mut(), 256, orca.as_ptr(), 0, 1, &mut avoider),
             staya_orca_velocity(null_mut(), null(), null(), null(), null(), 0, null(), 0, null_mut()),
+            staya_hear(null_mut(), &inputs),
+            staya_hear(own, null()),
+            staya_act(null_mut(), &inputs, &mut out),
+            staya_act(own, &inputs, null_mut()),
+            staya_decide(null_mut(), &IDLE),
+            staya_decide(own, null()),
+            staya_set_payload(null_mut(), null(), 0),
+            staya_set_payload(own, null(), 1),
+            staya_send(null_mut(), 1, null(), 0, 1),
+            staya_send(own, 1, null(), 1, 1),
+            staya_received(null_mut(), null_mut(), 0, &mut 0),
+            staya_received(own, null_mut(), 1, &mut 0),
+            staya_received(own, null_mut(), 0, null_mut()),
         ]
     };
     for (index, answer) in answers.into_iter().enumerate() {
@@ -91,6 +107,9 @@ fn invalid_setups_return_their_status() {
     assert_eq!(refused(&|s| s.safety = 200), StayaStatus::Choice);
     assert_eq!(refused(&|s| s.wire = 200), StayaStatus::Choice);
     assert_eq!(refused(&|s| s.orca.horizon_s = 0.0), StayaStatus::Number);
+    for protocol in [0, 1, 63] {
+        assert_eq!(refused(&|s| *s = StayaSetup { protocol, ..own_law(1) }), StayaStatus::Choice);
+    }
     let lattice = StayaLaw::Lattice as u8;
     let with = |law: u8, change: fn(&mut StayaSetup)| {
         refused(&|s| {
@@ -123,6 +142,13 @@ fn invalid_setups_return_their_status() {
     let _ = StayaSafety::Fly;
 }
 
+fn digest(agent: *const StayaAgent) -> u64 {
+    let mut digest = 0;
+    // SAFETY: there is an agent.
+    assert_eq!(unsafe { staya_digest(agent, &mut digest) }, StayaStatus::Ok);
+    digest
+}
+
 #[test]
 fn invalid_inputs_change_nothing() {
     let mut memory = Memory::new();
@@ -130,12 +156,6 @@ fn invalid_inputs_change_nothing() {
     let (mut inputs, mut out) = nothing();
     out.leader = 77;
     let many = [StayaObstacle::default(); 33];
-    let digest = |agent| {
-        let mut digest = 0;
-        // SAFETY: there is an agent.
-        assert_eq!(unsafe { staya_digest(agent, &mut digest) }, StayaStatus::Ok);
-        digest
-    };
     let before = digest(agent);
     // SAFETY: pointers that are not null are valid.
     unsafe {
@@ -153,6 +173,123 @@ fn invalid_inputs_change_nothing() {
         assert_eq!(staya_assign_waypoint(agent, 9, &waypoint(1)), StayaStatus::Task);
         let nowhere = StayaWaypoint { velocity_mps: [f32::NAN; 3], ..waypoint(1) };
         assert_eq!(staya_assign_waypoint(agent, 0, &nowhere), StayaStatus::Number);
+    }
+}
+
+#[test]
+fn only_a_law_of_your_own_is_decided() {
+    let (mut memory, mut count) = (Memory::new(), 77);
+    let agent = memory.agent(&setup(1)).unwrap();
+    // SAFETY: pointers that are not null are valid.
+    let answers = unsafe {
+        [
+            staya_decide(agent, &IDLE),
+            staya_set_payload(agent, null(), 0),
+            staya_send(agent, 2, null(), 0, 1),
+            staya_received(agent, null_mut(), 0, &mut count),
+        ]
+    };
+    assert_eq!((answers, count), ([StayaStatus::Task; 4], 77));
+}
+
+#[test]
+fn invalid_decisions_and_messages_change_nothing() {
+    let (mut memory, bytes) = (Memory::new(), [1; 64]);
+    let agent = memory.agent(&own_law(1)).unwrap();
+    let velocity = StayaDecision { kind: StayaAction::Velocity as u8, ..IDLE };
+    let moves = StayaDecision { kind: StayaAction::Moves as u8, ..IDLE };
+    let before = digest(agent);
+    // SAFETY: there is an agent, and all pointers are valid.
+    unsafe {
+        for (decision, status) in [
+            (StayaDecision { kind: 4, ..IDLE }, StayaStatus::Choice),
+            (StayaDecision { wait: 8, ..IDLE }, StayaStatus::Choice),
+            (StayaDecision { velocity_mps: [f32::NAN, 0.0, 0.0], ..velocity }, StayaStatus::Number),
+            (StayaDecision { has_way: 1, way_m: [0.0, f32::INFINITY, 0.0], ..velocity }, StayaStatus::Number),
+            (StayaDecision { move_count: 9, ..moves }, StayaStatus::TooMany),
+            (StayaDecision { move_count: 1, moves: [9; 8], ..moves }, StayaStatus::Choice),
+        ] {
+            assert_eq!(staya_decide(agent, &decision), status, "{decision:?}");
+        }
+        assert_eq!(staya_set_payload(agent, bytes.as_ptr(), STAYA_PAYLOAD + 1), StayaStatus::TooMany);
+        assert_eq!(staya_send(agent, 2, bytes.as_ptr(), STAYA_MESSAGE + 1, 1), StayaStatus::TooMany);
+        assert_eq!(staya_send(agent, 0, bytes.as_ptr(), STAYA_CONTENT + 1, 1), StayaStatus::TooMany);
+        assert_eq!(staya_send(agent, 2, bytes.as_ptr(), 1, 0), StayaStatus::Number);
+        assert_eq!(digest(agent), before);
+        for _ in 0..4 {
+            assert_eq!(staya_send(agent, 2, bytes.as_ptr(), STAYA_MESSAGE, 1), StayaStatus::Ok);
+        }
+        assert_eq!(staya_send(agent, 2, bytes.as_ptr(), 1, 1), StayaStatus::TooMany);
+        assert_eq!(staya_send(agent, 0, bytes.as_ptr(), STAYA_CONTENT, 0), StayaStatus::Ok);
+        assert_eq!(staya_send(agent, 0, null(), 0, 0), StayaStatus::TooMany);
+        assert_eq!(staya_set_payload(agent, bytes.as_ptr(), STAYA_PAYLOAD), StayaStatus::Ok);
+        assert_eq!(staya_set_payload(agent, null(), 0), StayaStatus::Ok);
+    }
+}
+
+#[test]
+fn a_step_acts_once_after_it_has_heard() {
+    let (mut memory, mut out) = (Memory::new(), nothing().1);
+    let agent = memory.agent(&own_law(1)).unwrap();
+    let inputs = StayaInputs { max_speed_mps: 1.0, ..nothing().0 };
+    let wrong = StayaInputs { obstacle_count: 1, ..inputs };
+    out.leader = 77;
+    // SAFETY: all pointers that are not null are valid.
+    unsafe {
+        assert_eq!(staya_act(agent, &inputs, &mut out), StayaStatus::NotHeard);
+        assert_eq!(staya_hear(agent, &wrong), StayaStatus::Null);
+        assert_eq!(staya_act(agent, &inputs, &mut out), StayaStatus::NotHeard);
+        for _ in 0..2 {
+            assert_eq!(staya_hear(agent, &inputs), StayaStatus::Ok);
+        }
+        assert_eq!((staya_act(agent, &wrong, &mut out), out.leader), (StayaStatus::Null, 77));
+        assert_eq!((staya_act(agent, &inputs, &mut out), out.leader), (StayaStatus::Ok, 0));
+        assert_eq!(staya_act(agent, &inputs, &mut out), StayaStatus::NotHeard);
+        assert_eq!(staya_hear(agent, &inputs), StayaStatus::Ok);
+        assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Ok);
+        assert_eq!(staya_act(agent, &inputs, &mut out), StayaStatus::NotHeard);
+    }
+}
+
+#[test]
+fn a_robot_whose_law_hangs_stays() {
+    let (mut memory, mut out) = (Memory::new(), nothing().1);
+    let agent = memory.agent(&StayaSetup { safety: StayaSafety::None as u8, ..own_law(1) }).unwrap();
+    let inputs = StayaInputs { max_speed_mps: 1.0, ..nothing().0 };
+    let east = StayaDecision { velocity_mps: [0.5, 0.0, 0.0], kind: StayaAction::Velocity as u8, ..IDLE };
+    let mut step = || {
+        // SAFETY: all pointers are valid.
+        assert_eq!(unsafe { staya_step(agent, &inputs, &mut out) }, StayaStatus::Ok);
+        (out.command, out.mode, out.velocity_mps[0])
+    };
+    let goes = StayaCommand::Velocity as u8;
+    assert_eq!(step(), (goes, StayaMode::Idle as u8, 0.0));
+    // SAFETY: all pointers are valid.
+    assert_eq!(unsafe { staya_decide(agent, &east) }, StayaStatus::Ok);
+    assert_eq!(step(), (goes, StayaMode::Cruise as u8, 0.5));
+    assert_eq!(step(), (goes, StayaMode::Cruise as u8, 0.0));
+}
+
+#[test]
+fn received_messages_are_taken_out_oldest_first() {
+    let (mut memories, inputs) = ([Memory::new(), Memory::new()], StayaInputs { max_speed_mps: 1.0, ..nothing().0 });
+    let [one, two] = [1, 2].map(|id| memories[id - 1].agent(&own_law(id as u32)).unwrap());
+    let (mut out, mut messages, mut count) = (nothing().1, [EMPTY; STAYA_INBOX], 77);
+    // SAFETY: all pointers are valid.
+    unsafe {
+        for number in 0..6u8 {
+            assert_eq!(staya_send(one, 0, [number, PROTOCOL].as_ptr(), 2, 0), StayaStatus::Ok);
+            assert_eq!(staya_step(one, &inputs, &mut out), StayaStatus::Ok);
+            let heard = StayaInputs { inbox: out.outbox.as_ptr(), inbox_bytes: out.outbox_bytes.into(), ..inputs };
+            assert_eq!(staya_hear(two, &heard), StayaStatus::Ok);
+        }
+        assert_eq!((staya_received(two, null_mut(), 0, &mut count), count), (StayaStatus::Ok, 0));
+        assert_eq!((staya_received(two, messages.as_mut_ptr(), 1, &mut count), count), (StayaStatus::Ok, 1));
+        let StayaMessage { from, dropped, is_order, count: length, bytes } = messages[0];
+        assert_eq!((from, dropped, is_order, &bytes[..length.into()]), (1, 2, 0, &[2, PROTOCOL][..]));
+        assert_eq!((staya_received(two, messages.as_mut_ptr(), STAYA_INBOX, &mut count), count), (StayaStatus::Ok, 3));
+        assert_eq!(messages.map(|message| message.bytes[0]), [3, 4, 5, 0]);
+        assert_eq!((staya_received(two, messages.as_mut_ptr(), STAYA_INBOX, &mut count), count), (StayaStatus::Ok, 0));
     }
 }
 

@@ -15,13 +15,11 @@ mod program {
         staya_cases::every(print);
         #[cfg(part = "nrf51")]
         for &case in staya_cases::Case::ALL {
-            // No FPU, and flash for one number format only.
+            // No FPU, and flash for one number format only; MAVLink is in `replay_mavlink`.
             use staya_controller::scalar::Q16;
             let summary = case.run::<Q16, _>(&mut staya_cases::Unmeasured);
             print(case.name(), "Q16", &summary);
         }
-        #[cfg(part = "nrf51")]
-        staya_cases::in_mavlink::<staya_controller::scalar::Q16>("Q16", &mut print);
         runtime::exit(0)
     }
 

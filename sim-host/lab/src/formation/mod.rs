@@ -44,7 +44,7 @@ const RUNS: u32 = 0x0045_0102;
 /// Robots in the formation of figure 5.
 pub const ROBOTS: usize = 6;
 const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
-/// Only beacons and requests depend on it.
+/// Only beacons and messages depend on it.
 const TICK_US: u32 = 1_000_000;
 
 /// Parameters of the experiment.

@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 /// layers, radio, faults and goals (given by orders).
 ///
 /// # Errors
-/// [`StartError::World`], and those of [`Grid::new`].
+/// [`StartError::World`], and those of [`Grid::new`](super::Grid::new).
 pub fn simulate_own<L: OwnLaw>(
     scenario: &Scenario,
     law: impl Fn(usize) -> L + Send + Sync + 'static,
