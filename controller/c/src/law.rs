@@ -4,7 +4,7 @@ use crate::Number;
 use crate::one_of::one_of;
 use staya_controller::agent::{
     AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, External, Law as AgentLaw,
-    Radio, Report, Tools, View, WaypointGuidance, decide_as, order_as, payload_as, receive_as,
+    Radio, Report, Tools, View, WaypointGuidance, decide_as, payload_as,
 };
 #[cfg(feature = "flocks")]
 use staya_controller::agent::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
@@ -104,12 +104,46 @@ impl AgentLaw<Number> for Law {
         each!(self, law => payload_as(law, here, heading, radio))
     }
 
+    // Without clones of messages and orders, which make the library larger.
+    #[inline(never)]
     fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
-        each!(self, law => receive_as::<Number, _, _>(law, from, message, radio))
+        match (self, message) {
+            (Self::External(law), _) => law.receive(from, message, radio),
+            #[cfg(feature = "grid")]
+            (Self::Route(law), AnyMessage::Grid(message)) => law.receive(from, message, &mut radio.of()),
+            #[cfg(feature = "grid")]
+            (Self::Formation(law), AnyMessage::Grid(message)) => law.receive(from, message, &mut radio.of()),
+            #[cfg(feature = "grid")]
+            (Self::RouteOnGrid(law), AnyMessage::Grid(message)) => {
+                AgentLaw::<Number>::receive(law, from, message, &mut radio.of())
+            }
+            #[cfg(feature = "grid")]
+            (Self::FormationOnGrid(law), AnyMessage::Grid(message)) => {
+                AgentLaw::<Number>::receive(law, from, message, &mut radio.of())
+            }
+            _ => false,
+        }
     }
 
+    #[inline(never)]
     fn order(&mut self, order: &AnyOrder) -> bool {
-        each!(self, law => order_as::<Number, _, _>(law, order))
+        match (self, order) {
+            (Self::External(law), _) => law.order(order),
+            (Self::Waypoint(law), AnyOrder::Waypoint(order)) => law.order(order),
+            #[cfg(feature = "flocks")]
+            (Self::Lattice(law), AnyOrder::Waypoint(order)) => law.order(order),
+            #[cfg(feature = "flocks")]
+            (Self::GoalFlock(law), AnyOrder::Waypoint(order)) => law.order(order),
+            #[cfg(feature = "grid")]
+            (Self::Route(law), AnyOrder::Grid(order)) => law.order(order),
+            #[cfg(feature = "grid")]
+            (Self::Formation(law), AnyOrder::Grid(order)) => law.order(order),
+            #[cfg(feature = "grid")]
+            (Self::RouteOnGrid(law), AnyOrder::Grid(order)) => AgentLaw::<Number>::order(law, order),
+            #[cfg(feature = "grid")]
+            (Self::FormationOnGrid(law), AnyOrder::Grid(order)) => AgentLaw::<Number>::order(law, order),
+            _ => false,
+        }
     }
 
     fn needs(&self, id: RobotId) -> bool {

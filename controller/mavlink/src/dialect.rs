@@ -3906,7 +3906,7 @@ pub struct STAYA_BEACON_DATA {
     pub protocol: u8,
     ///Number of bytes used.
     pub count: u8,
-    ///What its law says. Protocol 1, little-endian: cell x, y and target x, y (int16), busy_ms (uint16), heading (0 to 7: neighbouring cells, 8: stays), slot (uint8), leader (in groups of 7 bits, the lowest first; 0: none).
+    ///Payload of its law. Protocol 1, little-endian: cell x, y and target x, y (int16), busy_ms (uint16), heading (0 to 7: neighbouring cells, 8: stays), slot (uint8), leader (in groups of 7 bits, the lowest first; 0: none).
     pub bytes: [u8; 16],
 }
 impl STAYA_BEACON_DATA {
@@ -4187,7 +4187,7 @@ impl MessageData for STAYA_LOST_DATA {
         }
     }
 }
-///What a law tells one robot, up to 12 bytes, or all robots; or an order to a law with a protocol of users.
+///Message of a law to one robot (up to 12 bytes) or to all robots, or an order to a law with a protocol of users.
 ///
 ///ID: 9500002
 #[derive(Debug, Clone, PartialEq)]
@@ -5130,7 +5130,7 @@ pub enum MavMessage {
     ///
     ///ID: 9500009
     STAYA_LOST(STAYA_LOST_DATA),
-    ///What a law tells one robot, up to 12 bytes, or all robots; or an order to a law with a protocol of users.
+    ///Message of a law to one robot (up to 12 bytes) or to all robots, or an order to a law with a protocol of users.
     ///
     ///ID: 9500002
     STAYA_MESSAGE(STAYA_MESSAGE_DATA),

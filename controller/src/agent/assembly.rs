@@ -227,10 +227,10 @@ impl<const F: usize> TemplateAssembler<F> {
         Ok(self.complete())
     }
 
-    /// Takes in an order. Returns the template once it is complete; `Err` if the order is of no use.
+    /// Stores an order. Returns the template once it is complete.
     ///
     /// # Errors
-    /// The order is no part of a template, or a rejected one.
+    /// [`OfAnotherLaw`] if the order is not a part of a template, or a rejected part.
     pub fn order(&mut self, order: &GridOrder) -> Result<Option<Template<F>>, OfAnotherLaw> {
         let GridOrder::Template { part, is_restarted } = order else { return Err(OfAnotherLaw) };
         if *is_restarted {

@@ -1,4 +1,4 @@
-//! What robots that plan on the grid say to each other.
+//! The protocol of robots that plan on the grid.
 
 use super::{CellState, OnGrid, Protocol, Radio, Report, Scene, TemplatePart, View};
 use crate::fixint;
@@ -259,12 +259,12 @@ pub(super) const fn is_over(until: Instant, now: Instant) -> bool {
     now.has_reached(until, Duration::from_millis(u16::MAX as i32))
 }
 
-/// The goal of a law on the grid, the stops that other robots asked for, and what the law shows.
+/// The goal of a law on the grid, the stops that other robots asked for, and the report.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GridTask {
     goal: Option<Goal>,
     stops: Stops,
-    /// What the law shows.
+    /// The report, without the stops.
     pub shown: Report,
 }
 
@@ -338,13 +338,13 @@ impl GridTask {
         (self.shown.goal, self.shown.target) = (Some(goal), Some(target));
     }
 
-    /// What displays show.
+    /// Returns the report of the law.
     #[must_use]
     pub fn report(&self) -> Report {
         Report { stopped_until: self.stopped_until(), ..self.shown }
     }
 
-    /// What a beacon says.
+    /// Returns the payload of a beacon.
     #[must_use]
     pub fn payload(&self, here: &OnGrid<'_>, heading: Dir) -> GridPayload {
         let CellState { cell, busy } = here.cell;

@@ -64,7 +64,8 @@ impl<S: Scalar, L> Guided<S, L> {
     ///
     /// # Errors
     /// [`WrongTask`], with the previous command still active, for a velocity or a waypoint if the
-    /// law moves cell by cell, a cell if it does not plan on the grid, and a velocity that is not finite.
+    /// law moves cell by cell, a cell if it does not plan on the grid, and a velocity that is not
+    /// finite.
     /// An enum of laws accepts all of these; its host knows which body it has.
     pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
     where

@@ -81,11 +81,11 @@ pub type OrderOf<L, S> = <<L as Law<S>>::Protocol as Protocol>::Order;
 /// fn law(law: CellFollower<f32, WaypointGuidance<f32>>) -> impl Law<f32> { law }
 /// ```
 pub trait Law<S: Scalar>: Sized {
-    /// What the robot must be told besides its state and the radio:
+    /// The input besides the robot's state and the radio:
     /// [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane), [`InCells`](super::InCells).
     type Surroundings<'a>: Surroundings<S> + TryFrom<AnySurroundings<'a, S>>;
 
-    /// What robots with this law say to each other, and an operator to them; `()` for nothing.
+    /// The vocabulary of robots with this law, and of an operator; `()` for none.
     type Protocol: Protocol;
 
     /// Scratch memory without state between calls; one can serve all robots.
@@ -104,7 +104,7 @@ pub trait Law<S: Scalar>: Sized {
     ) -> Result<Decision<S>, BadInput>;
 
     /// Returns the payload of a beacon that is due. `heading`: the move under way or intended.
-    /// What is broadcast here follows the beacon.
+    /// A broadcast sent here follows the beacon.
     fn payload(
         &mut self,
         _here: &Self::Surroundings<'_>,
@@ -144,7 +144,7 @@ pub trait Law<S: Scalar>: Sized {
     fn parameters(&mut self, _visit: &mut dyn FnMut(&mut dyn Parameters)) {}
 }
 
-/// What a law knows at a decision besides its surroundings and the words of other robots.
+/// The knowledge of a law at a decision, without its surroundings and the other robots' words.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a, S> {
     /// Own id.
@@ -171,8 +171,8 @@ pub struct Scene<'a, S> {
     pub cells: Option<CellFrame>,
 }
 
-/// What a law knows at a decision besides its surroundings: the [`Scene`], and the robots with what
-/// their laws say in protocol `P`.
+/// The knowledge of a law at a decision, without its surroundings: the [`Scene`], and the robots
+/// with their payloads in protocol `P`.
 pub struct View<'a, S, P: Protocol = ()> {
     /// The part that does not depend on the protocol.
     pub scene: Scene<'a, S>,
@@ -209,7 +209,7 @@ impl<'a, S: Copy, P: Protocol> View<'a, S, P> {
         self.known.find(id)
     }
 
-    /// Those whose law has this protocol, with what they say.
+    /// The robots whose law has this protocol, with their payloads.
     pub fn peers(&self) -> impl Iterator<Item = (Neighbor<S, P::Payload>, P::Payload)> + Clone + use<'a, S, P> {
         self.neighbors().filter_map(|neighbor| Some((neighbor, neighbor.payload?)))
     }
@@ -255,7 +255,7 @@ impl<S: Copy, P: Copy> Known<S, P> for &[Neighbor<S, P>] {
     }
 }
 
-/// What a law has at hand at a decision.
+/// The tools of a law at a decision.
 #[derive(Debug)]
 pub struct Tools<'t, S: Scalar, L: Law<S>> {
     /// Random numbers of this robot and decision.
@@ -266,7 +266,7 @@ pub struct Tools<'t, S: Scalar, L: Law<S>> {
     pub workspace: &'t mut L::Workspace,
 }
 
-/// What beacons and displays show of a law.
+/// The part of a law that beacons and displays show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Report {

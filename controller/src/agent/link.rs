@@ -28,7 +28,7 @@ const INCOMING: usize = 8;
 /// Subjects of orders: one goal, or the waypoints.
 const ORDERS: usize = 4;
 
-/// What the law must handle.
+/// A message or an order for the law.
 pub(super) enum Received<Q: Protocol> {
     /// Call [`Link::take_message`] with the receipt if the law takes it; none if it is for all.
     Message(RobotId, Q::Message, Option<Receipt>),

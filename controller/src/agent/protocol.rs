@@ -1,4 +1,4 @@
-//! What robots with one law say to each other beyond where they are, and an operator to them.
+//! The words of robots with one law, beyond their kinematics, and of their operator.
 
 use super::Waypoint;
 use crate::geom::{Position, Vec3};

@@ -10,7 +10,7 @@ pub trait FarMap {
     /// Takes in the window of a robot in `cell` that goes to `goal`.
     fn see(&mut self, _window: &Window<'_>, _cell: Cell, _goal: Cell) {}
 
-    /// The terrain to plan with, if it is of use.
+    /// The terrain to plan with, if it helps.
     fn land(&self) -> Option<&dyn FarLand> {
         None
     }

@@ -61,7 +61,7 @@ pub struct Neighbor<S, P = ()> {
     pub trace: Trace,
     /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`].
     pub gap_m: S,
-    /// What its guidance law last said; `None` for a law with another protocol.
+    /// The last payload of its law; `None` for a law with another protocol.
     pub payload: Option<P>,
 }
 

@@ -1,4 +1,4 @@
-//! What laws say, as bytes of a frame.
+//! Payloads, messages and orders of laws as bytes of a frame.
 
 use core::fmt::Debug;
 use heapless::Vec;

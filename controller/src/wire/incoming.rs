@@ -114,7 +114,7 @@ impl<const C: usize> IncomingOrders<C> {
         known.is_none_or(|known| known.by != by || known.newest.is_news(number))
     }
 
-    /// Remembers an order that was of use. A full table drops the subject that it met first.
+    /// Remembers an order that the law took. A full table drops the subject that it met first.
     pub fn note(&mut self, header: Header, number: u8, subject: u32) {
         let by = Operator { sender: header.sender, boot: header.boot };
         let mut newest = Newest::new();

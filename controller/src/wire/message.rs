@@ -29,7 +29,7 @@ pub struct Beacon {
     pub flock: u8,
     /// The protocol of its law.
     pub protocol: ProtocolId,
-    /// What its law says.
+    /// The payload of its law.
     pub payload: Bytes<MAX_PAYLOAD>,
 }
 

@@ -34,7 +34,7 @@ struct Said {
     message: GridMessage,
     number: Option<u8>,
     sends: u32,
-    was_taken: bool,
+    was_acknowledged: bool,
     /// Acknowledged, replaced, expired, or lost when its sender rebooted.
     ends: u32,
 }
@@ -109,7 +109,7 @@ impl Robot {
             self.said[*place].ends += 1;
         }
         self.pending.insert(subject, self.said.len());
-        self.said.push(Said { message, number: None, sends: 0, was_taken: false, ends: 0 });
+        self.said.push(Said { message, number: None, sends: 0, was_acknowledged: false, ends: 0 });
     }
 
     fn poll(&mut self, to: usize, now_ms: i32, now: Instant, air: &mut Vec<Packet>) {
@@ -158,7 +158,7 @@ impl Robot {
         out[..out.len() - 1].to_vec()
     }
 
-    /// `takes`: the law takes a message that is new.
+    /// `takes`: whether the law takes messages except repeats.
     fn receive(&mut self, packet: &Packet, takes: bool, peer: &mut Self, now_ms: i32, now: Instant) -> Option<Vec<u8>> {
         let frame = decode(&packet.bytes).expect("the radio damages nothing here");
         let header = frame.header;
@@ -189,7 +189,7 @@ impl Robot {
                     self.newest.insert(subject, Newest { boot: header.boot, place: packet.place });
                     self.obey(header.sender, &message, now_ms, now);
                 }
-                peer.said[packet.place].was_taken = true;
+                peer.said[packet.place].was_acknowledged = true;
                 let ack = Ack { to: header.sender, boot: header.boot, number: told.number };
                 Some(self.encoded(Message::Ack(ack)))
             }
@@ -203,7 +203,7 @@ impl Robot {
                     let place = pending.and_then(|subject| self.pending.remove(&subject));
                     assert_eq!(place, Some(packet.place), "another message was meant");
                     let said = &mut self.said[packet.place];
-                    assert!(said.was_taken);
+                    assert!(said.was_acknowledged);
                     said.ends += 1;
                 }
                 None

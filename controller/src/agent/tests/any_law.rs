@@ -25,7 +25,7 @@ fn formation(id: u32) -> Formation {
     FormationGuidance::steered(RouteParams::default(), FormationParams::default(), template, NextMove, map())
 }
 
-/// What the robots said in each step, where they went, and their modes.
+/// The bytes, places and modes of the robots in each step.
 #[derive(Debug, PartialEq)]
 struct Track {
     said: Vec<Vec<u8>>,

@@ -23,7 +23,7 @@ fn resuming(origin: RobotId) -> GridMessage {
     GridMessage::Resume { origin }
 }
 
-/// What was passed on, for how long, and whether the robot decides at once.
+/// The messages passed on with their validity, and whether the robot decides at once.
 type Passed = (Vec<(RobotId, GridMessage, Duration)>, bool);
 
 fn receive(task: &mut GridTask, from: RobotId, message: &GridMessage, now: Instant) -> Passed {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::engine::{Moment, Outcome, simulate, simulate_from, simulate_own};
+use crate::engine::{Moment, Outcome, operated, simulate, simulate_from, simulate_own};
 use crate::record::RobotRow;
 use crate::scenario::{Overrides, Scenario};
 use staya_controller::agent::{Action, InPlane, Status};
@@ -141,6 +141,20 @@ fn a_checkpoint_has_the_state_of_a_named_law() {
     };
     let _ = simulate(&scenario, until_nine).unwrap();
     assert_eq!(simulate_from(&scenario, &bytes, &mut on).unwrap(), whole);
+}
+
+#[test]
+fn an_operator_sees_and_tunes_a_named_law() {
+    let scenario = scenario("[law]\nname = \"convoy\"").unwrap();
+    let mut run = operated(&scenario).unwrap();
+    for _ in 0..scenario.ticks {
+        run.advance();
+    }
+    assert_eq!(run.outcome(), simulate(&scenario, on).unwrap());
+    assert_eq!(run.parameter(0, "pace_mps"), Some(0.5));
+    run.set_parameter(0, "pace_mps", 0.3).unwrap();
+    assert_eq!(run.parameter(0, "pace_mps"), Some(0.3));
+    assert_eq!(run.inspect(0).known.len(), 1);
 }
 
 #[test]

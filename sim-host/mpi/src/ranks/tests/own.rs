@@ -10,7 +10,7 @@ use staya_controller::grid::Dir;
 use staya_controller::wire::{Never, ProtocolId};
 use staya_sim::engine::{simulate_own, simulate_own_from};
 
-/// Goes east, and stops when the sum of what it has heard is large.
+/// Goes east, and stops when the sum of the payloads is large.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Sums(u32);
 
