@@ -73,11 +73,12 @@ impl StayaAgent {
     /// `site` was returned by [`Call::site`].
     #[inline(never)]
     unsafe fn make(site: *mut Self, setup: &StayaSetup) -> Checked<()> {
+        let law = StayaLaw::of(setup.law)?;
         let agent = AnyAgent::new(&setup.config()?, setup.law()?, setup.layer()?, setup.speech()?);
         // SAFETY: aligned space for the whole agent, not used elsewhere.
         unsafe {
             (&raw mut (*site).agent).write(agent);
-            (&raw mut (*site).law).write(StayaLaw::of(setup.law)?);
+            (&raw mut (*site).law).write(law);
             (&raw mut (*site).has_heard).write(false);
             (&raw mut (*site).workspace).write(Workspace::new());
             (&raw mut (*site).obstacles).write(Vec::new());
