@@ -11,15 +11,18 @@ use crate::speech::Speech;
 use crate::status::{Checked, StayaStatus};
 use crate::{NEIGHBORS, Number, OBSTACLES};
 use core::ffi::c_void;
+use core::mem::MaybeUninit;
 use heapless::Vec;
-use staya_controller::agent::{Agent, AnyPayload, GridPayload, Outputs, Task, WAYPOINTS, Waypoint};
+use staya_controller::agent::{
+    Agent, AgentConfig, AnyPayload, External, GridPayload, Outputs, Task, Unguarded, WAYPOINTS, Waypoint,
+};
 use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Neighbor;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::cast;
 use staya_controller::time::Instant;
-use staya_controller::wire::{Content, MAX_PAYLOAD, ProtocolId};
+use staya_controller::wire::{Content, MAX_PAYLOAD, Postcard, ProtocolId};
 
 /// Bytes that suffice for an agent in any build of the library, including its scratch memory.
 pub const STAYA_AGENT_SIZE: usize = 10240;
@@ -67,18 +70,21 @@ pub(crate) enum Part {
 }
 
 impl StayaAgent {
-    /// Creates the agent in place and in parts: only law and layer pass through the stack.
+    /// Creates the agent in place and in parts, of which only one at a time passes through the
+    /// stack.
     ///
     /// # Safety
     /// `site` was returned by [`Call::site`].
     #[inline(never)]
     unsafe fn make(site: *mut Self, setup: &StayaSetup) -> Checked<()> {
-        let law = StayaLaw::of(setup.law)?;
-        let agent = AnyAgent::new(&setup.config()?, setup.law()?, setup.layer()?, setup.speech()?);
+        let config = setup.config()?;
         // SAFETY: aligned space for the whole agent, not used elsewhere.
         unsafe {
-            (&raw mut (*site).agent).write(agent);
-            (&raw mut (*site).law).write(law);
+            let agent = begin(&mut *(&raw mut (*site).agent).cast(), &config);
+            *agent.law_mut() = setup.law()?;
+            *agent.safety_mut() = setup.layer()?;
+            *agent.wire_mut() = setup.speech()?;
+            (&raw mut (*site).law).write(StayaLaw::of(setup.law)?);
             (&raw mut (*site).has_heard).write(false);
             (&raw mut (*site).workspace).write(Workspace::new());
             (&raw mut (*site).obstacles).write(Vec::new());
@@ -117,6 +123,13 @@ impl StayaAgent {
     pub(crate) const fn inside_mut(&mut self) -> &mut AnyAgent {
         &mut self.agent
     }
+}
+
+/// An agent with the smallest law, safety layer and wire format.
+#[inline(never)]
+fn begin<'a>(place: &'a mut MaybeUninit<AnyAgent>, config: &AgentConfig<Number>) -> &'a mut AnyAgent {
+    let law = Law::External(External::new(ProtocolId::NONE));
+    place.write(AnyAgent::new(config, law, Layer::None(Unguarded), Speech::Postcard(Postcard)))
 }
 
 /// Runs a step, or its second half, if the inputs are valid.

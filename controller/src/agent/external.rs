@@ -9,7 +9,7 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Duration;
 use crate::wire::{Bytes, MAX_CONTENT, MAX_MESSAGE, ProtocolId};
-use heapless::{Deque, Vec};
+use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Received messages that wait, and messages to single robots that wait.
@@ -44,7 +44,7 @@ pub struct External<S> {
     payload: AnyPayload,
     to_one: Vec<(RobotId, Duration, Bytes<MAX_MESSAGE>), QUEUE, u8>,
     to_all: Option<Bytes<MAX_CONTENT>>,
-    inbox: Deque<Incoming, QUEUE>,
+    inbox: Vec<Incoming, QUEUE, u8>,
     dropped: u16,
 }
 
@@ -58,7 +58,7 @@ impl<S: Scalar> External<S> {
             payload: AnyPayload::Empty(protocol),
             to_one: Vec::new(),
             to_all: None,
-            inbox: Deque::new(),
+            inbox: Vec::new(),
             dropped: 0,
         }
     }
@@ -97,7 +97,10 @@ impl<S: Scalar> External<S> {
 
     /// Takes out the oldest message or order. Four wait at most; another one replaces the oldest.
     pub fn take(&mut self) -> Option<Incoming> {
-        self.inbox.pop_front()
+        let oldest = self.inbox.first().cloned();
+        let mut is_oldest = true;
+        self.inbox.retain(|_| !core::mem::take(&mut is_oldest));
+        oldest
     }
 
     /// Messages and orders that were replaced before they were taken out; it saturates.
@@ -111,10 +114,10 @@ impl<S: Scalar> External<S> {
         let bytes = Bytes::from_slice(&raw.bytes).ok().filter(|_| raw.id == self.protocol);
         let Some(bytes) = bytes else { return false };
         if self.inbox.is_full() {
-            self.inbox.pop_front();
+            self.take();
             self.dropped = self.dropped.saturating_add(1);
         }
-        self.inbox.push_back(Incoming { from, is_order, bytes }).is_ok()
+        self.inbox.push(Incoming { from, is_order, bytes }).is_ok()
     }
 
     fn post(&mut self, radio: &mut Radio<'_, AnyProtocol>) {
