@@ -52,6 +52,11 @@
 #define STAYA_WAYPOINTS 4
 
 /**
+ * Maximum length of a payload in bytes.
+ */
+#define STAYA_PAYLOAD 16
+
+/**
  * Maximum number of neighbours of an agent.
  */
 #define STAYA_NEIGHBORS 16
@@ -65,11 +70,6 @@
  * Maximum number of robots that these behaviours consider: the nearest of all that are given.
  */
 #define STAYA_NEARBY 16
-
-/**
- * Maximum length of a payload in bytes.
- */
-#define STAYA_PAYLOAD 16
 
 /**
  * Maximum length of a message to one robot in bytes.
@@ -261,7 +261,7 @@ typedef uint8_t StayaLaw;
 #endif // __cplusplus
 
 /**
- * What a law of your own decides.
+ * The action that a law of your own decides on.
  */
 enum StayaAction
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -1527,7 +1527,7 @@ typedef struct StayaNeighbor {
      */
     uint8_t payload_count;
     /**
-     * What its law says to laws with this protocol, `payload_count` bytes.
+     * The payload of its law, `payload_count` bytes: the bytes of `staya_set_payload`.
      */
     uint8_t payload[STAYA_PAYLOAD];
 } StayaNeighbor;
@@ -1890,11 +1890,11 @@ StayaStatus staya_act(struct StayaAgent *agent,
 
 /**
  * Decides for the next step; before the first decision the robot is idle. A decision counts once:
- * if it is not renewed, the robot stays, so a law that hangs stops its robot. An idle robot remains
- * idle. A velocity needs `max_speed_mps`, moves need a `window` and no `cell_m`; without them the
- * robot is in STAYA_MODE_FAULT. `STAYA_STATUS_TASK` if the agent's law is not STAYA_LAW_EXTERNAL,
- * for this function and those below. `STAYA_STATUS_NUMBER`, `_CHOICE` or `_TOO_MANY` for an invalid
- * decision, which changes nothing.
+ * if it is not renewed, the robot stays, so a law that hangs stops its robot. An idle robot
+ * remains idle. A velocity needs `max_speed_mps`, moves need a `window` and no `cell_m`; without
+ * them the robot is in STAYA_MODE_FAULT. `STAYA_STATUS_NUMBER`, `_CHOICE` or `_TOO_MANY` for an
+ * invalid decision, which changes nothing. This function and those below do constant work and
+ * return `STAYA_STATUS_TASK` if the agent's law is not STAYA_LAW_EXTERNAL.
  */
 StayaStatus staya_decide(struct StayaAgent *agent, const struct StayaDecision *decision);
 
@@ -1907,10 +1907,10 @@ StayaStatus staya_set_payload(struct StayaAgent *agent, const uint8_t *bytes, si
 /**
  * Sends a message to robot `to` in the next step: at most STAYA_MESSAGE bytes, resent until it is
  * acknowledged, for `valid_us` at most, then STAYA_EVENT_KIND_MESSAGE_EXPIRED. A newer message to
- * the robot replaces it; those to more than four robots at a time are lost. `to` 0: to all, at most
- * STAYA_CONTENT bytes, once, if it fits into the frames of the step. `STAYA_STATUS_TOO_MANY` for
- * too many bytes, or if one message to all or four others wait for the step; `STAYA_STATUS_NUMBER`
- * if `valid_us` is not above 0 and `to` is.
+ * the robot replaces it; those to more than four robots at a time are lost. `to` 0: to all, at
+ * most STAYA_CONTENT bytes, once, if it fits into the frames of the step. `STAYA_STATUS_TOO_MANY`
+ * for too many bytes, or if one message to all or four others wait for the step;
+ * `STAYA_STATUS_NUMBER` if `valid_us` is not above 0 and `to` is.
  */
 StayaStatus staya_send(struct StayaAgent *agent,
                        uint32_t to,
@@ -1919,9 +1919,9 @@ StayaStatus staya_send(struct StayaAgent *agent,
                        int32_t valid_us);
 
 /**
- * Takes out the oldest received messages and orders with the protocol of the law, `message_room` at
- * most, and returns their number in `*count`. STAYA_INBOX wait at most; another one replaces the
- * oldest.
+ * Takes out the oldest received messages and orders with the protocol of the law, `message_room`
+ * at most, and returns their number in `*count`. STAYA_INBOX wait at most; another one replaces
+ * the oldest.
  */
 StayaStatus staya_received(struct StayaAgent *agent,
                            struct StayaMessage *messages,

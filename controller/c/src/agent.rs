@@ -1,7 +1,6 @@
 //! The agent: creation in the caller's memory, orders, steps and queries.
 
 use crate::choices::{StayaLaw, StayaMode};
-use crate::external::STAYA_PAYLOAD;
 use crate::io::{StayaInputs, StayaOutputs, array, finite};
 use crate::law::{Law, Workspace};
 use crate::layer::Layer;
@@ -32,13 +31,15 @@ pub const STAYA_AGENT_SIZE_IN_PLANE: usize = 3584;
 pub const STAYA_ALIGN: usize = 8;
 /// Maximum number of waypoints of an agent.
 pub const STAYA_WAYPOINTS: usize = 4;
+/// Maximum length of a payload in bytes.
+pub const STAYA_PAYLOAD: usize = 16;
 /// Maximum number of neighbours of an agent.
 pub const STAYA_NEIGHBORS: usize = 16;
 
 const _: () = assert!(size_of::<StayaAgent>() <= STAYA_AGENT_SIZE && align_of::<StayaAgent>() <= STAYA_ALIGN);
 #[cfg(not(any(feature = "auth", feature = "grid")))]
 const _: () = assert!(size_of::<StayaAgent>() <= STAYA_AGENT_SIZE_IN_PLANE);
-const _: () = assert!(STAYA_WAYPOINTS == WAYPOINTS && STAYA_NEIGHBORS >= NEIGHBORS);
+const _: () = assert!(STAYA_WAYPOINTS == WAYPOINTS && STAYA_NEIGHBORS >= NEIGHBORS && STAYA_PAYLOAD == MAX_PAYLOAD);
 
 type AnyAgent = Agent<Number, Law, NEIGHBORS, Layer, Speech>;
 
@@ -195,7 +196,7 @@ pub struct StayaNeighbor {
     pub protocol: u8,
     /// Length of `payload`.
     pub payload_count: u8,
-    /// What its law says to laws with this protocol, `payload_count` bytes.
+    /// The payload of its law, `payload_count` bytes: the bytes of `staya_set_payload`.
     pub payload: [u8; STAYA_PAYLOAD],
 }
 

@@ -30,7 +30,7 @@ pub enum StayaLaw {
     External = 8,
 }
 
-/// What a law of your own decides.
+/// The action that a law of your own decides on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaAction {

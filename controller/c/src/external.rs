@@ -11,10 +11,8 @@ use staya_controller::agent::{Action, Decision, External, Status};
 use staya_controller::grid::Dir;
 use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
-use staya_controller::wire::{MAX_CONTENT, MAX_MESSAGE, MAX_ORDER, MAX_PAYLOAD};
+use staya_controller::wire::{MAX_CONTENT, MAX_MESSAGE, MAX_ORDER};
 
-/// Maximum length of a payload in bytes.
-pub const STAYA_PAYLOAD: usize = 16;
 /// Maximum length of a message to one robot in bytes.
 pub const STAYA_MESSAGE: usize = 12;
 /// Maximum length of a message to all robots, and of an order, in bytes.
@@ -22,8 +20,7 @@ pub const STAYA_CONTENT: usize = 38;
 /// Maximum number of received messages that wait for `staya_received`.
 pub const STAYA_INBOX: usize = 4;
 
-const _: () = assert!(STAYA_PAYLOAD == MAX_PAYLOAD && STAYA_MESSAGE == MAX_MESSAGE);
-const _: () = assert!(STAYA_CONTENT == MAX_CONTENT && STAYA_CONTENT >= MAX_ORDER);
+const _: () = assert!(STAYA_MESSAGE == MAX_MESSAGE && STAYA_CONTENT == MAX_CONTENT && STAYA_CONTENT >= MAX_ORDER);
 
 /// The decision of a law of your own. All zeros: idle.
 #[repr(C)]
@@ -124,11 +121,11 @@ pub unsafe extern "C" fn staya_act(
 }
 
 /// Decides for the next step; before the first decision the robot is idle. A decision counts once:
-/// if it is not renewed, the robot stays, so a law that hangs stops its robot. An idle robot remains
-/// idle. A velocity needs `max_speed_mps`, moves need a `window` and no `cell_m`; without them the
-/// robot is in STAYA_MODE_FAULT. `STAYA_STATUS_TASK` if the agent's law is not STAYA_LAW_EXTERNAL,
-/// for this function and those below. `STAYA_STATUS_NUMBER`, `_CHOICE` or `_TOO_MANY` for an invalid
-/// decision, which changes nothing.
+/// if it is not renewed, the robot stays, so a law that hangs stops its robot. An idle robot
+/// remains idle. A velocity needs `max_speed_mps`, moves need a `window` and no `cell_m`; without
+/// them the robot is in STAYA_MODE_FAULT. `STAYA_STATUS_NUMBER`, `_CHOICE` or `_TOO_MANY` for an
+/// invalid decision, which changes nothing. This function and those below do constant work and
+/// return `STAYA_STATUS_TASK` if the agent's law is not STAYA_LAW_EXTERNAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_decide(agent: *mut StayaAgent, decision: *const StayaDecision) -> StayaStatus {
     answers!(|call| {
@@ -146,10 +143,10 @@ pub unsafe extern "C" fn staya_set_payload(agent: *mut StayaAgent, bytes: *const
 
 /// Sends a message to robot `to` in the next step: at most STAYA_MESSAGE bytes, resent until it is
 /// acknowledged, for `valid_us` at most, then STAYA_EVENT_KIND_MESSAGE_EXPIRED. A newer message to
-/// the robot replaces it; those to more than four robots at a time are lost. `to` 0: to all, at most
-/// STAYA_CONTENT bytes, once, if it fits into the frames of the step. `STAYA_STATUS_TOO_MANY` for
-/// too many bytes, or if one message to all or four others wait for the step; `STAYA_STATUS_NUMBER`
-/// if `valid_us` is not above 0 and `to` is.
+/// the robot replaces it; those to more than four robots at a time are lost. `to` 0: to all, at
+/// most STAYA_CONTENT bytes, once, if it fits into the frames of the step. `STAYA_STATUS_TOO_MANY`
+/// for too many bytes, or if one message to all or four others wait for the step;
+/// `STAYA_STATUS_NUMBER` if `valid_us` is not above 0 and `to` is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_send(
     agent: *mut StayaAgent,
@@ -168,9 +165,9 @@ pub unsafe extern "C" fn staya_send(
     })
 }
 
-/// Takes out the oldest received messages and orders with the protocol of the law, `message_room` at
-/// most, and returns their number in `*count`. STAYA_INBOX wait at most; another one replaces the
-/// oldest.
+/// Takes out the oldest received messages and orders with the protocol of the law, `message_room`
+/// at most, and returns their number in `*count`. STAYA_INBOX wait at most; another one replaces
+/// the oldest.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_received(
     agent: *mut StayaAgent,

@@ -103,7 +103,7 @@ impl<'a> Call<'a> {
     /// Reads `count` consecutive values; null with 0 is empty.
     pub(crate) fn row<T: Plain>(self, first: *const T, count: usize) -> Checked<&'a [T]> {
         let first = check_row(first, count)?;
-        // SAFETY: valid for so many values, and within the limits of memory.
+        // SAFETY: valid for `count` values, and within the limits of memory.
         Ok(unsafe { core::slice::from_raw_parts(first, count) })
     }
 
@@ -135,7 +135,7 @@ impl<'a> Call<'a> {
     /// Space for `count` results.
     pub(crate) fn room<T: Plain>(self, first: *mut T, count: usize) -> Checked<&'a mut [MaybeUninit<T>]> {
         let first = check_row(first, count)?.cast_mut();
-        // SAFETY: space for so many, within the limits of memory; the bytes need not be a `T` yet.
+        // SAFETY: space for `count`, within the limits of memory; the bytes need not be a `T` yet.
         Ok(unsafe { core::slice::from_raw_parts_mut(first.cast(), count) })
     }
 

@@ -28,7 +28,7 @@ const VALID_US: i32 = 200_000;
 const BEAT_MM: i32 = 3_000;
 const ROOM_MM: i32 = 1_200;
 
-/// What the law of both languages knows: all patrol at the pace of the slowest one, and a robot asks
+/// The law in both languages: all robots patrol at the pace of the slowest one, and a robot asks
 /// the one ahead to make room.
 #[derive(Clone, Debug, Default, Serialize)]
 struct Patrol {
@@ -37,7 +37,7 @@ struct Patrol {
     makes_room: u8,
 }
 
-/// What it does in a step.
+/// Its actions in a step.
 struct Act {
     east_mps: f32,
     asks: Option<u32>,

@@ -42,7 +42,7 @@ fn a_decision_is_used_once_and_then_the_robot_stays() {
     let mut agent = external(1);
     for n in 0..2 {
         let _ = step(&mut agent, n, &[]);
-        assert_eq!(agent.mode(), Mode::Idle, "nobody has decided");
+        assert_eq!(agent.mode(), Mode::Idle, "its owner has not decided");
     }
     for n in 2..4 {
         agent.law_mut().set_decision(going(EAST));
