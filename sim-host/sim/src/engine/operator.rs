@@ -112,7 +112,16 @@ pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
     Ok(AnyEngine::new(scenario)?.operated(scenario))
 }
 
-pub(super) fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Guided<f32, G>, SafetyOf>) -> Box<dyn Operated>
+impl AnyEngine {
+    pub(super) fn operated(self, scenario: &Scenario) -> Box<dyn Operated> {
+        match self {
+            Self::Plane(engine) => boxed(scenario, *engine),
+            Self::Cells(engine) => boxed(scenario, *engine),
+        }
+    }
+}
+
+fn boxed<W, G>(scenario: &Scenario, mut engine: Engine<W, Guided<f32, G>, SafetyOf>) -> Box<dyn Operated>
 where
     W: Ground + 'static,
     G: HostLaw + Clone + 'static,

@@ -1,7 +1,6 @@
 //! Runs a whole scenario with the guidance law that it names.
 
 use super::laws::{Papers, ScenarioLaw};
-use super::operator::{Operated, boxed};
 use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround, WrongWorld};
@@ -180,13 +179,6 @@ impl AnyEngine {
         match self {
             Self::Plane(engine) => resume(scenario, *engine, state, watch),
             Self::Cells(engine) => resume(scenario, *engine, state, watch),
-        }
-    }
-
-    pub(super) fn operated(self, scenario: &Scenario) -> Box<dyn Operated> {
-        match self {
-            Self::Plane(engine) => boxed(scenario, *engine),
-            Self::Cells(engine) => boxed(scenario, *engine),
         }
     }
 }
