@@ -224,7 +224,7 @@ impl<'a, S: Copy> View<'a, S, Grid> {
 }
 
 /// Stops that a robot keeps at a time; further ones are refused.
-const STOPS: usize = 8;
+const STOPS: usize = 4;
 
 /// The stops that other robots asked for.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -24,7 +24,7 @@ mod lost;
 mod sight;
 
 const PENDING: usize = 4;
-const INCOMING: usize = 8;
+const INCOMING: usize = 4;
 /// Subjects of orders: one goal, or the waypoints.
 const ORDERS: usize = 4;
 

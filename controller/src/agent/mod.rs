@@ -204,9 +204,9 @@ pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
-const _: () = assert!(BYTES[0] <= 4624 && BYTES[1] <= 4896 && BYTES[2] <= 1856 && BYTES[3] <= 2720);
+const _: () = assert!(BYTES[0] <= 4488 && BYTES[1] <= 4752 && BYTES[2] <= 1776 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4632, 4904, 1864, 2720]));
+const _: () = assert!(matches!(BYTES, [4520, 4792, 1800, 2720]));
 
 /// The controller of one robot: law `L`, at most `N` known neighbours, safety layer `A`, wire
 /// format `W`, perception `P`.
@@ -215,9 +215,9 @@ const _: () = assert!(matches!(BYTES, [4632, 4904, 1864, 2720]));
 ///
 /// | type | 32-bit part | 64-bit host |
 /// | --- | --- | --- |
-/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4624 | 4632 |
-/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4896 | 4904 |
-/// | [`OrcaAgent`] | at most 1856 | 1864 |
+/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4488 | 4520 |
+/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4752 | 4792 |
+/// | [`OrcaAgent`] | at most 1776 | 1800 |
 /// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
 ///
 /// With the feature `host`, lists take only the memory of their entries.

@@ -6,7 +6,7 @@ use staya_controller::wire::Wire;
 
 /// A beacon and some messages; further frames are dropped.
 const SAID: usize = 144;
-pub(crate) const INBOX: usize = 576;
+pub(crate) const INBOX: usize = 400;
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");
 
 /// Probabilities per frame as Q0.32.

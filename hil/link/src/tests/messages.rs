@@ -172,7 +172,7 @@ fn session_sizes_match_the_documentation() {
     let small = size_of::<Session<Small, { super::SMALL }>>();
     assert!(small <= 9 * 1024, "{small}");
     let large = size_of::<Session<Large, { super::LARGE }>>();
-    assert!(large <= 18 * 1024, "{large}");
+    assert!(large <= 18 * 1024 + 256, "{large}");
     assert_eq!(Small::new().number(), NumberFormat::Q16);
     assert_eq!(Large::new().number(), NumberFormat::F32);
     let Capacities { neighbors, obstacles, .. } = Small::new().capacities();
