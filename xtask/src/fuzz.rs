@@ -19,7 +19,7 @@ const NEEDS: [(&[&str], &str); 3] = [
 /// Targets whose bytes are choices, not words to be guessed, in code without `unsafe`: what the
 /// fuzzer otherwise follows (each comparison, each access to memory) finds nothing there and takes
 /// nine tenths of the time.
-const STORIES: [&str; 1] = ["requests_model"];
+const STORIES: [&str; 1] = ["messages_model"];
 
 /// Runs each target for some seconds. New inputs stay in `tests/fuzz/corpus`, those that break
 /// something in `tests/fuzz/artifacts`.

@@ -28,7 +28,7 @@ use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
     Ack, Addressed, Beacon, Broadcast, Bytes, Content, DecodeError, EncodeError, Frame, Header, LostRobot, MAX_CONTENT,
-    MAX_PAYLOAD, Message, ProtocolId, Wire,
+    MAX_ORDER, MAX_PAYLOAD, Message, ProtocolId, Wire,
 };
 
 /// The component of robots: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -175,7 +175,9 @@ impl ToLaw {
     }
 }
 
-/// Orders of the built-in protocols have messages of their own, which clients fill in by name.
+/// Orders of the built-in protocols have messages of their own, which clients fill in by name. An
+/// order that these would change travels as bytes.
+#[inline(never)]
 fn encode_order<const N: usize>(
     sender: Sender,
     header: Header,
@@ -185,7 +187,8 @@ fn encode_order<const N: usize>(
     let Header { boot, sequence, .. } = header;
     let Addressed { to, number, protocol, content } = order;
     let (target_system, version) = (system(*to)?, *number);
-    let written = match AnyOrder::decode(*protocol, *protocol, content) {
+    let named = AnyOrder::decode(*protocol, *protocol, content).filter(|named| is_named(named, order));
+    let written = match named {
         Some(AnyOrder::Grid(GridOrder::FormationGoal(Cell { x: target_x, y: target_y }))) => {
             frame::encode(sender, &STAYA_GOAL_DATA { sequence, target_x, target_y, boot, target_system, version }, out)
         }
@@ -217,6 +220,15 @@ fn encode_order<const N: usize>(
         }
     };
     written.map_err(|Full| EncodeError::Full)
+}
+
+/// Whether the message for this kind of order holds all of it. One that names a robot beyond all
+/// systems is refused, in either form.
+fn is_named(named: &AnyOrder, order: &Addressed) -> bool {
+    let is_other_version =
+        matches!(named, AnyOrder::Grid(GridOrder::Template { part, .. }) if part.version != order.number);
+    let again = named.encode::<MAX_ORDER>(order.protocol);
+    !is_other_version && again.is_some_and(|(id, bytes)| id == order.protocol && bytes == order.content)
 }
 
 /// The bytes, followed by zeros, and their number.
@@ -255,24 +267,8 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
             (data.boot, data.sequence, Message::Ack(ack))
         }
         STAYA_TEMPLATE_DATA::ID => template_part(&body(&raw)?)?,
-        STAYA_GOAL_DATA::ID => {
-            let data: STAYA_GOAL_DATA = body(&raw)?;
-            let goal = GridOrder::FormationGoal(Cell::new(data.target_x, data.target_y));
-            let order = Grid::order(robot(data.target_system), data.version, &goal);
-            (data.boot, data.sequence, order.ok_or(DecodeError::Body)?)
-        }
-        STAYA_PLACE_DATA::ID => {
-            let data: STAYA_PLACE_DATA = body(&raw)?;
-            let velocity_mmps = [data.vx_mmps, data.vy_mmps, data.vz_mmps];
-            let waypoint = Waypoint {
-                position: Position::from_mm([data.x_mm, data.y_mm, data.z_mm]),
-                velocity_mps: Vec3::from_milli(velocity_mmps.map(i32::from)),
-                at: Instant::default(),
-            };
-            let order = WaypointOrder { index: data.index, waypoint };
-            let order = Waypoints::order(robot(data.target_system), data.version, &order);
-            (data.boot, data.sequence, order.ok_or(DecodeError::Body)?)
-        }
+        STAYA_GOAL_DATA::ID => goal(&body(&raw)?)?,
+        STAYA_PLACE_DATA::ID => place(&body(&raw)?)?,
         STAYA_LOST_DATA::ID => {
             let data: STAYA_LOST_DATA = body(&raw)?;
             let lost = LostRobot {
@@ -316,13 +312,43 @@ fn beacon(data: &STAYA_BEACON_DATA) -> Parts {
     Ok((data.boot, data.sequence, Message::Beacon(beacon)))
 }
 
+#[inline(never)]
+fn goal(data: &STAYA_GOAL_DATA) -> Parts {
+    let goal = GridOrder::FormationGoal(Cell::new(data.target_x, data.target_y));
+    let order = Grid::order(robot(data.target_system), data.version, &goal);
+    Ok((data.boot, data.sequence, order.ok_or(DecodeError::Body)?))
+}
+
+#[inline(never)]
+fn place(data: &STAYA_PLACE_DATA) -> Parts {
+    let velocity_mmps = [data.vx_mmps, data.vy_mmps, data.vz_mmps];
+    let waypoint = Waypoint {
+        position: Position::from_mm([data.x_mm, data.y_mm, data.z_mm]),
+        velocity_mps: Vec3::from_milli(velocity_mmps.map(i32::from)),
+        at: Instant::default(),
+    };
+    let order = WaypointOrder { index: data.index, waypoint };
+    let order = Waypoints::order(robot(data.target_system), data.version, &order);
+    Ok((data.boot, data.sequence, order.ok_or(DecodeError::Body)?))
+}
+
+#[inline(never)]
 fn to_law(data: &STAYA_MESSAGE_DATA) -> Parts {
     let (to, protocol) = (robot(data.target_system), ProtocolId(data.protocol));
     let addressed = || Ok(Addressed { to, number: data.number, protocol, content: filled(data.count, &data.bytes)? });
     let message = match data.kind {
         TO_ONE => Message::Law(addressed()?),
         TO_ALL => Message::Broadcast(Broadcast { protocol, content: filled(data.count, &data.bytes)? }),
-        ORDER => Message::Order(addressed()?),
+        ORDER => {
+            let order = addressed()?;
+            if let Some(AnyOrder::Grid(GridOrder::Template { part, .. })) =
+                AnyOrder::decode(protocol, protocol, &order.content)
+                && part.entries.iter().any(|entry| system(entry.id).is_err())
+            {
+                return Err(DecodeError::Body);
+            }
+            Message::Order(order)
+        }
         _ => return Err(DecodeError::Body),
     };
     Ok((data.boot, data.sequence, message))
@@ -362,6 +388,7 @@ const _: () = assert!(MAX_PAYLOAD == STAYA_BEACON_DATA::DEFAULT.bytes.len());
 const _: () = assert!(MAX_CONTENT == STAYA_MESSAGE_DATA::DEFAULT.bytes.len());
 const _: () = assert!(TEMPLATE_PART == STAYA_TEMPLATE_DATA::DEFAULT.entry_id.len());
 
+#[inline(never)]
 fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
     let count = usize::from(data.count);
     if count > TEMPLATE_PART {

@@ -6,7 +6,6 @@ use proptest::array::uniform;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use staya_controller::agent::GridMessage;
-use staya_controller::wire::MAX_ORDER;
 
 type Framed = Vec<u8, MAX_FRAME_LEN>;
 
@@ -306,4 +305,50 @@ fn a_beacon_has_at_most_its_length() {
     let beacon = Beacon { mode: Mode::Fault, payload, ..Beacon::default() };
     assert_eq!(framed(HEADER, &Message::Beacon(beacon)).len(), BEACON_LEN);
     assert_eq!(Mavlink.beacon_len(), BEACON_LEN);
+}
+
+/// An order that a named message would change travels as bytes.
+#[test]
+fn every_order_comes_back_as_it_was_sent() {
+    let entry = TemplateEntry { offset: Cell::new(3, 0), id: RobotId(1), hops: 1 };
+    let part = TemplatePart {
+        version: 4,
+        part: 0,
+        parts: 1,
+        slot: 2,
+        offset: Cell::new(-3, 0),
+        entries: [entry].into_iter().collect(),
+    };
+    let template = |part: TemplatePart| GridOrder::Template { part, is_restarted: false };
+    let odd = Bytes::from_slice(&[0x81, 0, 1, 0, 2, 0]).unwrap();
+    let odd = Message::Order(Addressed { to: RobotId(3), number: 9, protocol: Grid::ID, content: odd });
+    let orders = [
+        (Grid::order(RobotId(3), 4, &template(part.clone())).unwrap(), true),
+        (Grid::order(RobotId(3), 5, &template(part.clone())).unwrap(), false),
+        (odd, false),
+    ];
+    for (order, is_named) in orders {
+        let frame = framed(HEADER, &order);
+        assert_eq!(decode(&frame).unwrap().message, order);
+        let id = RawFrame::new(&frame).unwrap().message_id();
+        assert_eq!(id == STAYA_TEMPLATE_DATA::ID, is_named);
+    }
+    // In its bytes too, a robot beyond all systems is refused.
+    let far = GridOrder::Template {
+        part: TemplatePart { entries: [TemplateEntry { id: RobotId(300), ..entry }].into_iter().collect(), ..part },
+        is_restarted: false,
+    };
+    let (_, content) = far.encode::<MAX_CONTENT>(Grid::ID).unwrap();
+    let (count, bytes) = padded(&content);
+    let order = STAYA_MESSAGE_DATA {
+        boot: 0,
+        sequence: 0,
+        target_system: 3,
+        kind: ORDER,
+        number: 4,
+        protocol: 1,
+        count,
+        bytes,
+    };
+    assert_eq!(decode(&raw(&order)), Err(DecodeError::Body));
 }
