@@ -317,9 +317,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     }
 
     /// Queues the messages of a law and broadcasts one, after messages or a decision.
-    pub(super) fn send(&mut self, outgoing: Outgoing, now: Instant, out: &mut Outputs<S>) {
-        self.queue(&outgoing, now);
-        if let Some((protocol, content)) = outgoing.broadcast {
+    pub(super) fn send(&mut self, outgoing: &Outgoing, now: Instant, out: &mut Outputs<S>) {
+        self.queue(outgoing, now);
+        if let Some((protocol, content)) = &outgoing.broadcast {
+            let (protocol, content) = (*protocol, content.clone());
             self.say_early(&Message::Broadcast(Broadcast { protocol, content }), out);
         }
     }

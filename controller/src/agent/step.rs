@@ -171,7 +171,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             }
         }
         // At the end, when messages acknowledged in this step have freed their entries.
-        link.send(outgoing, now, out);
+        link.send(&outgoing, now, out);
     }
 
     /// Gives the law an order. Returns whether the law takes it.
@@ -211,7 +211,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let tools = Tools { rng, radio: Radio::new(now, self.config.message_valid, &mut outgoing), workspace };
         let target = self.law.report().target;
         let decision = self.law.decide(&view, &inputs.surroundings, tools);
-        self.link.send(outgoing, now, out);
+        self.link.send(&outgoing, now, out);
         let situation = &mut self.last.situation;
         situation.has_goal = !matches!(decision, Ok(Decision { action: Action::Idle, .. }));
         if !situation.has_goal {

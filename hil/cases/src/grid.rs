@@ -5,7 +5,7 @@ use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Inputs, KinematicState, Law, OnGrid,
+    Agent, CELLS, CellState, Command, FormationGuidance, GridWorkspace, Inputs, KinematicState, Law, OnGrid, Outputs,
     RouteGuidance, Unguarded,
 };
 use staya_controller::geom::{Position, Vec3};
@@ -70,6 +70,7 @@ where
     let mut workspace = workspace();
     let mut hashes = Hashes::new();
     let mut summary = Summary::of::<GridAgent<S, G, W>, G::Workspace>();
+    let mut out = Outputs::default();
     let mut commands: [Command<S>; ROBOTS] = [const { Command::Hold }; ROBOTS];
     for tick in 0..scene.ticks {
         let mut inbox = Vec::new();
@@ -77,11 +78,11 @@ where
         medium.send(ROBOTS, &inbox);
         for (index, (walker, command)) in walkers.iter_mut().zip(&mut commands).enumerate() {
             medium.hear(index, tick, &mut inbox);
-            let out = step(scene, walker, tick, &inbox, &mut workspace, probe);
+            step(scene, walker, tick, &inbox, &mut workspace, probe, &mut out);
             hashes.step(&out, walker.agent.digest());
             summary.count(&out);
             medium.send(index, &out.outbox);
-            *command = out.command;
+            *command = core::mem::take(&mut out.command);
         }
         medium.turn();
         for (index, command) in commands.iter().enumerate() {
@@ -113,8 +114,8 @@ fn step<S, G, W, P>(
     inbox: &[u8],
     workspace: &mut G::Workspace,
     probe: &mut P,
-) -> staya_controller::agent::Outputs<S>
-where
+    out: &mut Outputs<S>,
+) where
     S: Scalar,
     G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>>,
     W: Wire,
@@ -135,7 +136,7 @@ where
         },
         inbox,
     };
-    probe.step(&mut walker.agent, &inputs, instant(tick), workspace)
+    probe.step(&mut walker.agent, &inputs, instant(tick), workspace, out);
 }
 
 fn advance<S: Scalar, G: Law<S>, W>(

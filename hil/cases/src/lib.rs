@@ -35,14 +35,15 @@ use staya_mavlink::wire::Mavlink;
 
 /// Wrapper around each [`Agent::step`] of a case, in which firmware measures it.
 pub trait Probe<S: Scalar> {
-    /// Calls `agent.step(inputs, now, workspace)`.
+    /// Calls `agent.step_into(inputs, now, workspace, out)`.
     fn step<G: Law<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
         agent: &mut Agent<S, G, N, A, W>,
         inputs: &Inputs<'_, S, G::Surroundings<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
-    ) -> Outputs<S>;
+        out: &mut Outputs<S>,
+    );
 }
 
 /// Measures nothing.
@@ -56,8 +57,9 @@ impl<S: Scalar> Probe<S> for Unmeasured {
         inputs: &Inputs<'_, S, G::Surroundings<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
-    ) -> Outputs<S> {
-        agent.step(inputs, now, workspace)
+        out: &mut Outputs<S>,
+    ) {
+        agent.step_into(inputs, now, workspace, out);
     }
 }
 
@@ -72,9 +74,11 @@ impl<S: Scalar> Probe<S> for Opaque {
         inputs: &Inputs<'_, S, G::Surroundings<'_>>,
         now: Instant,
         workspace: &mut G::Workspace,
-    ) -> Outputs<S> {
-        let (agent, inputs) = (black_box(agent), black_box(inputs));
-        black_box(agent.step(inputs, black_box(now), black_box(workspace)))
+        out: &mut Outputs<S>,
+    ) {
+        let (agent, inputs, out) = (black_box(agent), black_box(inputs), black_box(out));
+        agent.step_into(inputs, black_box(now), black_box(workspace), out);
+        black_box(out);
     }
 }
 

@@ -5,7 +5,7 @@ use staya_controller::rand::Rng;
 use staya_controller::wire::Wire;
 
 /// A beacon and some messages; further frames are dropped.
-const SAID: usize = 144;
+const SAID: usize = 120;
 pub(crate) const INBOX: usize = 400;
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");
 

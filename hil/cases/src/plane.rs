@@ -72,11 +72,12 @@ where
     let mut hashes = Hashes::new();
     let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
     let mut inbox = Vec::<u8, INBOX>::new();
+    let mut out = Outputs::default();
     for tick in 0..scene.ticks {
         // After all have decided, so that packets and positions belong to one moment.
         for (index, mover) in movers.iter_mut().enumerate() {
             medium.hear(index, tick, &mut inbox);
-            let out = step(scene, mover, tick, &inbox, workspace, probe);
+            step(scene, mover, tick, &inbox, workspace, probe, &mut out);
             hashes.step(&out, mover.agent.digest());
             summary.count(&out);
             medium.send(index, &out.outbox);
@@ -113,8 +114,8 @@ fn step<S, G, A, P>(
     inbox: &[u8],
     workspace: &mut G::Workspace,
     probe: &mut P,
-) -> Outputs<S>
-where
+    out: &mut Outputs<S>,
+) where
     S: Scalar,
     G: for<'a> Law<S, Surroundings<'a>: From<InCells<'a, S>>>,
     A: Safety<S>,
@@ -142,7 +143,7 @@ where
         }),
         inbox,
     };
-    probe.step(&mut mover.agent, &inputs, instant(tick), workspace)
+    probe.step(&mut mover.agent, &inputs, instant(tick), workspace, out);
 }
 
 fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {

@@ -270,7 +270,8 @@ impl Scene {
             }
             let surroundings = InPlane { max_speed_mps: S::ONE, obstacles: &obstacles };
             let inputs = Inputs { state, surroundings, inbox: &inbox };
-            let out = probe.step(&mut agent, &inputs, now, &mut ());
+            let mut out = Outputs::default();
+            probe.step(&mut agent, &inputs, now, &mut (), &mut out);
             done(&agent, &out);
         }
     }

@@ -10,8 +10,8 @@ use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
     Agent, AgentConfig, BoidsGuidance, CELLS, CellState, FormationGuidance, GoalFlockGuidance, Grid, GridOrder,
-    GridPayload, GridWorkspace, InPlane, Inputs, KinematicState, LatticeGuidance, Law, OnGrid, OrcaSafety, Protocol,
-    RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, Waypoint, WaypointGuidance, WaypointOrder, Waypoints,
+    GridPayload, GridWorkspace, InPlane, Inputs, KinematicState, LatticeGuidance, Law, OnGrid, OrcaSafety, Outputs,
+    Protocol, RouteGuidance, Safety, TEMPLATE, Unguarded, VISITS, Waypoint, WaypointGuidance, WaypointOrder, Waypoints,
 };
 #[cfg(feature = "all-cases")]
 use staya_controller::agent::{FlySafety, PushOutSafety};
@@ -225,7 +225,8 @@ where
             inbox: &inbox,
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
-        let out = probe.step(&mut agent, &inputs, now, &mut ());
+        let mut out = Outputs::default();
+        probe.step(&mut agent, &inputs, now, &mut (), &mut out);
         hashes.step(&out, agent.digest());
         summary.count(&out);
     }
@@ -304,7 +305,8 @@ where
             inbox: &inbox,
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
-        let out = probe.step(&mut agent, &inputs, now, &mut workspace);
+        let mut out = Outputs::default();
+        probe.step(&mut agent, &inputs, now, &mut workspace, &mut out);
         hashes.step(&out, agent.digest());
         summary.count(&out);
     }

@@ -97,8 +97,9 @@ mod program {
             inputs: &Inputs<'_, S, G::Surroundings<'_>>,
             now: Instant,
             workspace: &mut G::Workspace,
-        ) -> Outputs<S> {
-            self.measure(|| step(agent, inputs, now, workspace))
+            out: &mut Outputs<S>,
+        ) {
+            *out = self.measure(|| step(agent, inputs, now, workspace));
         }
     }
 

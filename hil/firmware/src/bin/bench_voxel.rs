@@ -61,8 +61,9 @@ mod program {
             inputs: &Inputs<'_, S, G::Surroundings<'_>>,
             now: Instant,
             workspace: &mut G::Workspace,
-        ) -> Outputs<S> {
-            self.measure(|| agent.step(inputs, now, workspace))
+            out: &mut Outputs<S>,
+        ) {
+            *out = self.measure(|| agent.step(inputs, now, workspace));
         }
     }
 

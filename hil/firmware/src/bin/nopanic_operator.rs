@@ -29,7 +29,8 @@ mod program {
                 inputs: &Inputs<'_, S, G::Surroundings<'_>>,
                 now: Instant,
                 workspace: &mut G::Workspace,
-            ) -> Outputs<S> {
+                out: &mut Outputs<S>,
+            ) {
                 let mut guided = black_box(None::<Agent<S, Guided<S, G>, N, A, W>>);
                 if let Some(agent) = black_box(&mut guided) {
                     tune(agent);
@@ -38,9 +39,10 @@ mod program {
                     let (inputs, workspace) = (black_box(inputs), black_box(&mut *workspace));
                     let _ = black_box(agent.step(inputs, black_box(now), workspace));
                 }
-                let (agent, inputs) = (black_box(agent), black_box(inputs));
+                let (agent, inputs, out) = (black_box(agent), black_box(inputs), black_box(out));
                 tune(agent);
-                black_box(agent.step(inputs, black_box(now), black_box(workspace)))
+                agent.step_into(inputs, black_box(now), black_box(workspace), out);
+                black_box(out);
             }
         }
 
