@@ -173,7 +173,7 @@ pub trait Ground: Send + Sync {
         &[]
     }
 
-    /// Foreign bodies that send beacons, with their cells.
+    /// Foreign bodies that send beacons.
     fn heard(&self) -> impl Iterator<Item = &Disc> {
         core::iter::empty()
     }
