@@ -2,7 +2,7 @@
 //! discs (Olfati-Saber 2006, algorithm 3). It uses the flocking law alone, without agents and
 //! radio. Run it with `cargo run --example flock`.
 
-use staya_controller::flock::lattice::{LatticeParams, Reference, acceleration};
+use staya_controller::lattice::{LatticeParams, Reference, acceleration};
 use staya_controller::obstacle::Obstacle;
 use staya_controller::{
     body::Body,

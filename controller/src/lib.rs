@@ -43,14 +43,14 @@ pub mod body;
 pub mod cost;
 pub mod digest;
 mod fixint;
-#[cfg(feature = "flock")]
-pub mod flock;
-#[cfg(feature = "formation")]
-pub mod formation;
 pub mod geom;
 pub mod grid;
 #[cfg(any(feature = "route", feature = "wire"))]
 pub mod land;
+#[cfg(feature = "agent")]
+mod law;
+#[cfg(any(feature = "flock", feature = "formation", feature = "route"))]
+mod laws;
 mod list;
 pub mod names;
 pub mod neighbor;
@@ -62,8 +62,8 @@ pub mod parameters;
 pub mod push_out;
 pub mod rand;
 pub mod robot;
-#[cfg(feature = "route")]
-pub mod route;
+#[cfg(feature = "agent")]
+mod safety;
 pub mod scalar;
 pub mod shuffle;
 pub mod supervisor;
@@ -73,6 +73,13 @@ pub mod time;
 // Decoded values come from the radio: each addition is meant to wrap or cannot overflow.
 #[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
+
+#[cfg(feature = "formation")]
+pub use laws::formation;
+#[cfg(feature = "route")]
+pub use laws::route;
+#[cfg(feature = "flock")]
+pub use laws::{boids, flock, goal_flock, lattice};
 
 const _: () = {
     const fn is_error<E: core::error::Error>() {}

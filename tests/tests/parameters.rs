@@ -1,10 +1,10 @@
 //! The parameters of a running robot: what a scenario starts with, an operator may set.
 
 use staya_controller::agent::parameters;
-use staya_controller::flock::boids::BoidsParams;
-use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::boids::BoidsParams;
 use staya_controller::formation::FormationParams;
+use staya_controller::goal_flock::GoalParams;
+use staya_controller::lattice::LatticeParams;
 use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::{Parameter, Parameters};
 use staya_controller::route::RouteParams;

@@ -6,31 +6,48 @@ use std::path::Path;
 
 /// The layers from the lowest up. Modules of one layer may use each other, except where
 /// [`APART`] says not.
-const LAYERS: [&[&str]; 4] = [
+const LAYERS: [&[&str]; 6] = [
     &[
         "names", "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle",
         "land", "robot", "auth",
     ],
     &["body", "neighbor", "parameters", "template", "wire"],
-    &["route", "formation", "orca", "flock", "push_out"],
+    &["flock", "law"],
+    &["route", "formation", "orca", "lattice", "goal_flock", "boids", "push_out"],
+    &["safety", "laws"],
     &["supervisor", "agent"],
 ];
 /// The layer of the behaviours.
-const APART: usize = 2;
+const APART: usize = 3;
 
 /// Reads every source file of the controller. The error counts the imports that point up or
 /// sideways, which are printed.
 pub fn check(source: &Path) -> Result<(), String> {
     let mut faults = BTreeSet::new();
     for (module, Content { named, .. }) in modules(source)? {
-        // The crate's root names every module.
-        let Some(user) = module.first() else { continue };
-        for used in named.iter().filter_map(|path| path.first()) {
+        // The crate's root and the list of laws name every module.
+        if module.is_empty() || *module == ["laws"] {
+            continue;
+        }
+        let user = unit(&module);
+        for used in named.iter().filter(|path| !path.is_empty()).map(|path| unit(path)) {
             faults.extend(fault(user, used).map(|fault| format!("{}: {fault}", module.join("/"))));
         }
     }
     faults.iter().for_each(|fault| println!("{fault}"));
     if faults.is_empty() { Ok(()) } else { Err(format!("{} imports against the layers", faults.len())) }
+}
+
+/// What has a layer: a module of the root, or an algorithm in the folder of its law. The laws
+/// themselves are `laws`.
+fn unit(path: &[String]) -> &str {
+    match path {
+        [laws, folder, rest @ ..] if laws == "laws" && layer(folder).is_some() => {
+            if rest.first().is_some_and(|part| part == "law") { laws } else { folder }
+        }
+        [first, ..] => first,
+        [] => "",
+    }
 }
 
 fn layer(module: &str) -> Option<usize> {
@@ -68,7 +85,18 @@ mod tests {
         assert!(fault("grid", "route").is_some());
         assert!(fault("wire", "agent").is_some());
         assert!(fault("route", "formation").is_some());
+        assert_eq!(fault("laws", "route"), None);
+        assert!(fault("lattice", "boids").is_some());
         assert!(fault("route", "helpers").unwrap().contains("no layer"));
+    }
+
+    #[test]
+    fn a_law_is_above_its_algorithm() {
+        let unit = |path: &str| super::unit(&path.split('/').map(String::from).collect::<Vec<_>>()).to_owned();
+        assert_eq!(unit("laws/route/field/queue"), "route");
+        assert_eq!(unit("laws/formation/law/in_plane"), "laws");
+        assert_eq!(unit("laws/cells/protocol"), "laws");
+        assert_eq!(unit("agent/step"), "agent");
     }
 
     #[test]

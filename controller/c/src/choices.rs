@@ -2,7 +2,7 @@
 
 use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::{Event, Wait};
-use staya_controller::flock::lattice::Algorithm;
+use staya_controller::lattice::Algorithm;
 use staya_controller::push_out::Model;
 use staya_controller::robot::Mode;
 

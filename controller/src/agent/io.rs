@@ -1,7 +1,7 @@
 //! Inputs and outputs of a step.
 
-use super::{AnySurroundings, Wait};
-use crate::geom::{Position, Vec3};
+use super::{AnySurroundings, KinematicState, Wait};
+use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::neighbor::Claim;
 use crate::robot::{Mode, RobotId};
@@ -15,16 +15,6 @@ use serde::{Deserialize, Serialize};
 pub const OUTBOX: usize = 256;
 /// Events that one step can report.
 pub const EVENTS: usize = 8;
-
-/// The robot's own state, from its sensors or its autopilot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct KinematicState<S> {
-    /// World position.
-    pub position: Position,
-    /// World velocity, metres per second.
-    pub velocity_mps: Vec3<S>,
-}
 
 /// Inputs of one step; `I` are the surroundings as the guidance law needs them
 /// ([`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane), [`InCells`](super::InCells),

@@ -3,10 +3,11 @@
 use super::AgentConfig;
 use super::contact_loss::{ContactState, Listening};
 use super::duplicate_id::EchoFilter;
-use super::io::{Event, KinematicState, OUTBOX, Outputs};
-use super::protocol::{Outgoing, Protocol, Queued, Radio};
+use super::io::{Event, OUTBOX, Outputs};
+use super::{KinematicState, Outgoing, Protocol, Radio};
 use crate::body::Body;
 use crate::geom::{Position, Torus, Vec3};
+use crate::law::Queued;
 use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;

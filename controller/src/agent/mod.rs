@@ -98,74 +98,51 @@
 //! assert!(state.position.since::<f32>(Position::from_mm([2000, 0, 0])).norm() <= 0.02);
 //! ```
 
-mod any;
-mod assembly;
-mod cell_follower;
 mod config;
 mod contact_loss;
 mod duplicate_id;
-mod external;
-mod flock_guidance;
-mod formation_guidance;
-mod goal_occupancy;
-mod grid_protocol;
-mod guided;
 mod io;
-mod law;
 mod link;
-mod make_way;
-mod move_history;
-mod orca_safety;
-mod other_safety;
 mod parameter;
 mod perception;
-mod protocol;
-mod route_guidance;
-mod safety;
 mod setup;
-mod shared_map;
 mod state;
 mod step;
-mod surroundings;
 mod task;
-mod wait;
-mod waypoint;
-mod waypoint_guidance;
 
 #[cfg(all(test, feature = "auth"))]
 mod tests;
 
-pub use any::{
-    AnyHalfPlanes, AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySafety, FromPayload, Narrow, OfAnotherLaw,
-    OtherPayload, Raw, decide_as, order_as, payload_as, receive_as,
+pub use crate::law::{
+    Action, AnySurroundings, BadInput, CellFrame, CellState, Decision, InCell, InCells, InPlane, KinematicState, Known,
+    Law, MessageOf, OfAnotherLaw, OnGrid, OrderOf, Outgoing, PayloadOf, Protocol, Radio, Report, Scene, Status,
+    Surroundings, Tools, View, Wait, WrongTask,
 };
-pub use assembly::{MAX_TEMPLATE, PartError, TEMPLATE_PART, TemplateAssembler, TemplatePart};
-pub use cell_follower::CellFollower;
+pub use crate::laws::any::{
+    AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, FromPayload, Narrow, OtherPayload, Raw, decide_as, order_as,
+    payload_as, receive_as,
+};
+pub use crate::laws::boids::BoidsGuidance;
+pub use crate::laws::cells::{
+    CellFollower, FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace,
+    MAX_TEMPLATE, PartError, SharedMap, TEMPLATE_PART, TemplateAssembler, TemplatePart,
+};
+pub use crate::laws::external::{External, Incoming};
+pub use crate::laws::formation::{FormationGuidance, FormationInPlane};
+pub use crate::laws::goal_flock::{GOALS, GoalFlockGuidance};
+pub use crate::laws::guided::{Guided, Wish};
+pub use crate::laws::lattice::LatticeGuidance;
+pub use crate::laws::route::RouteGuidance;
+pub use crate::laws::waypoint::{WAYPOINTS, Waypoint, WaypointGuidance, WaypointOrder, Waypoints};
+pub use crate::safety::{
+    AnyHalfPlanes, AnySafety, FlySafety, OrcaSafety, PushOutSafety, Safety, SafetyInput, Unguarded,
+};
 pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
-pub use external::{External, Incoming};
-pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
-pub use formation_guidance::{FormationGuidance, FormationInPlane};
-pub use grid_protocol::{CellFrame, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask};
-pub use guided::{Guided, Wish};
-pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, KinematicState, OUTBOX, Outputs, Refused};
-pub use law::{
-    Action, BadInput, Decision, Known, Law, MessageOf, OrderOf, PayloadOf, Report, Scene, Status, Tools, View,
-};
-pub use orca_safety::{FlySafety, OrcaSafety};
-pub use other_safety::PushOutSafety;
+pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, OUTBOX, Outputs, Refused};
 pub use parameter::parameters;
 pub use perception::{Perception, RadioOnly};
-pub use protocol::{Outgoing, Protocol, Radio, WaypointOrder, Waypoints};
-pub use route_guidance::{GridWorkspace, RouteGuidance};
-pub use safety::{Safety, SafetyInput, Unguarded};
 pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task};
-pub use shared_map::{FarMap, SharedMap};
-pub use surroundings::{AnySurroundings, CellState, InCell, InCells, InPlane, OnGrid, Surroundings};
-pub use task::WrongTask;
-pub use wait::Wait;
-pub use waypoint::{WAYPOINTS, Waypoint};
-pub use waypoint_guidance::WaypointGuidance;
 
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};

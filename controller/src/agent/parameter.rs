@@ -1,10 +1,10 @@
 //! Parameters of a running robot that an operator or its firmware can change.
 
 use super::{Agent, AgentConfig, Law, Perception, Safety, WaypointGuidance};
-use crate::flock::boids::BoidsParams;
-use crate::flock::goal::GoalParams;
-use crate::flock::lattice::LatticeParams;
+use crate::boids::BoidsParams;
 use crate::formation::FormationParams;
+use crate::goal_flock::GoalParams;
+use crate::lattice::LatticeParams;
 use crate::orca::AvoidParams;
 use crate::parameters::{Parameter, Parameters, RADIUS, Rejected, row};
 use crate::push_out::PushOutParams;

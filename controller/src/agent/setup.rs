@@ -1,20 +1,16 @@
 //! The configuration of a robot as data, for scenarios and host links; `f32` for any scalar type.
 
-use super::any::{AnyHalfPlanes, AnyLaw, AnySafety, large};
-use super::cell_follower::CellFollower;
-use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
-use super::formation_guidance::{FormationGuidance, FormationInPlane};
-use super::orca_safety::{FlySafety, OrcaSafety};
-use super::other_safety::PushOutSafety;
-use super::route_guidance::RouteGuidance;
-use super::safety::Unguarded;
-use super::waypoint_guidance::WaypointGuidance;
-use super::{Agent, AgentConfig, TEMPLATE, WAYPOINTS, Waypoint};
-use crate::flock::boids::BoidsParams;
-use crate::flock::goal::GoalParams;
-use crate::flock::lattice::{LatticeParams, ReferenceMotion};
+use super::{
+    Agent, AgentConfig, AnyHalfPlanes, AnyLaw, AnySafety, BoidsGuidance, CellFollower, FlySafety, FormationGuidance,
+    FormationInPlane, GoalFlockGuidance, LatticeGuidance, OrcaSafety, PushOutSafety, RouteGuidance, TEMPLATE,
+    Unguarded, WAYPOINTS, Waypoint, WaypointGuidance,
+};
+use crate::boids::BoidsParams;
 use crate::formation::{FormationParams, NextMove};
+use crate::goal_flock::GoalParams;
 use crate::grid::Cell;
+use crate::lattice::{LatticeParams, ReferenceMotion};
+use crate::laws::any::large;
 use crate::names::named;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{AvoidParams, InSpace};

@@ -1,20 +1,19 @@
 //! One step of an agent: [`Agent::step_into`]. Phases are not inlined, so each frees its stack.
 
 use super::contact_loss::ContactState;
-use super::grid_protocol::is_over;
 use super::link::{ReceiveContext, Received, beacon, report};
-use super::protocol::{Outgoing, Radio};
-use super::wait::is_hindered;
 use super::{
-    Action, Agent, Command, Decision, Event, Inputs, KinematicState, Last, Law, OrderOf, Outputs, Perception, Report,
-    Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
+    Action, Agent, Command, Decision, Event, Inputs, KinematicState, Last, Law, OrderOf, Outgoing, Outputs, Perception,
+    Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
+use crate::laws::cells::is_over;
 use crate::neighbor::{GapLimit, Nearby, add_lost, nearest};
 use crate::rand::Rng;
 use crate::robot::Mode;
+use crate::safety::is_hindered;
 use crate::scalar::Scalar;
 use crate::supervisor::{moves, next_mode};
 use crate::time::{Duration, Instant};

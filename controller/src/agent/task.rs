@@ -1,21 +1,8 @@
 //! Assigns a host's task to an agent.
 
-use super::{Agent, AnyOrder, GridOrder, Law, OrderOf, Perception, Safety, Task, WaypointOrder};
+use super::{Agent, AnyOrder, GridOrder, Law, OrderOf, Perception, Safety, Task, WaypointOrder, WrongTask};
 use crate::scalar::Scalar;
 use crate::wire::Wire;
-
-/// The law has another kind of goal, or moves by other means. The previous task continues.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct WrongTask;
-
-impl core::fmt::Display for WrongTask {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the guidance law has no use for the task")
-    }
-}
-
-impl core::error::Error for WrongTask {}
 
 impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<S>> Agent<S, L, N, A, W, P> {
     /// Gives the law a task as orders.

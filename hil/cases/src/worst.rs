@@ -15,12 +15,12 @@ use staya_controller::agent::{
 };
 #[cfg(feature = "all-cases")]
 use staya_controller::agent::{FlySafety, PushOutSafety};
-use staya_controller::flock::boids::BoidsParams;
-use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::LatticeParams;
+use staya_controller::boids::BoidsParams;
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::geom::{Position, Vec2, Vec3};
+use staya_controller::goal_flock::GoalParams;
 use staya_controller::grid::{Cell, Dir, Window};
+use staya_controller::lattice::LatticeParams;
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::{Analytic, AvoidParams, HalfSpaces, VoxelTable2k};

@@ -4,9 +4,9 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::body::Body;
-use staya_controller::flock::boids::BoidsParams;
-use staya_controller::flock::goal::{GoalParams, wish};
-use staya_controller::flock::lattice::{LatticeParams, Reference, acceleration};
+use staya_controller::boids::BoidsParams;
+use staya_controller::goal_flock::{GoalParams, wish};
+use staya_controller::lattice::{LatticeParams, Reference, acceleration};
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::obstacle::Obstacle;

@@ -6,7 +6,7 @@ use krabmaga::engine::fields::field_2d::{Field2D, Location2D};
 use krabmaga::engine::location::Real2D;
 use krabmaga::engine::schedule::Schedule;
 use krabmaga::engine::state::State;
-use staya_controller::flock::boids::BoidsParams;
+use staya_controller::boids::BoidsParams;
 use staya_controller::geom::{Torus, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::robot::{Mode, RobotId};

@@ -5,9 +5,9 @@ use crate::io::{StayaObstacle, array, vector};
 use crate::memory::answers;
 use crate::setup::{StayaBoids, StayaGoalFlock, StayaLattice};
 use crate::status::StayaStatus;
-use staya_controller::flock::goal::wish;
-use staya_controller::flock::lattice::{Reference, acceleration};
 use staya_controller::geom::{Position, Vec2};
+use staya_controller::goal_flock::wish;
+use staya_controller::lattice::{Reference, acceleration};
 use staya_controller::robot::RobotId;
 use staya_controller::scalar::cast;
 

@@ -8,9 +8,9 @@ use crate::memory::{answers, plain};
 use crate::setup::StayaSetup;
 use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::{BoidsGuidance, BoidsSetup, GoalFlockGuidance, LatticeGuidance};
-use staya_controller::flock::boids::BoidsParams;
-use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::{Gain, LatticeParams};
+use staya_controller::boids::BoidsParams;
+use staya_controller::goal_flock::GoalParams;
+use staya_controller::lattice::{Gain, LatticeParams};
 use staya_controller::scalar::cast;
 
 /// The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3); see `staya_lattice_defaults`.

@@ -1,10 +1,10 @@
 //! Robots with an enum of laws act and speak exactly as robots with the law itself.
 
 use super::*;
-use crate::agent::any::large;
 use crate::formation::NextMove;
 use crate::geom::{Position, Vec2};
 use crate::land::MapParams;
+use crate::laws::any::large;
 use core::ops::Range;
 
 type Map = SharedMap<256>;

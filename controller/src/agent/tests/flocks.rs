@@ -2,9 +2,9 @@
 
 use super::plane::{Robot, length, one_step_late, place, step_number};
 use super::*;
-use crate::flock::boids::BoidsParams;
-use crate::flock::goal::{GoalParams, Stage};
-use crate::flock::lattice::{Gain, LatticeParams};
+use crate::boids::BoidsParams;
+use crate::goal_flock::{GoalParams, Stage};
+use crate::lattice::{Gain, LatticeParams};
 use crate::parameters::Parameter;
 use core::ops::Range;
 

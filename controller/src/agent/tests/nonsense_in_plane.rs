@@ -2,11 +2,11 @@
 
 use super::nonsense::{frame, noise_and_frames};
 use super::*;
-use crate::agent::any::large;
-use crate::flock::boids::BoidsParams;
-use crate::flock::goal::GoalParams;
-use crate::flock::lattice::{LatticeParams, ReferenceMotion};
+use crate::boids::BoidsParams;
 use crate::geom::{Position, Vec2, Vec3};
+use crate::goal_flock::GoalParams;
+use crate::lattice::{LatticeParams, ReferenceMotion};
+use crate::laws::any::large;
 use crate::neighbor::StalenessInflation;
 use crate::obstacle::Obstacle;
 use crate::orca::AvoidParams;

@@ -3,8 +3,8 @@
 mod places;
 
 use super::*;
-use crate::agent::any::large;
 use crate::geom::{Position, Vec2, Vec3};
+use crate::laws::any::large;
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::scalar::Q16;
@@ -395,7 +395,7 @@ fn a_goal_on_the_grid_changes_nothing_for_a_law_with_waypoints() {
 
 #[test]
 fn a_robot_without_a_speed_is_in_fault_and_stands() {
-    use crate::flock::{boids::BoidsParams, goal::GoalParams, lattice::LatticeParams};
+    use crate::{boids::BoidsParams, goal_flock::GoalParams, lattice::LatticeParams};
     fn check<G>(mut law: G)
     where
         G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()>,

@@ -1,10 +1,10 @@
 //! Tests of agents that are created from data.
 
 use super::super::*;
-use crate::flock::goal::GoalParams;
-use crate::flock::lattice::{LatticeParams, ReferenceMotion};
 use crate::formation::FormationParams;
 use crate::geom::{Position, Vec3};
+use crate::goal_flock::GoalParams;
+use crate::lattice::{LatticeParams, ReferenceMotion};
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;

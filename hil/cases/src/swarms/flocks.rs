@@ -6,10 +6,10 @@ use heapless::Vec;
 use staya_controller::agent::{
     BoidsGuidance, GoalFlockGuidance, LatticeGuidance, PushOutSafety, Unguarded, Waypoint, WaypointOrder,
 };
-use staya_controller::flock::boids::BoidsParams;
-use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::{Gain, LatticeParams};
+use staya_controller::boids::BoidsParams;
 use staya_controller::geom::{Position, Vec3};
+use staya_controller::goal_flock::GoalParams;
+use staya_controller::lattice::{Gain, LatticeParams};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::scalar::Scalar;
 

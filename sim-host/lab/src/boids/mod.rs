@@ -1,6 +1,6 @@
 //! Boids on a torus, and the cost of neighbour search (V. A. Starovoitova 2018, STA, section 2.3).
 //!
-//! The controller's boids ([`staya_controller::flock::boids`]) run on the host without radio and
+//! The controller's boids ([`staya_controller::boids`]) run on the host without radio and
 //! packets: each knows the exact places and headings of its neighbours. All searches of
 //! [`nearby`](staya_sim::nearby) and [`searches`] have the same start, must give bitwise equal
 //! trajectories, and are timed on one thread.
@@ -23,7 +23,7 @@ use clap::Args;
 use method::AnySearch;
 use rayon::prelude::*;
 use staya_console::options;
-use staya_controller::flock::boids::BoidsParams;
+use staya_controller::boids::BoidsParams;
 use staya_controller::geom::{Torus, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;

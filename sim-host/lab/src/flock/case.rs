@@ -6,7 +6,7 @@ use anyhow::{Context as _, Result};
 use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::agent::{GuidanceSetup, SafetyKind};
-use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
+use staya_controller::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;

@@ -5,7 +5,7 @@ use anyhow::{Result, bail, ensure};
 use clap::builder::TypedValueParser;
 use staya_console::options::one_of;
 use staya_controller::agent::SafetyKind;
-use staya_controller::flock::goal::GoalParams;
+use staya_controller::goal_flock::GoalParams;
 use staya_controller::names::Named;
 use staya_controller::push_out::{Evasion, Model};
 

@@ -6,10 +6,10 @@ use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use staya_controller::flock::boids::BoidsParams;
-use staya_controller::flock::goal::{GoalParams, wish};
-use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, Reference, acceleration};
+use staya_controller::boids::BoidsParams;
 use staya_controller::geom::{Position, Vec2};
+use staya_controller::goal_flock::{GoalParams, wish};
+use staya_controller::lattice::{Algorithm, Gain, LatticeParams, Reference, acceleration};
 use staya_controller::robot::RobotId;
 
 const BATCH: usize = 64;

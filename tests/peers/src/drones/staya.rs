@@ -6,7 +6,7 @@ use staya_controller::agent::{
     GuidanceSetup, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid, RouteSetup, SafetySetup, Setup, Task,
     VISITS, Waypoint,
 };
-use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
+use staya_controller::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 use staya_controller::formation::FormationParams;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};

@@ -30,7 +30,7 @@ fn waypoints_are_assigned_by_packet_and_older_ones_ignored() {
 #[test]
 fn a_rejected_waypoint_is_accepted_when_it_is_repeated() {
     let guidance = || {
-        let params = crate::flock::goal::GoalParams::new(0.6, 1.0);
+        let params = crate::goal_flock::GoalParams::new(0.6, 1.0);
         GoalFlockGuidance::<f32>::new(params, 1.0, 1)
     };
     let goal = |index, x_mm, y_mm| {

@@ -2,8 +2,8 @@
 
 use super::{Case, Plan};
 use staya_controller::agent::{GuidanceSetup, RouteSetup, SafetyKind};
-use staya_controller::flock::lattice::{LatticeParams, ReferenceMotion};
 use staya_controller::grid::{BLOCKED, Cell};
+use staya_controller::lattice::{LatticeParams, ReferenceMotion};
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;

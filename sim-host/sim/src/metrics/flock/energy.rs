@@ -4,7 +4,7 @@ use super::{mean, minus, squared};
 use crate::nearby::{Cells, Found, Query, Search as _, Space};
 use serde::Serialize;
 use staya_controller::flock::action::{PhiAlpha, SPACING, sigma_norm, sigmoid_shift};
-use staya_controller::flock::lattice::{Algorithm, LatticeParams};
+use staya_controller::lattice::{Algorithm, LatticeParams};
 
 const INTERVALS: usize = 4096;
 

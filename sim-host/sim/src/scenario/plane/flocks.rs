@@ -6,9 +6,9 @@ use super::super::{ScenarioError, ScenarioFile};
 use super::spec::Spec;
 use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
-use staya_controller::flock::boids::BoidsParams;
-use staya_controller::flock::goal::GoalParams;
-use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
+use staya_controller::boids::BoidsParams;
+use staya_controller::goal_flock::GoalParams;
+use staya_controller::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 use staya_controller::parameters::{MIN_DISTANCE, Parameters as _, TOLERANCE};
 
 /// Ratio of the alpha gain to the goal gain in algorithm 2: see `LatticeParams::gamma`.

@@ -2,8 +2,8 @@ use super::super::*;
 use super::lattice;
 use staya_controller::body::Body;
 use staya_controller::flock::action::{PhiAlpha, sigma_norm};
-use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, Reference, acceleration};
 use staya_controller::geom::Vec3;
+use staya_controller::lattice::{Algorithm, Gain, LatticeParams, Reference, acceleration};
 use staya_controller::neighbor::Nearby;
 use staya_controller::robot::{Mode, RobotId};
 

@@ -1,5 +1,5 @@
 use super::*;
-use staya_controller::flock::lattice::{Algorithm, ReferenceMotion};
+use staya_controller::lattice::{Algorithm, ReferenceMotion};
 
 #[test]
 fn only_a_stationary_goal_may_have_a_rest_distance() {

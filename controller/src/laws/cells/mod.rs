@@ -1,0 +1,16 @@
+//! What the laws share that plan on the grid: their protocol, maps, and the way from cell to cell.
+
+mod assembly;
+mod cell_follower;
+mod move_history;
+mod protocol;
+mod shared_map;
+mod workspace;
+
+pub use assembly::{MAX_TEMPLATE, PartError, TEMPLATE_PART, TemplateAssembler, TemplatePart};
+pub use cell_follower::CellFollower;
+pub(crate) use move_history::{MoveHistory, PATIENCE, avoid_crossing};
+pub(crate) use protocol::is_over;
+pub use protocol::{Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask};
+pub use shared_map::{FarMap, SharedMap};
+pub use workspace::GridWorkspace;

@@ -1,0 +1,35 @@
+//! Scratch memory of the laws on the grid.
+
+use crate::route::CostField;
+
+/// Scratch memory of the guidance laws on the grid; `CELLS` as for [`CostField`].
+#[derive(Clone, Debug)]
+pub struct GridWorkspace<const CELLS: usize> {
+    pub(crate) field: CostField<CELLS>,
+    pub(crate) land: [u8; CELLS],
+}
+
+impl<const CELLS: usize> Default for GridWorkspace<CELLS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const CELLS: usize> GridWorkspace<CELLS> {
+    /// Creates a workspace.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { field: CostField::new(), land: [0; CELLS] }
+    }
+
+    /// The field, for a search.
+    pub const fn field_mut(&mut self) -> &mut CostField<CELLS> {
+        &mut self.field
+    }
+
+    /// The last search.
+    #[must_use]
+    pub const fn field(&self) -> &CostField<CELLS> {
+        &self.field
+    }
+}
