@@ -54,7 +54,7 @@ const PLANTS: [Plant; 6] = [
     Plant { name: "logs", file: "hil/firmware/src/log.rs", bin: "lockstep", is_long: false,
         right: "if let Some(place) = self.bytes.get_mut(self.used) {",
         wrong: "{\n                let place = &mut self.bytes[self.used];" },
-    Plant { name: "an operator's orders", file: "controller/src/agent/guided.rs", bin: "nopanic_operator", is_long: true,
+    Plant { name: "an operator's orders", file: "controller/src/laws/guided.rs", bin: "nopanic_operator", is_long: true,
         right: "self.wish = wish;",
         wrong: "self.wish = [wish][core::hint::black_box(1)];" },
 ];

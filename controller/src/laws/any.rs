@@ -11,10 +11,9 @@ use crate::formation::NextMove;
 use crate::grid::Dir;
 use crate::law::{
     AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OfAnotherLaw, OrderOf, PayloadOf, Protocol, Radio,
-    Report, Tools, View,
+    Tools, View,
 };
 use crate::neighbor::Neighbor;
-use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -24,9 +23,10 @@ use serde::{Deserialize, Serialize};
 
 /// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
 #[cfg(not(feature = "host"))]
-type Large<G> = G;
+pub type Large<G> = G;
 #[cfg(feature = "host")]
-type Large<G> = alloc::boxed::Box<G>;
+#[expect(missing_docs, reason = "as without the feature")]
+pub type Large<G> = alloc::boxed::Box<G>;
 
 #[cfg(not(feature = "host"))]
 pub(crate) const fn large<G>(law: G) -> Large<G> {
@@ -37,45 +37,155 @@ pub(crate) fn large<G>(law: G) -> Large<G> {
     Large::new(law)
 }
 
-fn inside<G>(law: &Large<G>) -> &G {
+/// The law in a variant of [`laws!`](crate::laws!).
+#[doc(hidden)]
+pub const fn inside<G>(law: &Large<G>) -> &G {
     law
 }
 
-fn inside_mut<G>(law: &mut Large<G>) -> &mut G {
+#[doc(hidden)]
+pub const fn inside_mut<G>(law: &mut Large<G>) -> &mut G {
     law
 }
 
-/// Any law, on the grid with a map `H`, in the plane or in space.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "each variant's type says it")]
-pub enum AnyLaw<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, H = ()> {
-    Waypoint(WaypointGuidance<S>),
-    Lattice(LatticeGuidance<S>),
-    GoalFlock(GoalFlockGuidance<S>),
-    Boids(BoidsGuidance<S>),
-    Route(Large<CellFollower<S, RouteGuidance<CELLS, M, L, H>>>),
-    Formation(Large<FormationInPlane<S, CELLS, M, F, L, H>>),
-    RouteOnGrid(RouteGuidance<CELLS, M, L, H>),
-    FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L, NextMove, H>>),
-}
+/// Declares an enum of laws that is a law itself, with [`AnyProtocol`]. `of` is its scalar type,
+/// `in` its scratch memory, which is `AsMut` of that of each law. The two last brackets are the
+/// generics of the `impl`: with bounds, and as arguments. A law behind [`Large`] is marked so.
+///
+/// ```ignore
+/// staya_controller::laws! {
+///     #[derive(Clone, Debug)]
+///     pub enum Mine[] of f32 in GridWorkspace<CELLS>, [] for [] {
+///         Waypoint(WaypointGuidance<f32>),
+///         Patrol(Patrol<f32>),
+///     }
+/// }
+/// ```
+#[macro_export]
+macro_rules! laws {
+    (
+        $(#[$about:meta])*
+        $visible:vis enum $name:ident[$($declared:tt)*] of $number:ty,
+        in $workspace:ty, [$($bounds:tt)*] for [$($arguments:tt)*] {
+            $($(#[$attribute:meta])* $variant:ident($law:ty $(, $large:ident)?)),+ $(,)?
+        }
+    ) => {
+        $(#[$about])*
+        $visible enum $name<$($declared)*> {
+            $($(#[$attribute])* $variant($law)),+
+        }
 
-macro_rules! each {
-    ($any:expr, $inside:ident($large:ident) => $action:expr) => {
-        match $any {
-            AnyLaw::Waypoint($inside) => $action,
-            AnyLaw::Lattice($inside) => $action,
-            AnyLaw::GoalFlock($inside) => $action,
-            AnyLaw::Boids($inside) => $action,
-            AnyLaw::Route(law) => each!($large(law), $inside => $action),
-            AnyLaw::Formation(law) => each!($large(law), $inside => $action),
-            AnyLaw::RouteOnGrid($inside) => $action,
-            AnyLaw::FormationOnGrid(law) => each!($large(law), $inside => $action),
+        impl<$($bounds)*> $crate::agent::Law<$number> for $name<$($arguments)*> {
+            type Surroundings<'a> = $crate::agent::AnySurroundings<'a, $number>;
+            type Protocol = $crate::agent::AnyProtocol;
+            type Workspace = $workspace;
+
+            fn decide(
+                &mut self,
+                view: &$crate::agent::View<'_, $number, $crate::agent::AnyProtocol>,
+                here: &$crate::agent::AnySurroundings<'_, $number>,
+                tools: $crate::agent::Tools<'_, $number, Self>,
+            ) -> Result<$crate::agent::Decision<$number>, $crate::agent::BadInput> {
+                let $crate::agent::Tools { rng, mut radio, workspace } = tools;
+                let sends = (rng, &mut radio);
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => $crate::agent::dispatch::decide(
+                        $crate::laws!(@inside_mut law $($large)?), view, here, sends, workspace.as_mut(),
+                    ),
+                )+}
+            }
+
+            fn payload(
+                &mut self,
+                here: &$crate::agent::AnySurroundings<'_, $number>,
+                heading: $crate::grid::Dir,
+                radio: &mut $crate::agent::Radio<'_, $crate::agent::AnyProtocol>,
+            ) -> $crate::agent::AnyPayload {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => $crate::agent::dispatch::payload(
+                        $crate::laws!(@inside_mut law $($large)?), here, heading, radio,
+                    ),
+                )+}
+            }
+
+            #[inline(never)]
+            fn receive(
+                &mut self,
+                from: $crate::robot::RobotId,
+                message: &$crate::agent::AnyMessage,
+                radio: &mut $crate::agent::Radio<'_, $crate::agent::AnyProtocol>,
+            ) -> bool {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => $crate::agent::dispatch::receive::<$number, _>(
+                        $crate::laws!(@inside_mut law $($large)?), from, message, radio,
+                    ),
+                )+}
+            }
+
+            #[inline(never)]
+            fn order(&mut self, order: &$crate::agent::AnyOrder) -> bool {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => $crate::agent::dispatch::order::<$number, _>(
+                        $crate::laws!(@inside_mut law $($large)?), order,
+                    ),
+                )+}
+            }
+
+            fn needs(&self, id: $crate::robot::RobotId) -> bool {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => {
+                        $crate::agent::Law::<$number>::needs($crate::laws!(@inside law $($large)?), id)
+                    }
+                )+}
+            }
+
+            fn report(&self) -> $crate::agent::Report {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => {
+                        $crate::agent::Law::<$number>::report($crate::laws!(@inside law $($large)?))
+                    }
+                )+}
+            }
+
+            fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn $crate::parameters::Parameters)) {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => {
+                        $crate::agent::Law::<$number>::parameters($crate::laws!(@inside_mut law $($large)?), visit)
+                    }
+                )+}
+            }
         }
     };
-    ($large:expr, $inside:ident => $action:expr) => {{
-        let $inside = $large;
-        $action
-    }};
+    (@inside $law:ident) => { $law };
+    (@inside $law:ident large) => { $crate::agent::dispatch::inside($law) };
+    (@inside_mut $law:ident) => { $law };
+    (@inside_mut $law:ident large) => { $crate::agent::dispatch::inside_mut($law) };
+}
+
+laws! {
+    /// Any law, on the grid with a map `H`, in the plane or in space.
+    #[derive(Clone, Debug, Serialize, Deserialize)]
+    #[expect(missing_docs, reason = "each variant's type says it")]
+    pub enum AnyLaw[S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, H = ()] of S,
+    in GridWorkspace<CELLS>,
+    [S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, H: FarMap]
+    for [S, CELLS, M, F, L, H] {
+        Waypoint(WaypointGuidance<S>),
+        Lattice(LatticeGuidance<S>),
+        GoalFlock(GoalFlockGuidance<S>),
+        Boids(BoidsGuidance<S>),
+        Route(Large<CellFollower<S, RouteGuidance<CELLS, M, L, H>>>, large),
+        Formation(Large<FormationInPlane<S, CELLS, M, F, L, H>>, large),
+        RouteOnGrid(RouteGuidance<CELLS, M, L, H>),
+        FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L, NextMove, H>>, large),
+    }
 }
 
 /// The protocol of an enum of built-in laws: each law speaks its own.
@@ -294,6 +404,16 @@ macro_rules! one_of {
                 }
             }
         }
+
+        impl<'a> TryFrom<&'a $any> for &'a $one {
+            type Error = OfAnotherLaw;
+            fn try_from(any: &'a $any) -> Result<Self, OfAnotherLaw> {
+                match any {
+                    $any::$variant(one) => Ok(one),
+                    _ => Err(OfAnotherLaw),
+                }
+            }
+        }
     )+};
 }
 
@@ -328,17 +448,21 @@ macro_rules! never {
                 Err(OfAnotherLaw)
             }
         }
+
+        impl<'a> TryFrom<&'a $any> for &'a Never {
+            type Error = OfAnotherLaw;
+            fn try_from(_: &'a $any) -> Result<Self, OfAnotherLaw> {
+                Err(OfAnotherLaw)
+            }
+        }
     )+};
 }
 never!(AnyMessage, AnyOrder);
 
-/// The robots of an enum of laws with payload `P` as one of its laws knows them.
-pub struct Narrow<'a, S, P>(pub &'a dyn Known<S, P>);
+/// The robots of an enum of laws as one of its laws knows them.
+struct Narrow<'a, S>(&'a dyn Known<S, AnyPayload>);
 
-impl<S, P, Q: TryFrom<P>> Known<S, Q> for Narrow<'_, S, P>
-where
-    S: Scalar,
-{
+impl<S: Scalar, Q: TryFrom<AnyPayload>> Known<S, Q> for Narrow<'_, S> {
     fn count(&self) -> usize {
         self.0.count()
     }
@@ -352,132 +476,63 @@ where
     }
 }
 
-/// Decides with one law of an enum of laws with protocol `P`. The last argument is `()` or the
-/// scratch memory.
-///
-/// # Errors
-/// [`BadInput`] also for surroundings of another kind.
-pub fn decide_as<S: Scalar, L: Law<S>, P: Protocol>(
-    law: &mut L,
-    view: &View<'_, S, P>,
-    here: &AnySurroundings<'_, S>,
-    (rng, radio): (&mut Rng, &mut Radio<'_, P>),
-    workspace: &mut L::Workspace,
-) -> Result<Decision<S>, BadInput>
-where
-    PayloadOf<L, S>: TryFrom<P::Payload>,
-{
-    let here = L::Surroundings::try_from(*here).map_err(|_| BadInput)?;
-    let known = Narrow(view.known);
-    law.decide(&view.with(&known), &here, Tools { rng, radio: radio.of(), workspace })
-}
+/// What [`laws!`](crate::laws!) calls for each of its laws.
+pub mod dispatch {
+    use super::*;
 
-/// Asks one law of an enum of laws for its payload.
-pub fn payload_as<S: Scalar, L: Law<S>, P: Protocol>(
-    law: &mut L,
-    here: &AnySurroundings<'_, S>,
-    heading: Dir,
-    radio: &mut Radio<'_, P>,
-) -> P::Payload
-where
-    P::Payload: FromPayload<PayloadOf<L, S>>,
-{
-    let Ok(here) = L::Surroundings::try_from(*here) else { return Default::default() };
-    P::Payload::from_payload(<L::Protocol as Protocol>::ID, law.payload(&here, heading, &mut radio.of()))
-}
+    pub use super::{inside, inside_mut};
 
-/// Gives a message to one law of an enum of laws.
-pub fn receive_as<S: Scalar, L: Law<S>, P: Protocol>(
-    law: &mut L,
-    from: RobotId,
-    message: &P::Message,
-    radio: &mut Radio<'_, P>,
-) -> bool
-where
-    MessageOf<L, S>: TryFrom<P::Message>,
-{
-    message.clone().try_into().is_ok_and(|message| law.receive(from, &message, &mut radio.of()))
-}
-
-/// Gives an order to one law of an enum of laws.
-pub fn order_as<S: Scalar, L: Law<S>, O: Clone>(law: &mut L, order: &O) -> bool
-where
-    OrderOf<L, S>: TryFrom<O>,
-{
-    order.clone().try_into().is_ok_and(|order| law.order(&order))
-}
-
-impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, H: FarMap> Law<S>
-    for AnyLaw<S, CELLS, M, F, L, H>
-{
-    type Surroundings<'a> = AnySurroundings<'a, S>;
-    type Protocol = AnyProtocol;
-    type Workspace = GridWorkspace<CELLS>;
-
-    fn decide(
-        &mut self,
+    /// Decides.
+    ///
+    /// # Errors
+    /// [`BadInput`] also for surroundings of another kind.
+    pub fn decide<S: Scalar, L: Law<S>>(
+        law: &mut L,
         view: &View<'_, S, AnyProtocol>,
         here: &AnySurroundings<'_, S>,
-        tools: Tools<'_, S, Self>,
-    ) -> Result<Decision<S>, BadInput> {
-        let Tools { rng, mut radio, workspace } = tools;
-        let sends = (rng, &mut radio);
-        match self {
-            Self::Waypoint(law) => decide_as(law, view, here, sends, &mut ()),
-            Self::Lattice(law) => decide_as(law, view, here, sends, &mut ()),
-            Self::GoalFlock(law) => decide_as(law, view, here, sends, &mut ()),
-            Self::Boids(law) => decide_as(law, view, here, sends, &mut ()),
-            Self::Route(law) => decide_as(inside_mut(law), view, here, sends, workspace),
-            Self::Formation(law) => decide_as(inside_mut(law), view, here, sends, workspace),
-            Self::RouteOnGrid(law) => decide_as(law, view, here, sends, workspace),
-            Self::FormationOnGrid(law) => decide_as(inside_mut(law), view, here, sends, workspace),
-        }
+        (rng, radio): (&mut Rng, &mut Radio<'_, AnyProtocol>),
+        workspace: &mut L::Workspace,
+    ) -> Result<Decision<S>, BadInput>
+    where
+        PayloadOf<L, S>: TryFrom<AnyPayload>,
+    {
+        let here = L::Surroundings::try_from(*here).map_err(|_| BadInput)?;
+        let known = Narrow(view.known);
+        law.decide(&view.with(&known), &here, Tools { rng, radio: radio.of(), workspace })
     }
 
-    fn payload(
-        &mut self,
+    /// Asks for the payload.
+    pub fn payload<S: Scalar, L: Law<S>>(
+        law: &mut L,
         here: &AnySurroundings<'_, S>,
         heading: Dir,
         radio: &mut Radio<'_, AnyProtocol>,
-    ) -> AnyPayload {
-        each!(self, law(inside_mut) => payload_as(law, here, heading, radio))
+    ) -> AnyPayload
+    where
+        AnyPayload: FromPayload<PayloadOf<L, S>>,
+    {
+        let Ok(here) = L::Surroundings::try_from(*here) else { return AnyPayload::default() };
+        AnyPayload::from_payload(<L::Protocol as Protocol>::ID, law.payload(&here, heading, &mut radio.of()))
     }
 
-    #[inline(never)]
-    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
-        let (AnyMessage::Grid(message), radio) = (message, &mut radio.of()) else { return false };
-        match self {
-            Self::Route(law) => inside_mut(law).receive(from, message, radio),
-            Self::Formation(law) => inside_mut(law).receive(from, message, radio),
-            Self::RouteOnGrid(law) => Law::<S>::receive(law, from, message, radio),
-            Self::FormationOnGrid(law) => Law::<S>::receive(inside_mut(law), from, message, radio),
-            Self::Waypoint(_) | Self::Lattice(_) | Self::GoalFlock(_) | Self::Boids(_) => false,
-        }
+    /// Gives a message.
+    pub fn receive<S: Scalar, L: Law<S>>(
+        law: &mut L,
+        from: RobotId,
+        message: &AnyMessage,
+        radio: &mut Radio<'_, AnyProtocol>,
+    ) -> bool
+    where
+        for<'a> &'a MessageOf<L, S>: TryFrom<&'a AnyMessage>,
+    {
+        <&MessageOf<L, S>>::try_from(message).is_ok_and(|message| law.receive(from, message, &mut radio.of()))
     }
 
-    #[inline(never)]
-    fn order(&mut self, order: &AnyOrder) -> bool {
-        match (self, order) {
-            (Self::Waypoint(law), AnyOrder::Waypoint(order)) => law.order(order),
-            (Self::Lattice(law), AnyOrder::Waypoint(order)) => law.order(order),
-            (Self::GoalFlock(law), AnyOrder::Waypoint(order)) => law.order(order),
-            (Self::Route(law), AnyOrder::Grid(order)) => inside_mut(law).order(order),
-            (Self::Formation(law), AnyOrder::Grid(order)) => inside_mut(law).order(order),
-            (Self::RouteOnGrid(law), AnyOrder::Grid(order)) => Law::<S>::order(law, order),
-            (Self::FormationOnGrid(law), AnyOrder::Grid(order)) => Law::<S>::order(inside_mut(law), order),
-            _ => false,
-        }
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        each!(self, law(inside) => Law::<S>::needs(law, id))
-    }
-
-    fn report(&self) -> Report {
-        each!(self, law(inside) => Law::<S>::report(law))
-    }
-
-    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
-        each!(self, law(inside_mut) => Law::<S>::parameters(law, visit));
+    /// Gives an order.
+    pub fn order<S: Scalar, L: Law<S>>(law: &mut L, order: &AnyOrder) -> bool
+    where
+        for<'a> &'a OrderOf<L, S>: TryFrom<&'a AnyOrder>,
+    {
+        <&OrderOf<L, S>>::try_from(order).is_ok_and(|order| law.order(order))
     }
 }

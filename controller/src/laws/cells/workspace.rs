@@ -7,6 +7,7 @@ use crate::route::CostField;
 pub struct GridWorkspace<const CELLS: usize> {
     pub(crate) field: CostField<CELLS>,
     pub(crate) land: [u8; CELLS],
+    none: (),
 }
 
 impl<const CELLS: usize> Default for GridWorkspace<CELLS> {
@@ -19,7 +20,7 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
     /// Creates a workspace.
     #[must_use]
     pub const fn new() -> Self {
-        Self { field: CostField::new(), land: [0; CELLS] }
+        Self { field: CostField::new(), land: [0; CELLS], none: () }
     }
 
     /// The field, for a search.
@@ -31,5 +32,19 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
     #[must_use]
     pub const fn field(&self) -> &CostField<CELLS> {
         &self.field
+    }
+}
+
+/// For an enum of laws.
+impl<const CELLS: usize> AsMut<Self> for GridWorkspace<CELLS> {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
+/// For laws in it that need none.
+impl<const CELLS: usize> AsMut<()> for GridWorkspace<CELLS> {
+    fn as_mut(&mut self) -> &mut () {
+        &mut self.none
     }
 }

@@ -4,13 +4,9 @@ use crate::own_law::Own;
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, FormationGuidance,
-    GridWorkspace, GuidanceSetup, LEARNED, Law, MAP_TILES, Radio, Report, SharedMap, TEMPLATE, Tools, VISITS, View,
-    decide_as, order_as, payload_as, receive_as,
+    AnyLaw, FormationGuidance, GridWorkspace, GuidanceSetup, LEARNED, MAP_TILES, SharedMap, TEMPLATE, VISITS,
 };
-use staya_controller::grid::Dir;
-use staya_controller::parameters::Parameters;
-use staya_controller::robot::RobotId;
+use staya_controller::laws;
 use staya_papers::criteria::PublishedParams;
 use staya_papers::{Course, PublishedFormation};
 
@@ -19,15 +15,17 @@ pub const WIDE: usize = 1225;
 
 type Map = Option<Box<SharedMap<MAP_TILES>>>;
 
-/// A law of a robot in a scenario.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[expect(clippy::large_enum_variant, reason = "nearly all robots have a built-in law")]
-#[expect(missing_docs, reason = "each variant's type says it")]
-pub enum ScenarioLaw {
-    BuiltIn(AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Map>),
-    Published(Box<PublishedFormation<WIDE, VISITS, TEMPLATE>>),
-    LooksAhead(Box<FormationGuidance<WIDE, VISITS, TEMPLATE, LEARNED, Course, Map>>),
-    Own(Own),
+laws! {
+    /// A law of a robot in a scenario.
+    #[derive(Clone, Debug, Serialize, Deserialize)]
+    #[expect(clippy::large_enum_variant, reason = "nearly all robots have a built-in law")]
+    #[expect(missing_docs, reason = "each variant's type says it")]
+    pub enum ScenarioLaw[] of f32, in GridWorkspace<WIDE>, [] for [] {
+        BuiltIn(AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Map>),
+        Published(Box<PublishedFormation<WIDE, VISITS, TEMPLATE>>, large),
+        LooksAhead(Box<FormationGuidance<WIDE, VISITS, TEMPLATE, LEARNED, Course, Map>>, large),
+        Own(Own),
+    }
 }
 
 /// Which law of a paper replaces Staya's formation.
@@ -54,87 +52,5 @@ impl Papers {
             }
             _ => ScenarioLaw::BuiltIn(setup.law(map)),
         }
-    }
-}
-
-macro_rules! each {
-    ($any:expr, $law:ident => $action:expr) => {
-        match $any {
-            ScenarioLaw::BuiltIn($law) => $action,
-            ScenarioLaw::Published(law) => {
-                let $law = &mut **law;
-                $action
-            }
-            ScenarioLaw::LooksAhead(law) => {
-                let $law = &mut **law;
-                $action
-            }
-            ScenarioLaw::Own($law) => $action,
-        }
-    };
-    (ref $any:expr, $law:ident => $action:expr) => {
-        match $any {
-            ScenarioLaw::BuiltIn($law) => $action,
-            ScenarioLaw::Published(law) => {
-                let $law = &**law;
-                $action
-            }
-            ScenarioLaw::LooksAhead(law) => {
-                let $law = &**law;
-                $action
-            }
-            ScenarioLaw::Own($law) => $action,
-        }
-    };
-}
-
-impl Law<f32> for ScenarioLaw {
-    type Surroundings<'a> = AnySurroundings<'a, f32>;
-    type Protocol = AnyProtocol;
-    type Workspace = GridWorkspace<WIDE>;
-
-    fn decide(
-        &mut self,
-        view: &View<'_, f32, AnyProtocol>,
-        here: &AnySurroundings<'_, f32>,
-        tools: Tools<'_, f32, Self>,
-    ) -> Result<Decision<f32>, BadInput> {
-        let Tools { rng, mut radio, workspace } = tools;
-        let sends = (rng, &mut radio);
-        match self {
-            Self::BuiltIn(law) => decide_as(law, view, here, sends, workspace),
-            Self::Published(law) => decide_as(&mut **law, view, here, sends, workspace),
-            Self::LooksAhead(law) => decide_as(&mut **law, view, here, sends, workspace),
-            Self::Own(law) => decide_as(law, view, here, sends, &mut ()),
-        }
-    }
-
-    fn payload(
-        &mut self,
-        here: &AnySurroundings<'_, f32>,
-        heading: Dir,
-        radio: &mut Radio<'_, AnyProtocol>,
-    ) -> AnyPayload {
-        each!(self, law => payload_as(law, here, heading, radio))
-    }
-
-    fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
-        each!(self, law => receive_as::<f32, _, _>(law, from, message, radio))
-    }
-
-    fn order(&mut self, order: &AnyOrder) -> bool {
-        each!(self, law => order_as::<f32, _, _>(law, order))
-    }
-
-    fn needs(&self, id: RobotId) -> bool {
-        each!(ref self, law => Law::<f32>::needs(law, id))
-    }
-
-    fn report(&self) -> Report {
-        each!(ref self, law => Law::<f32>::report(law))
-    }
-
-    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
-        each!(self, law => Law::<f32>::parameters(law, visit));
     }
 }

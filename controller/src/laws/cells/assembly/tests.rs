@@ -1,5 +1,5 @@
 use super::*;
-use crate::agent::{Grid, Protocol};
+use crate::agent::{Grid, GridOrder, OfAnotherLaw, Protocol};
 use crate::wire::arbitrary::robot;
 use crate::wire::{Content, MAX_ORDER};
 use proptest::collection::vec;

@@ -197,7 +197,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     where
         H: FarMap,
     {
-        let GridWorkspace { field, land } = workspace;
+        let GridWorkspace { field, land, .. } = workspace;
         let shown = if self.formation.footprint == 0 || found.members.is_empty() {
             None
         } else {
