@@ -37,7 +37,6 @@ pub(crate) fn large<G>(law: G) -> Large<G> {
     Large::new(law)
 }
 
-/// The law in a variant of [`laws!`](crate::laws!).
 #[doc(hidden)]
 pub const fn inside<G>(law: &Large<G>) -> &G {
     law
@@ -48,18 +47,25 @@ pub const fn inside_mut<G>(law: &mut Large<G>) -> &mut G {
     law
 }
 
-/// Declares an enum of laws that is a law itself, with [`AnyProtocol`]. `of` is its scalar type,
-/// `in` its scratch memory, which is `AsMut` of that of each law. The two last brackets are the
-/// generics of the `impl`: with bounds, and as arguments. A law behind [`Large`] is marked so.
+/// Declares an enum of laws that is itself a law with [`AnyProtocol`], for one memory that holds any
+/// of them.
 ///
-/// ```ignore
+/// `of`: its scalar type. `in`: its scratch memory, which is `AsMut` of that of each law. Then the
+/// generics of the `impl`, with bounds and as arguments. A law in [`Large`] is marked `large`.
+///
+/// ```
+/// use staya_controller::agent::{CELLS, GridWorkspace, Law, RouteGuidance, WaypointGuidance};
+///
 /// staya_controller::laws! {
+///     /// Drives, or goes from cell to cell.
 ///     #[derive(Clone, Debug)]
-///     pub enum Mine[] of f32 in GridWorkspace<CELLS>, [] for [] {
-///         Waypoint(WaypointGuidance<f32>),
-///         Patrol(Patrol<f32>),
+///     pub enum Rover[] of f32, in GridWorkspace<CELLS>, [] for [] {
+///         Drives(WaypointGuidance<f32>),
+///         Steps(RouteGuidance<CELLS, 32>),
 ///     }
 /// }
+/// fn is_law(_: impl Law<f32>) {}
+/// is_law(Rover::Drives(WaypointGuidance::new(0.5, 0.02)));
 /// ```
 #[macro_export]
 macro_rules! laws {
@@ -477,6 +483,7 @@ impl<S: Scalar, Q: TryFrom<AnyPayload>> Known<S, Q> for Narrow<'_, S> {
 }
 
 /// What [`laws!`](crate::laws!) calls for each of its laws.
+#[doc(hidden)]
 pub mod dispatch {
     use super::*;
 
