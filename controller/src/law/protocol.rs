@@ -101,7 +101,7 @@ impl<'t, P> Radio<'t, P> {
         self.now
     }
 
-    /// Makes a [`CellFollower`](crate::agent::CellFollower) decide at once rather than in the next cell.
+    /// Makes a [`CellFollower`](crate::agent::CellFollower) decide at once, not in the next cell.
     pub const fn decide_at_once(&mut self) {
         self.outgoing.decides_at_once = true;
     }
@@ -119,9 +119,9 @@ impl<'t, P> Radio<'t, P> {
 
 impl<P: Protocol> Radio<'_, P> {
     /// Sends a message to one robot, again until it is acknowledged, for `valid` at most; then the
-    /// agent reports [`MessageExpired`](crate::agent::Event::MessageExpired). A message about the same
-    /// subject to the same robot is replaced. Returns whether there is room for it: it has at most
-    /// [`MAX_MESSAGE`] bytes, and in one step a law sends at most four.
+    /// agent reports [`Event::MessageExpired`](crate::agent::Event::MessageExpired). A message
+    /// about the same subject to the same robot is replaced. Returns whether there is room for it:
+    /// it has at most [`MAX_MESSAGE`] bytes, and in one step a law sends at most four.
     pub fn send(&mut self, to: RobotId, message: &P::Message, valid: Duration) -> bool {
         let Some((protocol, content)) = message.encode(P::ID).filter(|_| to.is_some()) else { return false };
         let queued = Queued { to, subject: P::subject(message), protocol, content, valid };

@@ -73,8 +73,8 @@ pub struct InCell<S> {
     pub cell_m: S,
 }
 
-/// Surroundings of [`AnyLaw`](super::AnyLaw). A kind that the law cannot use puts the robot into
-/// [`Mode::Fault`](crate::robot::Mode::Fault).
+/// Surroundings of [`AnyLaw`](crate::agent::AnyLaw). A kind that the law cannot use puts the robot
+/// into [`Mode::Fault`](crate::robot::Mode::Fault).
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnySurroundings<'a, S> {

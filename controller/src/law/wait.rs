@@ -3,18 +3,20 @@
 use crate::names::named;
 
 named! {
-    /// The reason why a robot with a goal does not advance ([`Outputs::wait`](crate::agent::Outputs)).
+    /// The reason why a robot with a goal does not advance:
+    /// [`Outputs::wait`](crate::agent::Outputs::wait).
     ///
     /// | reason | ends when |
     /// | --- | --- |
     /// | [`Team`](Self::Team) | the robots arrive, or after [`patience`] decisions |
     /// | [`Stopped`](Self::Stopped) | a resume request arrives, or the request expires |
     /// | [`Route`](Self::Route) | the visible terrain changes |
-    /// | [`Radio`](Self::Radio) | a robot is in contact: [policy](crate::agent::ContactLossPolicy) |
+    /// | [`Radio`](Self::Radio) | a robot is in contact, by its [policy] |
     /// | [`Turn`](Self::Turn) | its turn comes; a turn that is not taken passes on |
     /// | [`Robots`](Self::Robots) | the robots leave; robots lean to the right to pass each other |
     /// | [`GoalTaken`](Self::GoalTaken) | its place is free; until then it has arrived beside it |
     ///
+    /// [policy]: crate::agent::ContactLossPolicy
     /// [`patience`]: crate::formation::FormationParams::patience
     pub enum Wait {
         /// Its leader or its followers are not in their places yet.

@@ -47,8 +47,7 @@ pub const fn inside_mut<G>(law: &mut Large<G>) -> &mut G {
     law
 }
 
-/// Declares an enum of laws that is itself a law with [`AnyProtocol`], for one memory that holds any
-/// of them.
+/// Declares an enum of laws that is itself a law with [`AnyProtocol`]: one memory for any of them.
 ///
 /// `of`: its scalar type. `in`: its scratch memory, which is `AsMut` of that of each law. Then the
 /// generics of the `impl`, with bounds and as arguments. A law in [`Large`] is marked `large`.

@@ -25,16 +25,20 @@ pub struct Incoming {
     pub bytes: Bytes<MAX_CONTENT>,
 }
 
-/// Does what its owner decides between [`Agent::hear_into`](super::Agent::hear_into) and
-/// [`Agent::act_into`](super::Agent::act_into), or before a whole step. The owner reaches it by
-/// [`Agent::law_mut`](super::Agent::law_mut), and reads the payloads of others in
-/// [`Agent::neighbors`](super::Agent::neighbors).
+/// Does what its owner decides between [`Agent::hear_into`] and [`Agent::act_into`], or before a
+/// whole step. The owner reaches it by [`Agent::law_mut`], and reads the payloads of others in
+/// [`Agent::neighbors`].
 ///
 /// A decision is used once: unless it is renewed, the robot stays ([`Action::Stay`]) from then on,
 /// so an owner that hangs stops its robot. A decision to be idle holds until the next one.
-/// Velocities need [`InPlane::max_speed_mps`](super::InPlane::max_speed_mps) above 0, and moves
-/// [`OnGrid`] with its window; without them the robot is in
-/// [`Mode::Fault`](crate::robot::Mode::Fault).
+/// Velocities need [`InPlane::max_speed_mps`] above 0, and moves [`OnGrid`] with its window;
+/// without them the robot is in [`Mode::Fault`](crate::robot::Mode::Fault).
+///
+/// [`Agent::hear_into`]: crate::agent::Agent::hear_into
+/// [`Agent::act_into`]: crate::agent::Agent::act_into
+/// [`Agent::law_mut`]: crate::agent::Agent::law_mut
+/// [`Agent::neighbors`]: crate::agent::Agent::neighbors
+/// [`InPlane::max_speed_mps`]: crate::agent::InPlane::max_speed_mps
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct External<S> {
     protocol: ProtocolId,

@@ -3,8 +3,8 @@
 //! | folder | law |
 //! | --- | --- |
 //! | `waypoint` | straight to waypoints |
-//! | `lattice`, `goal_flock`, `boids` | flocks; `flock` is what two of them share |
-//! | `route`, `formation` | cell by cell; `cells` is what both share |
+//! | `lattice`, `goal_flock`, `boids` | flocks; `flock` has their common terms |
+//! | `route`, `formation` | cell by cell; `cells` has their common parts |
 //! | `external`, `guided` | the caller decides; an operator steers |
 //!
 //! `any` lists those that can be chosen at run time.

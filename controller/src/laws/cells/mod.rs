@@ -1,4 +1,4 @@
-//! What the laws share that plan on the grid: their protocol, maps, and the way from cell to cell.
+//! The common parts of laws on the grid: protocol, maps, and the way from cell to cell.
 
 mod assembly;
 mod cell_follower;

@@ -2,7 +2,8 @@
 //! Start with [`acceleration`].
 //!
 //! Source: R. Olfati-Saber 2006, "Flocking for multi-agent dynamic systems: algorithms and theory",
-//! IEEE TAC 51(3), algorithms 1 to 3 (section VII). See also [`crate::flock::action`] and [`crate::flock::beta`].
+//! IEEE TAC 51(3), algorithms 1 to 3 (section VII). See also [`crate::flock::action`] and
+//! [`crate::flock::beta`].
 //!
 //! **Any size.** The law's constants (e, sigma_1) are made for a spacing of 7. So it is computed in
 //! units of d / 7 metres and its acceleration scaled back. Time is not scaled (a gain c1 is in

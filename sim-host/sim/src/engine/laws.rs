@@ -18,7 +18,6 @@ type Map = Option<Box<SharedMap<MAP_TILES>>>;
 laws! {
     /// A law of a robot in a scenario.
     #[derive(Clone, Debug, Serialize, Deserialize)]
-    #[expect(clippy::large_enum_variant, reason = "nearly all robots have a built-in law")]
     #[expect(missing_docs, reason = "each variant's type says it")]
     pub enum ScenarioLaw[] of f32, in GridWorkspace<WIDE>, [] for [] {
         BuiltIn(AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Map>),

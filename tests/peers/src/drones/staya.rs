@@ -6,10 +6,10 @@ use staya_controller::agent::{
     GuidanceSetup, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid, RouteSetup, SafetySetup, Setup, Task,
     VISITS, Waypoint,
 };
-use staya_controller::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 use staya_controller::formation::FormationParams;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
+use staya_controller::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 use staya_controller::neighbor::{Ages, StalenessInflation};
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::RobotId;

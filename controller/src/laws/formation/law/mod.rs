@@ -130,8 +130,9 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         &self.template
     }
 
-    /// Returns how far `neighbors`, the robots of [`Agent::neighbors`](super::Agent::neighbors) on
-    /// the grid, are from their places in the template of robot `id` in `cell`. O(F N).
+    /// Returns how far `neighbors`, the robots of
+    /// [`Agent::neighbors`](crate::agent::Agent::neighbors) on the grid, are from their places in
+    /// the template of robot `id` in `cell`. O(F N).
     #[must_use]
     pub fn graph_distance(
         &self,
