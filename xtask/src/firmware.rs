@@ -84,6 +84,8 @@ fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only:
     let (profile_name, folder) = profile.names();
     let mut cargo = toolchain.cargo(repo, part.target, "build");
     cargo.args(["--locked", "--profile", profile_name, "--package", "staya-firmware"]);
+    // Flash has room for the canned swarms only if they are small.
+    cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "s");
     // Each file in src/bin is a program.
     let bins = files::entries(&repo.root.join("hil/firmware/src/bin"))?.into_iter().map(|file| files::stem(&file));
     let mut bins: Vec<String> =
