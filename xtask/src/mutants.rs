@@ -16,7 +16,7 @@ const SHARD: &str = "0/200";
 const CAUGHT: u64 = 50;
 /// Long simulations and random bytes, which take most of the time: the other tests must suffice.
 const SKIPPED: [&str; 2] = ["simulation", "tests::nonsense"];
-const TESTED: [&str; 5] = ["agent::", "auth::", "neighbor::", "orca::", "wire::"];
+const TESTED: [&str; 6] = ["agent::", "auth::", "laws::cells::", "neighbor::", "orca::", "wire::"];
 /// Without optimisation a mutant compiles in a fifth of the time; its tests need more stack.
 const ENVIRONMENT: [(&str, &str); 5] = [
     ("CARGO_PROFILE_DEV_INCREMENTAL", "true"),
