@@ -1,0 +1,159 @@
+//! What a robot knows of the land around it: cells that are closed.
+
+use crate::grid::{Cell, Dir};
+use serde::{Deserialize, Serialize};
+
+/// Columns and rows of an [`Area`]; the outermost column and row on one side are its border.
+pub const SIDE: usize = 64;
+const HALF: i16 = 32;
+/// Radius of a [`Sight`].
+pub const SIGHT: i16 = 5;
+
+/// One bit for each cell of a square of 64 x 64 cells.
+pub(super) type Plane = [u64; SIDE];
+
+/// The closed cells within 5 cells of a robot: a row is 11 bits, the western cell the lowest, and
+/// the southern row the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Sight(pub [u16; 11]);
+
+impl Sight {
+    /// Sees each cell around `center` for which `is_closed` is true.
+    #[must_use]
+    pub fn new(center: Cell, is_closed: impl Fn(Cell) -> bool) -> Self {
+        let mut sight = Self::default();
+        for (dy, row) in (-SIGHT..).zip(&mut sight.0) {
+            for dx in -SIGHT..=SIGHT {
+                let closed = is_closed(center + Cell::new(dx, dy));
+                *row |= u16::from(closed) << (dx + SIGHT);
+            }
+        }
+        sight
+    }
+}
+
+/// The closed cells that a robot has seen or was told, within 31 cells of it; 514 bytes. Unknown
+/// cells are open.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Area {
+    closed: Plane,
+    center: Cell,
+    /// Counts the changes.
+    version: u16,
+}
+
+/// The place of a coordinate in a [`Plane`].
+pub(super) const fn place(coordinate: i16) -> usize {
+    (coordinate as u16 & 63) as usize
+}
+
+pub(super) fn bit(plane: &Plane, cell: Cell) -> bool {
+    plane.get(place(cell.y)).is_some_and(|row| row >> place(cell.x) & 1 == 1)
+}
+
+pub(super) fn set(plane: &mut Plane, cell: Cell) {
+    if let Some(row) = plane.get_mut(place(cell.y)) {
+        *row |= 1 << place(cell.x);
+    }
+}
+
+impl Area {
+    /// Nothing is known around `center`.
+    #[must_use]
+    pub const fn new(center: Cell) -> Self {
+        Self { closed: [0; SIDE], center, version: 0 }
+    }
+
+    /// Whether a cell is inside, and not its border.
+    #[must_use]
+    pub fn has(&self, cell: Cell) -> bool {
+        cell.chebyshev(self.center) < HALF as u32
+    }
+
+    /// Whether a cell may be entered, as far as is known. Cells outside may not.
+    #[must_use]
+    pub fn is_open(&self, cell: Cell) -> bool {
+        self.has(cell) && !bit(&self.closed, cell)
+    }
+
+    /// Closes a cell inside.
+    pub fn close(&mut self, cell: Cell) {
+        if self.is_open(cell) {
+            set(&mut self.closed, cell);
+            self.version = self.version.wrapping_add(1);
+        }
+    }
+
+    /// Adds what a robot at `center` sees. O(121).
+    pub fn learn(&mut self, center: Cell, sight: &Sight) {
+        for (dy, row) in (-SIGHT..).zip(sight.0) {
+            for dx in (-SIGHT..=SIGHT).filter(|dx| row >> (dx + SIGHT) & 1 == 1) {
+                self.close(center + Cell::new(dx, dy));
+            }
+        }
+    }
+
+    /// Moves its centre, and forgets what is outside then. O(64) for each cell of the way.
+    pub fn follow(&mut self, center: Cell) {
+        if center.chebyshev(self.center) >= HALF as u32 {
+            *self = Self { version: self.version.wrapping_add(1), ..Self::new(center) };
+            return;
+        }
+        while self.center != center {
+            let step = Cell::new((center.x - self.center.x).signum(), (center.y - self.center.y).signum());
+            self.center = self.center + step;
+            self.version = self.version.wrapping_add(1);
+            // The column and the row that are new, and the border behind them.
+            let edge = |at: i16, step: i16| [at + step * (HALF - 1), at + step * HALF].map(place);
+            if step.x != 0 {
+                let columns = edge(self.center.x, step.x).into_iter().fold(0, |bits, column| bits | 1 << column);
+                self.closed.iter_mut().for_each(|row| *row &= !columns);
+            }
+            if step.y != 0 {
+                for row in edge(self.center.y, step.y) {
+                    if let Some(row) = self.closed.get_mut(row) {
+                        *row = 0;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The open cells, without the border.
+    pub(super) fn open(&self) -> Plane {
+        let border = |at: i16| place(at.wrapping_sub(HALF));
+        let mut open = self.closed.map(|row| !row & !(1 << border(self.center.x)));
+        if let Some(row) = open.get_mut(border(self.center.y)) {
+            *row = 0;
+        }
+        open
+    }
+
+    /// Counts changes of the known cells.
+    #[must_use]
+    pub const fn version(&self) -> u16 {
+        self.version
+    }
+
+    /// The cell inside that is nearest to `cell`.
+    #[must_use]
+    pub fn inside(&self, cell: Cell) -> Cell {
+        let Cell { x, y } = self.center;
+        let most = HALF - 1;
+        Cell::new(
+            cell.x.clamp(x.saturating_sub(most), x.saturating_add(most)),
+            cell.y.clamp(y.saturating_sub(most), y.saturating_add(most)),
+        )
+    }
+
+    /// The open cells that one move reaches, in the order of `moves`.
+    pub fn around<'a>(&'a self, cell: Cell, moves: &'a [Dir]) -> impl Iterator<Item = Cell> + 'a {
+        let to = move |dir: Dir| cell + dir.offset();
+        let is_open = move |&dir: &Dir| {
+            let step = dir.offset();
+            let corners = [Cell::new(step.x, 0), Cell::new(0, step.y)];
+            self.is_open(to(dir)) && (!dir.is_diagonal() || corners.iter().all(|&corner| self.is_open(cell + corner)))
+        };
+        moves.iter().copied().filter(is_open).map(to)
+    }
+}

@@ -1,0 +1,10 @@
+//! Negotiation: each robot computes the moves of all robots near it by the same deterministic rule,
+//! and makes its own. Start with [`Plan::new`].
+
+mod area;
+mod distance;
+mod plan;
+
+pub use area::{Area, SIDE, SIGHT, Sight};
+pub use distance::Distances;
+pub use plan::{Fields, Member, Moves, Plan, Wish};

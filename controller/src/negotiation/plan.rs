@@ -1,0 +1,385 @@
+//! The moves of all robots that one robot knows of, by one deterministic rule.
+
+use super::area::Area;
+use super::distance::Distances;
+use crate::grid::{Cell, Dir};
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use core::cmp::Ordering;
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+/// The moves between cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Moves {
+    /// East, north, west and south.
+    #[default]
+    Four,
+    /// All eight neighbours.
+    Eight,
+}
+
+impl Moves {
+    /// The moves, without staying.
+    #[must_use]
+    pub const fn dirs(self) -> &'static [Dir] {
+        match self {
+            Self::Four => &[Dir::East, Dir::North, Dir::West, Dir::South],
+            Self::Eight => &Dir::MOVES,
+        }
+    }
+}
+
+/// What a robot thinks of the cells around it: two bits for each move. 0: nearer to its goal, 1: as
+/// far as its own cell, 2: farther, 3: closed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wish(pub u16);
+
+impl Wish {
+    /// The wish of a robot in `cell`, from its distances.
+    #[must_use]
+    pub fn new(cell: Cell, area: &Area, distances: &Distances, moves: Moves) -> Self {
+        let mut wish = u16::MAX;
+        for &dir in moves.dirs() {
+            let to = cell + dir.offset();
+            let is_open = area.around(cell, core::slice::from_ref(&dir)).next().is_some();
+            let rank = match distances.compare(to, cell) {
+                _ if !is_open => 3,
+                Some(Ordering::Less) => 0,
+                Some(Ordering::Equal) => 1,
+                Some(Ordering::Greater) | None => 2,
+            };
+            wish &= !(3 << (2 * dir.index())) | rank << (2 * dir.index());
+        }
+        Self(wish)
+    }
+
+    /// The rank of a move; `None` if the cell is closed.
+    #[must_use]
+    pub const fn rank(self, dir: Dir) -> Option<u8> {
+        if matches!(dir, Dir::Stay) {
+            return Some(1);
+        }
+        match (self.0 >> (2 * dir.index())) as u8 & 3 {
+            3 => None,
+            rank => Some(rank),
+        }
+    }
+}
+
+/// A robot in a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// Its number; without meaning for a robot that is only sensed.
+    pub id: RobotId,
+    /// Where it is.
+    pub cell: Cell,
+    /// Where it wants to go.
+    pub goal: Cell,
+    /// Steps since it last stood on its goal, plus 1; 0 for a robot that is only sensed.
+    pub waiting: u16,
+    /// Its wish; `None` if it is not known.
+    pub wish: Option<Wish>,
+}
+
+/// A robot's place in the chain of those that ask each other to move.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    /// Its move, as far as one is chosen.
+    next: Option<Cell>,
+    /// Moves, best first; only `count` of them.
+    order: [Dir; 9],
+    count: u8,
+    tried: u8,
+    /// Index of the robot that it exchanges its cell with.
+    swaps: Option<u8>,
+    /// Index of the robot that asked it.
+    asked_by: Option<u8>,
+}
+
+impl Turn {
+    const NONE: Self = Self { next: None, order: [Dir::Stay; 9], count: 0, tried: 0, swaps: None, asked_by: None };
+}
+
+/// Distances of `F` goals, those that were used last.
+#[derive(Clone, Debug)]
+pub struct Fields<const F: usize> {
+    fields: [Distances; F],
+    used: [u32; F],
+    clock: u32,
+}
+
+impl<const F: usize> Default for Fields<F> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const F: usize> Fields<F> {
+    const TWO: () = assert!(F >= 2, "a plan compares the distances of two robots");
+
+    /// Without distances.
+    #[must_use]
+    pub const fn new() -> Self {
+        let () = Self::TWO;
+        Self { fields: [Distances::EMPTY; F], used: [0; F], clock: 0 }
+    }
+
+    /// The distances to a goal; searches unless they are there.
+    pub fn to(&mut self, goal: Cell, area: &Area, moves: Moves) -> &Distances {
+        self.clock = self.clock.wrapping_add(1);
+        let (clock, used) = (self.clock, &self.used);
+        let age = |index: &usize| used.get(*index).map_or(0, |&at| clock.wrapping_sub(at));
+        let there = self.fields.iter().zip(used).position(|(field, &at)| at != 0 && field.is_for(goal, area));
+        let index = there.or_else(|| (0..F).max_by_key(age)).unwrap_or(0);
+        if let Some(at) = self.used.get_mut(index) {
+            *at = clock;
+        }
+        // `F` is at least 2.
+        let field = &mut self.fields[if index < F { index } else { 0 }];
+        if there.is_none() {
+            field.search(goal, area, moves == Moves::Eight);
+        }
+        field
+    }
+}
+
+/// Longest corridor that a swap looks along, cells.
+const CORRIDOR: usize = 200;
+const PURPOSE: u32 = u32::from_be_bytes(*b"nego");
+
+/// The moves of at most `N` robots.
+pub struct Plan<'a, const N: usize, const F: usize> {
+    members: &'a [Member],
+    turns: [Turn; N],
+    area: &'a Area,
+    fields: &'a mut Fields<F>,
+    moves: Moves,
+    step: u32,
+}
+
+impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
+    /// Plans the moves of `members`, of which those beyond the first `N` are ignored, in this
+    /// `step`. All robots that know the same plan the same.
+    ///
+    /// Each robot chooses once, among at most 9 cells, and looks along at most 9 corridors of
+    /// [`CORRIDOR`] cells; each look takes O(N). A search is O(64) for each move of the longest way.
+    pub fn new(members: &'a [Member], area: &'a Area, fields: &'a mut Fields<F>, moves: Moves, step: u32) -> Self {
+        let members = members.get(..N).unwrap_or(members);
+        let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves, step };
+        let mut order: Vec<(u16, u32, u8), N> = Vec::new();
+        for (index, member) in members.iter().enumerate() {
+            let tie = Rng::keyed(0, PURPOSE, member.id.0, 0).next_u32();
+            let _ = order.push((member.waiting, tie, index as u8));
+        }
+        order.sort_unstable_by(|a, b| b.cmp(a));
+        for (_, _, index) in order {
+            if plan.next(index).is_none() {
+                plan.place(index);
+            }
+        }
+        plan
+    }
+
+    /// The cell that a member enters or stays in.
+    #[must_use]
+    pub fn next(&self, index: u8) -> Option<Cell> {
+        self.turns.get(usize::from(index))?.next
+    }
+
+    fn member(&self, index: u8) -> Member {
+        let none = Member { id: RobotId::NONE, cell: Cell::default(), goal: Cell::default(), waiting: 0, wish: None };
+        self.members.get(usize::from(index)).copied().unwrap_or(none)
+    }
+
+    fn turn(&mut self, index: u8) -> Option<&mut Turn> {
+        self.turns.get_mut(usize::from(index))
+    }
+
+    fn go(&mut self, index: u8, to: Cell) {
+        if let Some(turn) = self.turn(index) {
+            turn.next = Some(to);
+        }
+    }
+
+    fn occupant(&self, cell: Cell) -> Option<u8> {
+        self.members.iter().position(|member| member.cell == cell).map(|index| index as u8)
+    }
+
+    fn is_taken(&self, cell: Cell, but: u8) -> bool {
+        let others = self.turns.iter().enumerate().filter(|(index, _)| *index != usize::from(but));
+        others.into_iter().any(|(_, turn)| turn.next == Some(cell))
+    }
+
+    fn is_nearer(&mut self, member: u8, a: Cell, b: Cell) -> bool {
+        let goal = self.member(member).goal;
+        self.fields.to(goal, self.area, self.moves).is_nearer(a, b)
+    }
+
+    /// Chooses the move of a member and of all that it has to ask.
+    fn place(&mut self, first: u8) {
+        let mut top = first;
+        self.begin(top, None);
+        // Each round ends a choice or tries one of at most 9 cells.
+        for _ in 0..N.saturating_mul(20) {
+            let Some(turn) = self.turns.get(usize::from(top)).copied() else { return };
+            let own = self.member(top).cell;
+            let next = turn.order.get(..usize::from(turn.count)).and_then(|order| order.get(usize::from(turn.tried)));
+            let Some(dir) = next else {
+                // Nothing is free: it stays, and who asked tries another cell.
+                self.go(top, own);
+                let Some(above) = turn.asked_by else { return };
+                if let Some(above) = self.turn(above) {
+                    above.tried = above.tried.saturating_add(1);
+                }
+                top = above;
+                continue;
+            };
+            let to = own + dir.offset();
+            let other = self.occupant(to).filter(|&other| other != top);
+            let is_exchange = other.is_some_and(|other| self.next(other) == Some(own));
+            if self.is_taken(to, top) || is_exchange {
+                if let Some(turn) = self.turn(top) {
+                    turn.tried = turn.tried.saturating_add(1);
+                }
+                continue;
+            }
+            self.go(top, to);
+            if let Some(other) = other.filter(|&other| self.next(other).is_none()) {
+                self.begin(other, Some(top));
+                top = other;
+                continue;
+            }
+            // It has its cell, and so have all that wait for it.
+            loop {
+                let Some(turn) = self.turns.get(usize::from(top)).copied() else { return };
+                if turn.tried == 0
+                    && let Some(swaps) = turn.swaps
+                {
+                    let own = self.member(top).cell;
+                    if self.next(swaps).is_none() && !self.is_taken(own, top) {
+                        self.go(swaps, own);
+                    }
+                }
+                match turn.asked_by {
+                    Some(above) => top = above,
+                    None => return,
+                }
+            }
+        }
+    }
+
+    /// Orders the moves of a member.
+    fn begin(&mut self, index: u8, asked_by: Option<u8>) {
+        let member = self.member(index);
+        let Member { id, cell, .. } = member;
+        let mut order: Vec<(u8, u32, Dir), 9> = Vec::new();
+        for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]) {
+            if let Some(rank) = self.rank(&member, dir) {
+                let to = cell + dir.offset();
+                let place = u64::from(to.x as u16) << 16 | u64::from(to.y as u16);
+                let tie = Rng::keyed(place, PURPOSE, id.0, self.step).next_u32();
+                let _ = order.push((rank, tie, dir));
+            }
+        }
+        order.sort_unstable_by_key(|&(rank, tie, dir)| (rank, tie, dir.index()));
+        let best = order.first().map_or(Dir::Stay, |&(_, _, dir)| dir);
+        let swaps = if best == Dir::Stay { None } else { self.swap(index, cell + best.offset()) };
+        if swaps.is_some() {
+            order.reverse();
+        }
+        if let Some(turn) = self.turn(index) {
+            (turn.tried, turn.swaps, turn.asked_by) = (0, swaps, asked_by);
+            turn.count = order.len() as u8;
+            turn.order.iter_mut().zip(&order).for_each(|(to, &(_, _, dir))| *to = dir);
+        }
+    }
+
+    /// The rank of a move for a member, by its own wish if it told one.
+    fn rank(&mut self, member: &Member, dir: Dir) -> Option<u8> {
+        if let Some(wish) = member.wish {
+            return wish.rank(dir);
+        }
+        let is_open = dir == Dir::Stay || self.area.around(member.cell, &[dir]).next().is_some();
+        let distances = self.fields.to(member.goal, self.area, self.moves);
+        is_open.then(|| match distances.along(member.cell, dir) {
+            Some(Ordering::Less) => 0,
+            Some(Ordering::Equal) => 1,
+            Some(Ordering::Greater) | None => if dir == Dir::Stay { 1 } else { 2 },
+        })
+    }
+
+    /// The robot that a member must exchange places with, because a corridor is too narrow for
+    /// both. LaCAM2's rule (K. Okumura 2023, "Improving LaCAM for scalable eventually optimal
+    /// multi-agent pathfinding", IJCAI).
+    fn swap(&mut self, index: u8, to: Cell) -> Option<u8> {
+        let member = self.member(index);
+        let own = member.cell;
+        if let Some(other) = self.occupant(to)
+            && self.next(other).is_none()
+            && self.must_swap(index, other, own, to)
+            && self.can_swap(own, to)
+        {
+            return Some(other);
+        }
+        for &dir in self.moves.dirs() {
+            let beside = own + dir.offset();
+            if beside == to || self.rank(&member, dir).is_none() {
+                continue;
+            }
+            if let Some(other) = self.occupant(beside)
+                && other != index
+                && self.must_swap(other, index, own, to)
+                && self.can_swap(own, to)
+            {
+                return Some(other);
+            }
+        }
+        None
+    }
+
+    /// Whether robot `behind`, pushed on from `from` over `to`, only comes past `ahead` by
+    /// exchanging places.
+    fn must_swap(&mut self, pusher: u8, pulled: u8, mut from: Cell, mut to: Cell) -> bool {
+        for _ in 0..CORRIDOR {
+            if !self.is_nearer(pusher, to, from) {
+                break;
+            }
+            match self.ways_on(to, from) {
+                (0, _) => break,
+                (1, on) => (from, to) = (to, on),
+                _ => return false,
+            }
+        }
+        let is_there = self.member(pusher).goal == from;
+        self.is_nearer(pulled, from, to) && (is_there || self.is_nearer(pusher, to, from))
+    }
+
+    /// Whether the way over `to` comes to a fork where one robot can let the other pass.
+    fn can_swap(&self, mut to: Cell, mut from: Cell) -> bool {
+        let start = from;
+        for _ in 0..CORRIDOR {
+            if to == start {
+                return false;
+            }
+            match self.ways_on(to, from) {
+                (0, _) => return false,
+                (1, on) => (from, to) = (to, on),
+                _ => return true,
+            }
+        }
+        false
+    }
+
+    /// The number of ways on from `at`, not back to `from` and not into a dead end whose robot has
+    /// arrived; and one of them.
+    fn ways_on(&self, at: Cell, from: Cell) -> (usize, Cell) {
+        let dirs = self.moves.dirs();
+        let is_full = |cell: Cell| {
+            let resident = self.members.iter().find(|member| member.cell == cell);
+            resident.is_some_and(|member| member.goal == cell) && self.area.around(cell, dirs).count() == 1
+        };
+        let on = self.area.around(at, dirs).filter(|&cell| cell != from && !is_full(cell));
+        on.fold((0, at), |(count, _), cell| (count + 1, cell))
+    }
+}
