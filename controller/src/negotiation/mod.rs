@@ -3,8 +3,10 @@
 
 mod area;
 mod distance;
+mod negotiator;
 mod plan;
 
 pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::Distances;
+pub use negotiator::{Negotiator, RANGE, Said, Sensed};
 pub use plan::{Fields, Member, Moves, Plan, Wish};
