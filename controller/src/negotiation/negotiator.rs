@@ -26,6 +26,8 @@ pub struct Said {
     pub goal: Cell,
     /// Steps since it last stood on its goal, plus 1.
     pub waiting: u16,
+    /// Its steps so far, modulo 256.
+    pub step: u8,
     /// Which cells around it it wants to enter.
     pub wish: Wish,
 }
@@ -58,7 +60,6 @@ struct Known {
 pub struct Negotiator<const N: usize, const F: usize> {
     own: Said,
     moves: Moves,
-    step: u32,
     area: Area,
     known: Vec<Known, N>,
     fields: Fields<F>,
@@ -68,8 +69,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// A robot at its goal, which knows nothing.
     #[must_use]
     pub const fn new(id: RobotId, cell: Cell, moves: Moves) -> Self {
-        let own = Said { id, cell, goal: cell, waiting: 1, wish: Wish(0) };
-        Self { own, moves, step: 0, area: Area::new(cell), known: Vec::new(), fields: Fields::new() }
+        let own = Said { id, cell, goal: cell, waiting: 1, step: 0, wish: Wish(0) };
+        Self { own, moves, area: Area::new(cell), known: Vec::new(), fields: Fields::new() }
     }
 
     /// Gives it a goal. It waits behind others that have waited longer.
@@ -78,17 +79,18 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.own.waiting = 0;
     }
 
-    /// Begins a step, the same number for all robots, in `cell`. Returns what to say.
-    pub fn see(&mut self, step: u32, cell: Cell, sight: &Sight) -> Said {
-        self.step = step;
+    /// Begins a step in `cell`. Returns what to say.
+    pub fn see(&mut self, cell: Cell, sight: &Sight) -> Said {
         self.area.follow(cell);
         self.area.learn(cell, sight);
         let waiting = if cell == self.own.goal { 1 } else { self.own.waiting.saturating_add(1) };
         let distances = self.fields.to(self.own.goal, &self.area, self.moves);
         let wish = Wish::new(cell, &self.area, distances, self.moves);
-        self.own = Said { cell, waiting, wish, ..self.own };
+        let step = self.own.step.wrapping_add(1);
+        self.own = Said { cell, waiting, step, wish, ..self.own };
         for other in &mut self.known {
             other.age = other.age.saturating_add(1);
+            other.said.step = other.said.step.wrapping_add(1);
             let at_goal = other.said.cell == other.said.goal;
             other.said.waiting = if at_goal { 1 } else { other.said.waiting.saturating_add(1) };
         }
@@ -131,9 +133,9 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             }
         }
         for cell in strangers {
-            let _ = members.push(Member { id: RobotId::NONE, cell, goal: cell, waiting: 0, wish: None });
+            let _ = members.push(Member { id: RobotId::NONE, cell, goal: cell, waiting: 0, step: 0, wish: None });
         }
-        let plan: Plan<'_, N, F> = Plan::new(&members, &self.area, &mut self.fields, self.moves, self.step);
+        let plan: Plan<'_, N, F> = Plan::new(&members, &self.area, &mut self.fields, self.moves);
         let next = plan.next(0).unwrap_or(own.cell);
         // Until it is heard again, a robot is where this plan puts it.
         for other in &mut self.known {
@@ -186,6 +188,6 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
 }
 
 const fn member(said: &Said, is_fresh: bool) -> Member {
-    let Said { id, cell, goal, waiting, wish } = *said;
-    Member { id, cell, goal, waiting, wish: if is_fresh { Some(wish) } else { None } }
+    let Said { id, cell, goal, waiting, step, wish } = *said;
+    Member { id, cell, goal, waiting, step, wish: if is_fresh { Some(wish) } else { None } }
 }

@@ -78,6 +78,8 @@ pub struct Member {
     pub goal: Cell,
     /// Steps since it last stood on its goal, plus 1; 0 for a robot that is only sensed.
     pub waiting: u16,
+    /// Its steps so far, modulo 256; breaks ties differently in each step.
+    pub step: u8,
     /// Its wish; `None` if it is not known.
     pub wish: Option<Wish>,
 }
@@ -155,18 +157,16 @@ pub struct Plan<'a, const N: usize, const F: usize> {
     area: &'a Area,
     fields: &'a mut Fields<F>,
     moves: Moves,
-    step: u32,
 }
 
 impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
-    /// Plans the moves of `members`, of which those beyond the first `N` are ignored, in this
-    /// `step`. All robots that know the same plan the same.
+    /// Plans the moves of `members`, of which those beyond the first `N` are ignored. All robots that know the same plan the same.
     ///
     /// Each robot chooses once, among at most 9 cells, and looks along at most 9 corridors of
     /// [`CORRIDOR`] cells; each look takes O(N). A search is O(64) for each move of the longest way.
-    pub fn new(members: &'a [Member], area: &'a Area, fields: &'a mut Fields<F>, moves: Moves, step: u32) -> Self {
+    pub fn new(members: &'a [Member], area: &'a Area, fields: &'a mut Fields<F>, moves: Moves) -> Self {
         let members = members.get(..N).unwrap_or(members);
-        let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves, step };
+        let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves };
         let mut order: Vec<(u16, u32, u8), N> = Vec::new();
         for (index, member) in members.iter().enumerate() {
             let tie = Rng::keyed(0, PURPOSE, member.id.0, 0).next_u32();
@@ -188,7 +188,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     }
 
     fn member(&self, index: u8) -> Member {
-        let none = Member { id: RobotId::NONE, cell: Cell::default(), goal: Cell::default(), waiting: 0, wish: None };
+        let none = Member { id: RobotId::NONE, cell: Cell::default(), goal: Cell::default(), waiting: 0, step: 0, wish: None };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
     }
 
@@ -278,7 +278,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             if let Some(rank) = self.rank(&member, dir) {
                 let to = cell + dir.offset();
                 let place = u64::from(to.x as u16) << 16 | u64::from(to.y as u16);
-                let tie = Rng::keyed(place, PURPOSE, id.0, self.step).next_u32();
+                let tie = Rng::keyed(place, PURPOSE, id.0, member.step.into()).next_u32();
                 let _ = order.push((rank, tie, dir));
             }
         }
