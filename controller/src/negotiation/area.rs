@@ -12,23 +12,33 @@ pub const SIGHT: i16 = 5;
 /// One bit for each cell of a square of 64 x 64 cells.
 pub(super) type Plane = [u64; SIDE];
 
-/// The closed cells within 5 cells of a robot: a row is 11 bits, the western cell the lowest, and
-/// the southern row the first.
+/// The closed cells within 5 cells of a robot: 121 bits, row by row from the south, each from the
+/// west; the lowest bit of the first byte is the south-western cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Sight(pub [u16; 11]);
+pub struct Sight(pub [u8; 16]);
+
+/// The cells of a [`Sight`] relative to its robot, in the order of the bits.
+fn cells() -> impl Iterator<Item = Cell> {
+    (-SIGHT..=SIGHT).flat_map(|y| (-SIGHT..=SIGHT).map(move |x| Cell::new(x, y)))
+}
 
 impl Sight {
     /// Sees each cell around `center` for which `is_closed` is true.
     #[must_use]
     pub fn new(center: Cell, is_closed: impl Fn(Cell) -> bool) -> Self {
         let mut sight = Self::default();
-        for (dy, row) in (-SIGHT..).zip(&mut sight.0) {
-            for dx in -SIGHT..=SIGHT {
-                let closed = is_closed(center + Cell::new(dx, dy));
-                *row |= u16::from(closed) << (dx + SIGHT);
+        for (index, cell) in cells().enumerate() {
+            if let Some(byte) = sight.0.get_mut(index >> 3) {
+                *byte |= u8::from(is_closed(center + cell)) << (index & 7);
             }
         }
         sight
+    }
+
+    /// The closed cells relative to its robot.
+    pub fn closed(&self) -> impl Iterator<Item = Cell> + '_ {
+        let is_closed = |index: usize| self.0.get(index >> 3).is_some_and(|byte| byte >> (index & 7) & 1 == 1);
+        cells().enumerate().filter(move |&(index, _)| is_closed(index)).map(|(_, cell)| cell)
     }
 }
 
@@ -86,10 +96,8 @@ impl Area {
 
     /// Adds what a robot at `center` sees. O(121).
     pub fn learn(&mut self, center: Cell, sight: &Sight) {
-        for (dy, row) in (-SIGHT..).zip(sight.0) {
-            for dx in (-SIGHT..=SIGHT).filter(|dx| row >> (dx + SIGHT) & 1 == 1) {
-                self.close(center + Cell::new(dx, dy));
-            }
+        for cell in sight.closed() {
+            self.close(center + cell);
         }
     }
 

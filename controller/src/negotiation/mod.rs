@@ -8,5 +8,5 @@ mod plan;
 
 pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::Distances;
-pub use negotiator::{Negotiator, RANGE, Said, Sensed};
-pub use plan::{Fields, Member, Moves, Plan, Wish};
+pub use negotiator::{Negotiator, RANGE, REPORTED, Report, Said, Sensed};
+pub use plan::{Fields, Manners, Member, Moves, Plan, Wish};

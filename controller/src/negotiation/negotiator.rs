@@ -1,35 +1,63 @@
 //! A robot that negotiates: what it knows of land and robots, from step to step.
 
 use super::area::{Area, Sight};
-use super::plan::{Fields, Member, Moves, Plan, Wish};
+use super::plan::{Fields, Manners, Member, Moves, Plan, Wish};
+use crate::fixint;
 use crate::grid::{Cell, Dir};
+use crate::rand::Rng;
 use crate::robot::RobotId;
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 /// Distance up to which robots plan together, cells.
 pub const RANGE: u32 = 8;
-/// Steps after which a robot that is not heard is forgotten.
+/// Robots in a [`Report`].
+pub const REPORTED: usize = 8;
+/// Steps after which a robot whose place is not known is forgotten.
 const FORGET: u8 = 6;
 /// Moves that a robot may be away from where the last plan put it.
 const MOST_MISSED: u32 = 2;
 /// Cells around a robot in which it senses others.
 const SENSED: u32 = 5;
+/// Most cells to a robot in a [`Report`], along each axis.
+const NEAR: i16 = 7;
+/// Steps of a robot to and fro, or without the move that it planned, that are a stalemate.
+const STALEMATE: u8 = 2;
+/// Steps in which a robot that lost its moves goes last or not.
+const COURTESY: u32 = 4;
+const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
 
-/// What a robot says of itself in each step, before it decides; 15 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a robot says of itself in each step, before it decides; 14 bytes on the air.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Said {
-    /// Who says it.
-    pub id: RobotId,
     /// Where it is.
+    #[serde(with = "fixint")]
     pub cell: Cell,
     /// Where it wants to go.
+    #[serde(with = "fixint")]
     pub goal: Cell,
     /// Steps since it last stood on its goal, plus 1.
+    #[serde(with = "fixint")]
     pub waiting: u16,
-    /// Its steps so far, modulo 256.
-    pub step: u8,
     /// Which cells around it it wants to enter.
     pub wish: Wish,
+    /// Its steps so far, modulo 256.
+    pub step: u8,
+    /// How it behaves in this step.
+    pub manners: Manners,
+}
+
+/// What a robot broadcasts after it has heard the others in a step; at most 37 bytes on the air.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Report {
+    /// Where it is.
+    #[serde(with = "fixint")]
+    pub cell: Cell,
+    /// What it sees.
+    pub sight: Sight,
+    /// The nearest robots that it heard in this step: the lowest byte of the number, and the
+    /// offsets to the east and to the north plus 8, in the low and in the high four bits.
+    pub heard: Vec<(u8, u8), REPORTED>,
 }
 
 /// The robots that a robot senses within 5 cells in this step.
@@ -47,21 +75,37 @@ pub enum Sensed<'a> {
 /// A robot nearby, as last heard, and where it should be since.
 #[derive(Clone, Copy, Debug)]
 struct Known {
+    id: RobotId,
     said: Said,
     /// Steps since it was heard.
     age: u8,
+    /// Steps since its place was heard or reported.
+    lost: u8,
 }
 
 /// A robot that plans with the robots near it: at most `N` with itself, and distances of `F` goals.
 ///
-/// In each step: [`see`](Self::see), send what that returns, [`hear`](Self::hear) the others,
-/// [`decide`](Self::decide).
+/// In each step: [`see`](Self::see), send what that returns, [`hear`](Self::hear) the others, send
+/// a [`report`](Self::report), [`hear_report`](Self::hear_report) the others, and
+/// [`decide`](Self::decide). Without reports, robots know only the land that they have seen.
 #[derive(Clone, Debug)]
 pub struct Negotiator<const N: usize, const F: usize> {
+    id: RobotId,
     own: Said,
+    sight: Sight,
     moves: Moves,
+    /// Where it was in the last step and in the one before.
+    past: [Cell; 2],
+    /// The move that it chose.
+    chosen: Dir,
+    /// Times in a row that it came back to where it was two steps before, and that it did not get
+    /// the cell that it chose.
+    swung: u8,
+    refused: u8,
     area: Area,
     known: Vec<Known, N>,
+    /// Reported robots that it does not know.
+    strangers: Vec<Cell, N>,
     fields: Fields<F>,
 }
 
@@ -69,8 +113,21 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// A robot at its goal, which knows nothing.
     #[must_use]
     pub const fn new(id: RobotId, cell: Cell, moves: Moves) -> Self {
-        let own = Said { id, cell, goal: cell, waiting: 1, step: 0, wish: Wish(0) };
-        Self { own, moves, area: Area::new(cell), known: Vec::new(), fields: Fields::new() }
+        let manners = Manners { is_last: false, keeps_on: false };
+        Self {
+            id,
+            own: Said { cell, goal: cell, waiting: 1, wish: Wish(0), step: 0, manners },
+            sight: Sight([0; 16]),
+            moves,
+            past: [cell; 2],
+            chosen: Dir::Stay,
+            swung: 0,
+            refused: 0,
+            area: Area::new(cell),
+            known: Vec::new(),
+            strangers: Vec::new(),
+            fields: Fields::new(),
+        }
     }
 
     /// Gives it a goal. It waits behind others that have waited longer.
@@ -79,79 +136,149 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.own.waiting = 0;
     }
 
+    /// Where it wants to go.
+    #[must_use]
+    pub const fn goal(&self) -> Cell {
+        self.own.goal
+    }
+
     /// Begins a step in `cell`. Returns what to say.
     pub fn see(&mut self, cell: Cell, sight: &Sight) -> Said {
         self.area.follow(cell);
         self.area.learn(cell, sight);
-        let waiting = if cell == self.own.goal { 1 } else { self.own.waiting.saturating_add(1) };
+        self.sight = *sight;
+        let waiting = waiting(cell == self.own.goal, self.own.waiting);
         let distances = self.fields.to(self.own.goal, &self.area, self.moves);
         let wish = Wish::new(cell, &self.area, distances, self.moves);
         let step = self.own.step.wrapping_add(1);
-        self.own = Said { cell, waiting, step, wish, ..self.own };
+        let manners = self.manners(cell, step);
+        self.own = Said { cell, goal: self.own.goal, waiting, wish, step, manners };
         for other in &mut self.known {
             other.age = other.age.saturating_add(1);
-            other.said.step = other.said.step.wrapping_add(1);
-            let at_goal = other.said.cell == other.said.goal;
-            other.said.waiting = if at_goal { 1 } else { other.said.waiting.saturating_add(1) };
+            other.lost = other.lost.saturating_add(1);
+            let said = &mut other.said;
+            said.step = said.step.wrapping_add(1);
+            said.waiting = self::waiting(said.cell == said.goal, said.waiting);
+            said.manners = Manners::default();
         }
+        self.strangers.clear();
         self.own
     }
 
-    /// Hears another robot in this step; `sight`: what it sees, if it tells that.
-    pub fn hear(&mut self, said: &Said, sight: Option<&Sight>) {
-        if said.id == self.own.id || said.cell.chebyshev(self.own.cell) > RANGE {
-            return;
-        }
-        if let Some(sight) = sight {
-            self.area.learn(said.cell, sight);
-        }
-        let known = Known { said: *said, age: 0 };
-        if let Some(other) = self.known.iter_mut().find(|other| other.said.id == said.id) {
-            *other = known;
-        } else {
-            let _ = self.known.push(known);
+    /// A robot that swings to and fro in a corridor pushes on in half of its steps. One that is
+    /// refused the cells that it chooses, because others know other robots, goes last in half of
+    /// its steps.
+    fn manners(&mut self, cell: Cell, step: u8) -> Manners {
+        let [last, before] = self.past;
+        let count = |counts: bool, times: u8| if counts { times.saturating_add(1) } else { 0 };
+        self.swung = count(cell == before && cell != last, self.swung);
+        let is_refused = cell == last && self.chosen != Dir::Stay;
+        self.refused = if is_refused { self.refused.saturating_add(1) } else { self.refused.saturating_sub(1) };
+        self.past = [cell, last];
+        let coin = |use_: u64, step: u32| Rng::keyed(use_, PURPOSE, self.id.0, step).next_u32() & 1 == 1;
+        let step = u32::from(step);
+        Manners {
+            keeps_on: self.swung >= STALEMATE && coin(0, step),
+            is_last: self.refused >= STALEMATE && coin(1, step.checked_div(COURTESY).unwrap_or(0)),
         }
     }
 
-    /// Chooses the move of this step.
+    /// Hears another robot in this step.
+    pub fn hear(&mut self, id: RobotId, said: &Said) {
+        if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
+            return;
+        }
+        let known = Known { id, said: *said, age: 0, lost: 0 };
+        match self.known.iter_mut().find(|other| other.id == id) {
+            Some(other) => *other = known,
+            None => drop(self.known.push(known)),
+        }
+    }
+
+    /// What to broadcast after the others were heard.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let mut near: Vec<(u32, RobotId, Cell), N> = Vec::new();
+        for other in self.known.iter().filter(|other| other.age == 0) {
+            let offset = other.said.cell - self.own.cell;
+            if offset.x.abs() <= NEAR && offset.y.abs() <= NEAR {
+                let _ = near.push((offset.chebyshev(Cell::default()), other.id, offset));
+            }
+        }
+        near.sort_unstable_by_key(|&(distance, id, _)| (distance, id.0));
+        let short = |&(_, id, offset): &(u32, RobotId, Cell)| {
+            (id.0 as u8, (offset.x + NEAR + 1) as u8 | ((offset.y + NEAR + 1) as u8) << 4)
+        };
+        let heard = near.iter().take(REPORTED).map(short).collect();
+        Report { cell: self.own.cell, sight: self.sight, heard }
+    }
+
+    /// Hears what another robot reports in this step. O(N) for each robot in it.
+    pub fn hear_report(&mut self, from: RobotId, report: &Report) {
+        self.area.learn(report.cell, &report.sight);
+        self.place(from.0 as u8, report.cell);
+        for &(number, offset) in &report.heard {
+            let offset = Cell::new((offset & 15).into(), (offset >> 4).into()) - Cell::new(NEAR + 1, NEAR + 1);
+            self.place(number, report.cell + offset);
+        }
+    }
+
+    /// Puts a reported robot into its cell, unless it was heard there.
+    fn place(&mut self, number: u8, cell: Cell) {
+        let is_there = |other: &Known| other.lost == 0 && other.said.cell == cell;
+        let is_far = cell.chebyshev(self.own.cell) > RANGE;
+        if cell == self.own.cell || is_far || self.known.iter().any(is_there) {
+            return;
+        }
+        let may_be = |other: &&mut Known| {
+            let most = 2 * u32::from(other.lost) + 1;
+            other.id.0 as u8 == number && other.lost > 0 && moves(other.said.cell, cell) <= most
+        };
+        match self.known.iter_mut().filter(may_be).min_by_key(|other| moves(other.said.cell, cell)) {
+            Some(other) => (other.said.cell, other.lost) = (cell, 0),
+            None if !self.strangers.contains(&cell) => drop(self.strangers.push(cell)),
+            None => {}
+        }
+    }
+
+    /// Chooses the move of this step. O(N^2), and the plan: see [`Plan::new`].
     pub fn decide(&mut self, sensed: Sensed<'_>) -> Dir {
         let own = self.own;
-        self.known.retain(|other| other.age <= FORGET || !matches!(sensed, Sensed::Nothing));
+        self.known.retain(|other| other.lost <= FORGET || !matches!(sensed, Sensed::Nothing));
         let strangers = match sensed {
-            Sensed::Nothing => Vec::new(),
+            Sensed::Nothing => self.strangers.clone(),
             Sensed::Cells(cells) => self.match_sensed(cells),
             Sensed::Robots(robots) => self.place_sensed(robots),
         };
         self.known.retain(|other| other.said.cell.chebyshev(own.cell) <= RANGE);
         let mut members: Vec<Member, N> = Vec::new();
-        let _ = members.push(member(&own, true));
+        let _ = members.push(member(self.id, &own, true));
         // The newest news of a cell counts.
-        self.known.sort_unstable_by_key(|other| (other.age, other.said.id.0));
-        for Known { said, age } in &self.known {
-            if members.iter().all(|other| other.cell != said.cell) {
-                let _ = members.push(member(said, *age == 0));
+        self.known.sort_unstable_by_key(|other| (other.lost, other.age, other.id.0));
+        let known = self.known.iter().map(|other| member(other.id, &other.said, other.age == 0));
+        for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
+            if members.iter().all(|other| other.cell != member.cell) {
+                let _ = members.push(member);
             }
-        }
-        for cell in strangers {
-            let _ = members.push(Member { id: RobotId::NONE, cell, goal: cell, waiting: 0, step: 0, wish: None });
         }
         let plan: Plan<'_, N, F> = Plan::new(&members, &self.area, &mut self.fields, self.moves);
         let next = plan.next(0).unwrap_or(own.cell);
         // Until it is heard again, a robot is where this plan puts it.
         for other in &mut self.known {
-            let index = members.iter().position(|member| member.id == other.said.id);
+            let index = members.iter().position(|member| member.id == other.id);
             if let Some(cell) = index.and_then(|index| plan.next(index as u8)) {
                 other.said.cell = cell;
             }
         }
-        Dir::between(own.cell, next).unwrap_or(Dir::Stay)
+        self.chosen = Dir::between(own.cell, next).unwrap_or(Dir::Stay);
+        self.chosen
     }
 
     /// Puts known robots where they are sensed. Returns the cells of those that are not known.
     fn place_sensed(&mut self, robots: &[(RobotId, Cell)]) -> Vec<Cell, N> {
         let mut unknown = Vec::new();
         for &(id, cell) in robots {
-            match self.known.iter_mut().find(|other| other.said.id == id) {
+            match self.known.iter_mut().find(|other| other.id == id) {
                 Some(other) => other.said.cell = cell,
                 None => drop(unknown.push(cell)),
             }
@@ -164,30 +291,42 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     fn match_sensed(&mut self, cells: &[Cell]) -> Vec<Cell, N> {
         let own = self.own.cell;
         let mut free: Vec<Cell, N> = cells.iter().copied().filter(|&cell| cell != own).take(N).collect();
-        self.known.sort_unstable_by_key(|other| (other.age, other.said.id.0));
+        self.known.sort_unstable_by_key(|other| (other.lost, other.age, other.id.0));
         let mut placed: Vec<RobotId, N> = Vec::new();
         for most in [0, MOST_MISSED] {
-            for Known { said, .. } in &mut self.known {
-                if said.cell.chebyshev(own) > SENSED || placed.contains(&said.id) {
+            for Known { id, said, .. } in &mut self.known {
+                if said.cell.chebyshev(own) > SENSED || placed.contains(id) {
                     continue;
                 }
-                let far = |cell: Cell| u32::from(cell.x.abs_diff(said.cell.x)) + u32::from(cell.y.abs_diff(said.cell.y));
-                let nearest = (0..free.len()).min_by_key(|&index| free.get(index).map_or(u32::MAX, |&cell| far(cell)));
-                if let Some((index, cell)) = nearest.and_then(|index| Some((index, *free.get(index)?)))
-                    && far(cell) <= most
-                {
-                    said.cell = cell;
-                    free.swap_remove(index);
-                    let _ = placed.push(said.id);
+                let far = |&index: &usize| free.get(index).map_or(u32::MAX, |&cell| moves(cell, said.cell));
+                let nearest = (0..free.len()).min_by_key(far).filter(|index| far(index) <= most);
+                if let Some(index) = nearest {
+                    said.cell = free.swap_remove(index);
+                    let _ = placed.push(*id);
                 }
             }
         }
-        self.known.retain(|other| other.said.cell.chebyshev(own) > SENSED || placed.contains(&other.said.id));
+        self.known.retain(|other| other.said.cell.chebyshev(own) > SENSED || placed.contains(&other.id));
         free
     }
 }
 
-const fn member(said: &Said, is_fresh: bool) -> Member {
-    let Said { id, cell, goal, waiting, step, wish } = *said;
-    Member { id, cell, goal, waiting, step, wish: if is_fresh { Some(wish) } else { None } }
+/// Moves between two cells without diagonals.
+fn moves(a: Cell, b: Cell) -> u32 {
+    u32::from(a.x.abs_diff(b.x)) + u32::from(a.y.abs_diff(b.y))
+}
+
+const fn waiting(is_at_goal: bool, before: u16) -> u16 {
+    if is_at_goal { 1 } else { before.saturating_add(1) }
+}
+
+fn member(id: RobotId, said: &Said, is_heard: bool) -> Member {
+    let Said { cell, goal, waiting, wish, step, manners } = *said;
+    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish) }
+}
+
+/// A robot of which only the cell is known.
+fn stranger(cell: Cell) -> Member {
+    let (id, manners) = (RobotId::NONE, Manners::default());
+    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None }
 }

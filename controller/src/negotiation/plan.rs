@@ -67,6 +67,15 @@ impl Wish {
     }
 }
 
+/// What a robot does to end a stalemate, in one step. The default is what it does otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manners {
+    /// It chooses after all others.
+    pub is_last: bool,
+    /// It does not begin to exchange its place with another robot.
+    pub keeps_on: bool,
+}
+
 /// A robot in a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
@@ -80,6 +89,8 @@ pub struct Member {
     pub waiting: u16,
     /// Its steps so far, modulo 256; breaks ties differently in each step.
     pub step: u8,
+    /// How it behaves in this step.
+    pub manners: Manners,
     /// Its wish; `None` if it is not known.
     pub wish: Option<Wish>,
 }
@@ -170,7 +181,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let mut order: Vec<(u16, u32, u8), N> = Vec::new();
         for (index, member) in members.iter().enumerate() {
             let tie = Rng::keyed(0, PURPOSE, member.id.0, 0).next_u32();
-            let _ = order.push((member.waiting, tie, index as u8));
+            let rank = if member.manners.is_last { 0 } else { member.waiting };
+            let _ = order.push((rank, tie, index as u8));
         }
         order.sort_unstable_by(|a, b| b.cmp(a));
         for (_, _, index) in order {
@@ -188,7 +200,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     }
 
     fn member(&self, index: u8) -> Member {
-        let none = Member { id: RobotId::NONE, cell: Cell::default(), goal: Cell::default(), waiting: 0, step: 0, wish: None };
+        let none = Member { id: RobotId::NONE, cell: Cell::default(), goal: Cell::default(), waiting: 0, step: 0, manners: Manners::default(), wish: None };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
     }
 
@@ -284,7 +296,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
         order.sort_unstable_by_key(|&(rank, tie, dir)| (rank, tie, dir.index()));
         let best = order.first().map_or(Dir::Stay, |&(_, _, dir)| dir);
-        let swaps = if best == Dir::Stay { None } else { self.swap(index, cell + best.offset()) };
+        let swaps = if best == Dir::Stay || member.manners.keeps_on { None } else { self.swap(index, cell + best.offset()) };
         if swaps.is_some() {
             order.reverse();
         }
@@ -371,14 +383,11 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         false
     }
 
-    /// The number of ways on from `at`, not back to `from` and not into a dead end whose robot has
-    /// arrived; and one of them.
+    /// The number of ways on from `at`, not back to `from` and not into an occupied dead end; and
+    /// one of them.
     fn ways_on(&self, at: Cell, from: Cell) -> (usize, Cell) {
         let dirs = self.moves.dirs();
-        let is_full = |cell: Cell| {
-            let resident = self.members.iter().find(|member| member.cell == cell);
-            resident.is_some_and(|member| member.goal == cell) && self.area.around(cell, dirs).count() == 1
-        };
+        let is_full = |cell: Cell| self.occupant(cell).is_some() && self.area.around(cell, dirs).count() == 1;
         let on = self.area.around(at, dirs).filter(|&cell| cell != from && !is_full(cell));
         on.fold((0, at), |(count, _), cell| (count + 1, cell))
     }
