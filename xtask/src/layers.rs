@@ -13,7 +13,7 @@ const LAYERS: [&[&str]; 6] = [
     ],
     &["body", "neighbor", "parameters", "template", "wire"],
     &["flock", "law"],
-    &["route", "formation", "orca", "lattice", "goal_flock", "boids", "push_out"],
+    &["route", "formation", "orca", "lattice", "goal_flock", "boids", "push_out", "negotiation"],
     &["safety", "laws"],
     &["supervisor", "agent"],
 ];

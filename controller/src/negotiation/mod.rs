@@ -10,3 +10,6 @@ pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::Distances;
 pub use negotiator::{Negotiator, RANGE, REPORTED, Report, Said, Sensed};
 pub use plan::{Fields, Manners, Member, Moves, Plan, Wish};
+
+#[cfg(test)]
+mod tests;

@@ -27,7 +27,7 @@ const STALEMATE: u8 = 2;
 const COURTESY: u32 = 4;
 const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
 
-/// What a robot says of itself in each step, before it decides; 14 bytes on the air.
+/// What a robot says of itself in each step, before it decides; 15 bytes on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Said {
     /// Where it is.

@@ -2,6 +2,7 @@
 
 use super::area::Area;
 use super::distance::Distances;
+use crate::fixint;
 use crate::grid::{Cell, Dir};
 use crate::rand::Rng;
 use crate::robot::RobotId;
@@ -33,7 +34,7 @@ impl Moves {
 /// What a robot thinks of the cells around it: two bits for each move. 0: nearer to its goal, 1: as
 /// far as its own cell, 2: farther, 3: closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Wish(pub u16);
+pub struct Wish(#[serde(with = "fixint")] pub u16);
 
 impl Wish {
     /// The wish of a robot in `cell`, from its distances.
@@ -218,9 +219,15 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         self.members.iter().position(|member| member.cell == cell).map(|index| index as u8)
     }
 
-    fn is_taken(&self, cell: Cell, but: u8) -> bool {
-        let others = self.turns.iter().enumerate().filter(|(index, _)| *index != usize::from(but));
-        others.into_iter().any(|(_, turn)| turn.next == Some(cell))
+    /// Whether another member goes to this cell, or crosses the way of `member` to it.
+    fn is_taken(&self, to: Cell, member: u8) -> bool {
+        let from = self.member(member).cell;
+        let dir = Dir::between(from, to).unwrap_or_default();
+        let mut others = self.turns.iter().zip(self.members).enumerate().filter(|(index, _)| *index != usize::from(member));
+        others.any(|(_, (turn, other))| {
+            let crosses = |end: Cell| Dir::between(other.cell, end).is_some_and(|way| dir.crosses(from, way, end));
+            turn.next.is_some_and(|end| end == to || (dir.is_diagonal() && crosses(end)))
+        })
     }
 
     fn is_nearer(&mut self, member: u8, a: Cell, b: Cell) -> bool {
@@ -269,7 +276,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
                     && let Some(swaps) = turn.swaps
                 {
                     let own = self.member(top).cell;
-                    if self.next(swaps).is_none() && !self.is_taken(own, top) {
+                    if self.next(swaps).is_none() && !self.is_taken(own, swaps) {
                         self.go(swaps, own);
                     }
                 }
@@ -330,7 +337,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         if let Some(other) = self.occupant(to)
             && self.next(other).is_none()
             && self.must_swap(index, other, own, to)
-            && self.can_swap(own, to)
+            && self.can_swap([index, other], own, to)
         {
             return Some(other);
         }
@@ -342,7 +349,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             if let Some(other) = self.occupant(beside)
                 && other != index
                 && self.must_swap(other, index, own, to)
-                && self.can_swap(own, to)
+                && self.can_swap([index, other], own, to)
             {
                 return Some(other);
             }
@@ -357,7 +364,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             if !self.is_nearer(pusher, to, from) {
                 break;
             }
-            match self.ways_on(to, from) {
+            match self.ways_on([pusher, pulled], to, from) {
                 (0, _) => break,
                 (1, on) => (from, to) = (to, on),
                 _ => return false,
@@ -368,13 +375,13 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     }
 
     /// Whether the way over `to` comes to a fork where one robot can let the other pass.
-    fn can_swap(&self, mut to: Cell, mut from: Cell) -> bool {
+    fn can_swap(&self, both: [u8; 2], mut to: Cell, mut from: Cell) -> bool {
         let start = from;
         for _ in 0..CORRIDOR {
             if to == start {
                 return false;
             }
-            match self.ways_on(to, from) {
+            match self.ways_on(both, to, from) {
                 (0, _) => return false,
                 (1, on) => (from, to) = (to, on),
                 _ => return true,
@@ -383,11 +390,13 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         false
     }
 
-    /// The number of ways on from `at`, not back to `from` and not into an occupied dead end; and
-    /// one of them.
-    fn ways_on(&self, at: Cell, from: Cell) -> (usize, Cell) {
+    /// The number of ways on from `at`, not back to `from` and not into a dead end with a robot that
+    /// is none of `both`; and one of them.
+    fn ways_on(&self, both: [u8; 2], at: Cell, from: Cell) -> (usize, Cell) {
         let dirs = self.moves.dirs();
-        let is_full = |cell: Cell| self.occupant(cell).is_some() && self.area.around(cell, dirs).count() == 1;
+        let is_full = |cell: Cell| {
+            self.occupant(cell).is_some_and(|other| !both.contains(&other)) && self.area.around(cell, dirs).count() == 1
+        };
         let on = self.area.around(at, dirs).filter(|&cell| cell != from && !is_full(cell));
         on.fold((0, at), |(count, _), cell| (count + 1, cell))
     }

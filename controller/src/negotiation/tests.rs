@@ -1,0 +1,253 @@
+use super::*;
+use crate::grid::{Cell, Dir};
+use crate::rand::Rng;
+use crate::robot::RobotId;
+use std::collections::{BTreeSet, VecDeque};
+use std::format;
+use std::vec::Vec;
+
+/// A world in which all robots move at once: robots may follow each other; who meets another one
+/// stays where it is, and so does who would come into its cell.
+struct World {
+    map: Vec<&'static [u8]>,
+    robots: Vec<Negotiator<16, 4>>,
+    cells: Vec<Cell>,
+    refused: usize,
+}
+
+impl World {
+    /// `.` is open.
+    fn new(map: &'static str, ends: &[(Cell, Cell)], moves: Moves) -> Self {
+        let robot = |(&(start, goal), number): (&(Cell, Cell), u32)| {
+            let mut robot = Negotiator::new(RobotId(number), start, moves);
+            robot.set_goal(goal);
+            robot
+        };
+        let cells = ends.iter().map(|&(start, _)| start).collect();
+        let robots = ends.iter().zip(1..).map(robot).collect();
+        Self { map: map.split_whitespace().map(str::as_bytes).collect(), robots, cells, refused: 0 }
+    }
+
+    fn is_closed(&self, cell: Cell) -> bool {
+        let row = usize::try_from(cell.y).ok().and_then(|y| self.map.get(y));
+        let column = usize::try_from(cell.x).ok();
+        row.zip(column).and_then(|(row, x)| row.get(x)) != Some(&b'.')
+    }
+
+    /// `is_lost(from, to, is_report)`
+    fn step(&mut self, mut is_lost: impl FnMut(usize, usize, bool) -> bool) {
+        let sights: Vec<Sight> = self.cells.iter().map(|&cell| Sight::new(cell, |cell| self.is_closed(cell))).collect();
+        let robots = self.robots.iter_mut().zip(&self.cells).zip(&sights);
+        let said: Vec<Said> = robots.map(|((robot, &cell), sight)| robot.see(cell, sight)).collect();
+        let id = |index: usize| RobotId(index as u32 + 1);
+        let count = self.robots.len();
+        let pairs = || (0..count).flat_map(|to| (0..count).map(move |from| (from, to))).filter(|(from, to)| from != to);
+        for (from, to) in pairs() {
+            if !is_lost(from, to, false) {
+                self.robots[to].hear(id(from), &said[from]);
+            }
+        }
+        let reports: Vec<Report> = self.robots.iter().map(Negotiator::report).collect();
+        for (from, to) in pairs() {
+            if !is_lost(from, to, true) {
+                self.robots[to].hear_report(id(from), &reports[from]);
+            }
+        }
+        let before = self.cells.clone();
+        let dirs: Vec<Dir> = self.robots.iter_mut().map(|robot| robot.decide(Sensed::Nothing)).collect();
+        let mut next: Vec<Cell> = before.iter().zip(&dirs).map(|(&cell, dir)| cell + dir.offset()).collect();
+        // Until nobody has to stay any more.
+        while let Some(stays) = (0..count).find(|&index| {
+            let meets = |other: usize| {
+                next[other] == next[index] || (next[other] == before[index] && next[index] == before[other])
+            };
+            next[index] != before[index]
+                && (self.is_closed(next[index]) || (0..count).any(|other| other != index && meets(other)))
+        }) {
+            next[stays] = before[stays];
+            self.refused += 1;
+        }
+        self.cells = next;
+    }
+
+    fn has_arrived(&self) -> bool {
+        self.robots.iter().zip(&self.cells).all(|(robot, &cell)| robot.goal() == cell)
+    }
+
+    /// Steps until all have arrived.
+    fn run(&mut self, most: u32, mut is_lost: impl FnMut(usize, usize, bool) -> bool) -> Option<u32> {
+        (1..=most).find(|_| {
+            self.step(&mut is_lost);
+            self.has_arrived()
+        })
+    }
+}
+
+fn random_cell(rng: &mut Rng, side: u32) -> Cell {
+    Cell::new(rng.below(side) as i16, rng.below(side) as i16)
+}
+
+#[test]
+fn an_area_keeps_what_is_near_and_forgets_what_is_far() {
+    let mut area = Area::new(Cell::new(0, 0));
+    area.close(Cell::new(3, 4));
+    area.close(Cell::new(-31, 0));
+    assert!(!area.is_open(Cell::new(3, 4)) && !area.is_open(Cell::new(-31, 0)));
+    area.follow(Cell::new(1, -2));
+    assert!(!area.is_open(Cell::new(3, 4)), "still inside");
+    area.follow(Cell::new(0, 0));
+    assert!(area.is_open(Cell::new(-31, 0)), "it was outside for a while");
+    area.follow(Cell::new(1000, 0));
+    assert!(area.is_open(Cell::new(1003, 4)) && !area.is_open(Cell::new(3, 4)), "one is unknown, one outside");
+}
+
+#[test]
+fn distances_are_those_of_a_search_by_cells() {
+    for (seed, moves) in [(1, Moves::Four), (2, Moves::Eight), (3, Moves::Four), (4, Moves::Eight)] {
+        let mut rng = Rng::new(seed);
+        let center = Cell::new(500, -300);
+        let mut area = Area::new(center);
+        for _ in 0..900 {
+            area.close(center + random_cell(&mut rng, 63) - Cell::new(31, 31));
+        }
+        let goal = center + Cell::new(5, 7);
+        let mut distances = Distances::EMPTY;
+        distances.search(goal, &area, moves == Moves::Eight);
+        let mut far = std::collections::BTreeMap::from([((goal.x, goal.y), 0u32)]);
+        let mut queue = VecDeque::from([goal]);
+        while let Some(cell) = queue.pop_front() {
+            let distance = far[&(cell.x, cell.y)] + 1;
+            for next in area.around(cell, moves.dirs()) {
+                far.entry((next.x, next.y)).or_insert_with(|| {
+                    queue.push_back(next);
+                    distance
+                });
+            }
+        }
+        assert!(far.len() > 1000);
+        for &(x, y) in far.keys() {
+            let cell = Cell::new(x, y);
+            for next in area.around(cell, moves.dirs()) {
+                let expected = far.get(&(next.x, next.y)).map(|there| there.cmp(&far[&(x, y)]));
+                assert_eq!(distances.compare(next, cell), expected, "{next:?} and {cell:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn plans_never_collide() {
+    let mut rng = Rng::new(7);
+    let mut moved = 0;
+    for round in 0..400 {
+        let moves = if round % 2 == 0 { Moves::Four } else { Moves::Eight };
+        let mut area = Area::new(Cell::new(4, 4));
+        let frame = (-1..=8).flat_map(|at| [(-1, at), (8, at), (at, -1), (at, 8)]);
+        frame.for_each(|(x, y)| area.close(Cell::new(x, y)));
+        for _ in 0..rng.below(30) {
+            area.close(random_cell(&mut rng, 8));
+        }
+        let mut members: Vec<Member> = Vec::new();
+        for number in 1..=12 {
+            let (cell, goal) = (random_cell(&mut rng, 8), random_cell(&mut rng, 8));
+            if area.is_open(cell) && members.iter().all(|other| other.cell != cell) {
+                let waiting = rng.below(5) as u16;
+                let manners = Manners { is_last: rng.below(4) == 0, keeps_on: rng.below(4) == 0 };
+                members.push(Member { id: RobotId(number), cell, goal, waiting, step: 0, manners, wish: None });
+            }
+        }
+        let mut fields: Fields<4> = Fields::new();
+        let plan: Plan<'_, 16, 4> = Plan::new(&members, &area, &mut fields, moves);
+        let next: Vec<Cell> = (0..members.len()).map(|index| plan.next(index as u8).unwrap()).collect();
+        let cells: BTreeSet<(i16, i16)> = next.iter().map(|cell| (cell.x, cell.y)).collect();
+        assert_eq!(cells.len(), members.len(), "two in one cell, round {round}");
+        for (index, (member, &to)) in members.iter().zip(&next).enumerate() {
+            assert!(to == member.cell || area.around(member.cell, moves.dirs()).any(|cell| cell == to));
+            moved += usize::from(to != member.cell);
+            for (other, &other_to) in members.iter().zip(&next).skip(index + 1) {
+                assert!((to, other_to) != (other.cell, member.cell), "an exchange, round {round}");
+                let dirs = [(member.cell, to), (other.cell, other_to)].map(|(from, to)| Dir::between(from, to).unwrap());
+                let middle = |from: Cell, to: Cell| (from.x + to.x, from.y + to.y);
+                let crosses = dirs.iter().all(|dir| dir.is_diagonal())
+                    && middle(member.cell, to) == middle(other.cell, other_to);
+                assert!(!crosses, "diagonals cross, round {round}");
+            }
+        }
+    }
+    assert!(moved > 1000);
+}
+
+const CORRIDOR: &str = "
+    ...####################...
+    ..........................
+    ...####################...";
+
+/// Two robots in the rooms at the ends of a corridor, which is walled up beyond its length.
+#[test]
+fn two_robots_pass_each_other_in_corridors_at_any_loss() {
+    for length in [1, 2, 5, 10, 20] {
+        for percent in [0, 10, 30, 60] {
+            for seed in 0..3 {
+                let row = |side: char| -> std::string::String {
+                    let middle: std::string::String = (0..length).map(|_| side).collect();
+                    format!("...{middle}...\n")
+                };
+                let map = std::boxed::Box::leak(format!("{}{}{}", row('#'), row('.'), row('#')).into_boxed_str());
+                let (west, east) = (Cell::new(1, 1), Cell::new(length + 4, 1));
+                let mut world = World::new(map, &[(west, east), (east, west)], Moves::Four);
+                let mut rng = Rng::new(seed);
+                let steps = world.run(400, |_, _, _| rng.below(100) < percent);
+                assert!(steps.is_some(), "{length} cells, {percent} % lost, seed {seed}: {:?}", world.cells);
+            }
+        }
+    }
+    let (west, east) = (Cell::new(1, 1), Cell::new(24, 1));
+    let mut world = World::new(CORRIDOR, &[(west, east), (east, west)], Moves::Four);
+    let steps = world.run(100, |_, _, _| false);
+    assert!(steps.is_some_and(|steps| steps < 80), "{steps:?}");
+    assert_eq!(world.refused, 0, "they know the same");
+}
+
+fn bytes(message: &impl serde::Serialize) -> Vec<u8> {
+    let mut buffer = [0; 64];
+    postcard::to_slice(message, &mut buffer).unwrap().to_vec()
+}
+
+#[test]
+fn messages_fit_their_frames() {
+    let cell = Cell::new(i16::MIN, i16::MAX);
+    let manners = Manners { is_last: true, keeps_on: true };
+    let said = Said { cell, goal: cell, waiting: u16::MAX, wish: Wish(u16::MAX), step: 255, manners };
+    let mut report = Report { cell, sight: Sight([255; 16]), ..Report::default() };
+    while report.heard.push((255, 255)).is_ok() {}
+    let bytes = [bytes(&said), bytes(&report)];
+    assert!(bytes[0].len() <= crate::wire::MAX_PAYLOAD, "{}", bytes[0].len());
+    assert!(bytes[1].len() < crate::wire::MAX_CONTENT, "{}, and one byte for the kind", bytes[1].len());
+    assert_eq!(postcard::from_bytes(&bytes[0]), Ok(said));
+    assert_eq!(postcard::from_bytes(&bytes[1]), Ok(report));
+}
+
+/// Every start and every pair of goals of two robots on small maps: all arrive, without a collision
+/// and without one refused move.
+#[test]
+fn two_robots_arrive_from_every_state_of_small_maps() {
+    let maps = ["....\n....\n....", ".#..\n....\n..#.", "####\n....\n##.#", ".###\n....\n.#.#"];
+    for map in maps {
+        let probe = World::new(map, &[], Moves::Four);
+        let open: Vec<Cell> = (0..3).flat_map(|y| (0..4).map(move |x| Cell::new(x, y))).collect();
+        let open: Vec<Cell> = open.into_iter().filter(|&cell| !probe.is_closed(cell)).collect();
+        let pairs = || open.iter().flat_map(|&a| open.iter().map(move |&b| (a, b))).filter(|(a, b)| a != b);
+        let mut states = 0;
+        for starts in pairs() {
+            for goals in pairs().skip(states % 7).step_by(7) {
+                let ends = [(starts.0, goals.0), (starts.1, goals.1)];
+                let mut world = World::new(map, &ends, Moves::Four);
+                let steps = world.run(60, |_, _, _| false);
+                assert!(steps.is_some(), "{map}: {ends:?} ends at {:?}", world.cells);
+                assert_eq!(world.refused, 0, "{map}: {ends:?}");
+                states += 1;
+            }
+        }
+        assert!(states > 20);
+    }
+}
