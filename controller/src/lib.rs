@@ -53,6 +53,7 @@ mod law;
 mod laws;
 mod list;
 pub mod names;
+#[cfg(feature = "negotiation")]
 pub mod negotiation;
 pub mod neighbor;
 pub mod obstacle;

@@ -115,6 +115,47 @@ def test_invalid_arguments_of_routes_are_named(changed, message):
         staya.route(**{**sound, **changed})
 
 
+OPEN = np.zeros((2, 11, 11), dtype=bool)
+# A corridor of one cell from (0, 0) to (9, 0), with a pocket at (4, 1).
+CORRIDOR = {(x, 0) for x in range(10)} | {(4, 1)}
+
+
+def sights(cells):
+    closed = [[[(x + dx, y + dy) not in CORRIDOR for dx in range(-5, 6)] for dy in range(-5, 6)] for x, y in cells]
+    return np.array(closed)
+
+
+def test_two_robots_pass_each_other_in_a_corridor_with_a_pocket():
+    cells, goals = np.array([[0, 0], [9, 0]]), np.array([[9, 0], [0, 0]])
+    robots = staya.Negotiation(cells)
+    for _ in range(60):
+        cells = cells + robots(cells, goals, sights(cells))
+        assert tuple(cells[0]) != tuple(cells[1])
+        assert all(tuple(cell) in CORRIDOR for cell in cells.tolist())
+    assert (cells == goals).all()
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"cells": [[0, 0]]}, "cells has the shape"),
+        ({"goals": [[0.5, 0], [1, 0]]}, "goals has the shape"),
+        ({"goals": [[0, 0], [40_000, 0]]}, "goals has cells beyond"),
+        ({"sights": OPEN[:1]}, "sights has the shape"),
+        ({"sensing": "all"}, "give 'nothing', 'cells', 'robots'"),
+        ({"beacons": [[True]]}, "beacons has the shape"),
+        ({"ids": [3, 3]}, "different numbers"),
+        ({"ids": [1]}, "ids has the shape"),
+    ],
+)
+def test_invalid_arguments_of_negotiation_are_named(changed, message):
+    arguments = {"cells": [[0, 0], [1, 0]], "goals": [[1, 0], [0, 0]], "sights": OPEN} | changed
+    with pytest.raises(ValueError, match=message):
+        robots = staya.Negotiation([[0, 0], [1, 0]], ids=arguments.pop("ids", None))
+        robots(**arguments)
+
+
+
 def test_a_lattice_settles_at_its_spacing():
     places = circle(7, radius=0.6)
     velocities = np.zeros_like(places)

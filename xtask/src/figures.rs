@@ -136,7 +136,7 @@ fn compare(before: &Figures, now: &Figures) -> Result<(), String> {
             equal += 1;
             continue;
         }
-        let loses = [before, now].iter().any(|figures| loses(figures, name));
+        let loses = [before, now].iter().any(|figures| loses(figures, name, figure));
         match (loses, interval(values, of_now)) {
             _ if loses && figure == HASH => {}
             (true, Some(true)) => within += 1,
@@ -160,9 +160,12 @@ fn compare(before: &Figures, now: &Figures) -> Result<(), String> {
 
 static NONE: Vec<String> = Vec::new();
 
-fn loses(figures: &Figures, name: &str) -> bool {
-    ["packets.lost", "packets.corrupted", "loss", "conditions.loss"].iter().any(|figure| {
-        let values = figures.get(&(name.to_owned(), (*figure).to_owned()));
+/// Whether packets are lost in a scenario or an experiment, or in the part of it with this figure.
+fn loses(figures: &Figures, name: &str, figure: &str) -> bool {
+    let parts = figure.match_indices('.').map(|(end, _)| format!("{}.loss", &figure[..end]));
+    let all = ["packets.lost", "packets.corrupted", "loss", "conditions.loss"].map(str::to_owned);
+    all.into_iter().chain(parts).any(|figure| {
+        let values = figures.get(&(name.to_owned(), figure));
         values.is_some_and(|values| values.iter().any(|value| value.parse() != Ok(0.0)))
     })
 }

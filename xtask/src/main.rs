@@ -50,7 +50,7 @@ type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
 
 /// The commands. Of lines that begin with the same word, the first that fits counts.
 #[rustfmt::skip]
-const COMMANDS: [Command; 31] = [
+const COMMANDS: [Command; 32] = [
     ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
     ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, Short)),
     ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, All)),
@@ -80,6 +80,7 @@ const COMMANDS: [Command; 31] = [
         |s, o| mutants::run_shard(s, o.value("--shard"))),
     ("new", "what `staya new` makes, compiled and tested", |s, _| project::run(s, All)),
     ("plants", "panics planted in the firmware's sources: the linker refuses each", |s, _| plants::run(s, true)),
+    ("pogema", "robots that negotiate on all maps of POGEMA's tables", |s, _| python::pogema(s, All)),
     ("python", "the package for Python: its wheel, types and tests", |s, _| python::package(s)),
     ("qemu", "fetches the emulators of the parts", |s, _| emulate::run_command(s)),
     ("size [--json]", "flash, RAM, stack, instructions against budgets", |s, o| size::run(s, o.has("--json"))),

@@ -87,6 +87,28 @@ pub fn package(s: &mut Session) {
     suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
 }
 
+/// Robots that negotiate in POGEMA's world: a few maps, or all of its tables, which it writes to
+/// `target/pogema.csv`.
+pub fn pogema(s: &mut Session, extent: Extent) {
+    let prepare = |repo: &Repo| {
+        let python = environment(repo, "python-pogema", "tests/pogema/requirements.txt")?;
+        pip(repo, &python, &["--no-deps", "--requirement", "tests/pogema/toolbox.txt"])?;
+        wheel(repo, &python)?;
+        Ok(python)
+    };
+    let tables = s.repo.target.display().to_string();
+    let arguments = match extent {
+        Extent::Short => &["tests/pogema", "-m", "not long"][..],
+        Extent::All => {
+            let _ = std::fs::remove_file(s.repo.target.join("pogema.csv"));
+            &["tests/pogema"]
+        }
+    };
+    let program = Some(s.repo.target.join("python-pogema/bin/python"));
+    let suite_of = Suite { program, environment: vec![("STAYA_TABLES", tables)], arguments };
+    suite(s, "robots in POGEMA's world", suite_of, prepare);
+}
+
 /// The pages as a book with search, in `target/book`; warnings of Sphinx are errors.
 pub fn book(s: &mut Session) {
     let (repo, book) = (&s.repo, s.repo.target.join("book"));

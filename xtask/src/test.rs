@@ -33,6 +33,7 @@ pub fn run(s: &mut Session, extent: Extent) {
     let firmware = (extent == Extent::All).then(|| crate::firmware::begin(s)).flatten();
     s.report.part("tests on the host", || counted(&mut tests, ""));
     crate::python::clients(s, None, extent);
+    crate::python::pogema(s, extent);
     if extent == Extent::Short {
         crate::project::run(s, extent);
         crate::swarms::run_short(s, &SHORT);

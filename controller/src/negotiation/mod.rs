@@ -11,5 +11,5 @@ pub use distance::Distances;
 pub use negotiator::{Negotiator, RANGE, REPORTED, Report, Said, Sensed};
 pub use plan::{Fields, Manners, Member, Moves, Plan, Wish};
 
-#[cfg(test)]
+#[cfg(all(test, feature = "wire"))]
 mod tests;

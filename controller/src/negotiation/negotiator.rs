@@ -170,8 +170,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// its steps.
     fn manners(&mut self, cell: Cell, step: u8) -> Manners {
         let [last, before] = self.past;
-        let count = |counts: bool, times: u8| if counts { times.saturating_add(1) } else { 0 };
-        self.swung = count(cell == before && cell != last, self.swung);
+        let swings = cell == before && cell != last;
+        self.swung = if swings { self.swung.saturating_add(1) } else { 0 };
         let is_refused = cell == last && self.chosen != Dir::Stay;
         self.refused = if is_refused { self.refused.saturating_add(1) } else { self.refused.saturating_sub(1) };
         self.past = [cell, last];

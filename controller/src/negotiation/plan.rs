@@ -149,8 +149,7 @@ impl<const F: usize> Fields<F> {
         if let Some(at) = self.used.get_mut(index) {
             *at = clock;
         }
-        // `F` is at least 2.
-        let field = &mut self.fields[if index < F { index } else { 0 }];
+        let Some(field) = self.fields.get_mut(index) else { return const { &Distances::EMPTY } };
         if there.is_none() {
             field.search(goal, area, moves == Moves::Eight);
         }
@@ -201,7 +200,15 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     }
 
     fn member(&self, index: u8) -> Member {
-        let none = Member { id: RobotId::NONE, cell: Cell::default(), goal: Cell::default(), waiting: 0, step: 0, manners: Manners::default(), wish: None };
+        let none = Member {
+            id: RobotId::NONE,
+            cell: Cell::default(),
+            goal: Cell::default(),
+            waiting: 0,
+            step: 0,
+            manners: Manners::default(),
+            wish: None,
+        };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
     }
 
@@ -223,7 +230,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     fn is_taken(&self, to: Cell, member: u8) -> bool {
         let from = self.member(member).cell;
         let dir = Dir::between(from, to).unwrap_or_default();
-        let mut others = self.turns.iter().zip(self.members).enumerate().filter(|(index, _)| *index != usize::from(member));
+        let mut others =
+            self.turns.iter().zip(self.members).enumerate().filter(|(index, _)| *index != usize::from(member));
         others.any(|(_, (turn, other))| {
             let crosses = |end: Cell| Dir::between(other.cell, end).is_some_and(|way| dir.crosses(from, way, end));
             turn.next.is_some_and(|end| end == to || (dir.is_diagonal() && crosses(end)))
@@ -303,7 +311,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
         order.sort_unstable_by_key(|&(rank, tie, dir)| (rank, tie, dir.index()));
         let best = order.first().map_or(Dir::Stay, |&(_, _, dir)| dir);
-        let swaps = if best == Dir::Stay || member.manners.keeps_on { None } else { self.swap(index, cell + best.offset()) };
+        let swaps =
+            if best == Dir::Stay || member.manners.keeps_on { None } else { self.swap(index, cell + best.offset()) };
         if swaps.is_some() {
             order.reverse();
         }
@@ -324,7 +333,13 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         is_open.then(|| match distances.along(member.cell, dir) {
             Some(Ordering::Less) => 0,
             Some(Ordering::Equal) => 1,
-            Some(Ordering::Greater) | None => if dir == Dir::Stay { 1 } else { 2 },
+            Some(Ordering::Greater) | None => {
+                if dir == Dir::Stay {
+                    1
+                } else {
+                    2
+                }
+            }
         })
     }
 

@@ -166,10 +166,11 @@ fn plans_never_collide() {
             moved += usize::from(to != member.cell);
             for (other, &other_to) in members.iter().zip(&next).skip(index + 1) {
                 assert!((to, other_to) != (other.cell, member.cell), "an exchange, round {round}");
-                let dirs = [(member.cell, to), (other.cell, other_to)].map(|(from, to)| Dir::between(from, to).unwrap());
+                let dirs =
+                    [(member.cell, to), (other.cell, other_to)].map(|(from, to)| Dir::between(from, to).unwrap());
                 let middle = |from: Cell, to: Cell| (from.x + to.x, from.y + to.y);
-                let crosses = dirs.iter().all(|dir| dir.is_diagonal())
-                    && middle(member.cell, to) == middle(other.cell, other_to);
+                let crosses =
+                    dirs.iter().all(|dir| dir.is_diagonal()) && middle(member.cell, to) == middle(other.cell, other_to);
                 assert!(!crosses, "diagonals cross, round {round}");
             }
         }

@@ -14,6 +14,8 @@ mod _staya {
     #[pymodule_export]
     use super::behaviors::flock::{boids_steer, goal_wish, lattice_acceleration};
     #[pymodule_export]
+    use super::behaviors::negotiation::Negotiators;
+    #[pymodule_export]
     use super::behaviors::orca::Avoiders;
     #[pymodule_export]
     use super::behaviors::route::route;

@@ -8,8 +8,8 @@ and metres per second; x is east, y north, z up.
 
 from . import flock
 from ._staya import ScenarioError
-from .behaviors import Orca, Routes, orca, route
+from .behaviors import Negotiation, Orca, Routes, orca, route
 from .result import Page, Result
 from .simulation import Mode, Simulation
 
-__all__ = ["Mode", "Orca", "Page", "Result", "Routes", "ScenarioError", "Simulation", "flock", "orca", "route"]
+__all__ = ["Mode", "Negotiation", "Orca", "Page", "Result", "Routes", "ScenarioError", "Simulation", "flock", "orca", "route"]

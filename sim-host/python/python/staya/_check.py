@@ -107,18 +107,35 @@ def whole(name: str, value: Any, least: int, most: int = 2**32 - 1) -> int:
 
 def cells(name: str, value: ArrayLike, count: int | None, width: int, height: int) -> NDArray[np.int16]:
     """One cell (x, y) per robot on a map of `width` x `height` cells."""
+    array = any_cells(name, value, count)
+    is_off = ((array < 0) | (array >= np.array([width, height]))).any(axis=1)
+    if is_off.any():
+        index = int(np.flatnonzero(is_off)[0])
+        x, y = array[index]
+        raise ValueError(f"{name}[{index}] is ({x}, {y}), off the map; give x below {width} and y below {height}")
+    return array
+
+
+def any_cells(name: str, value: ArrayLike, count: int | None) -> NDArray[np.int16]:
+    """One cell (x, y) per robot, anywhere."""
     array = np.asarray(value)
     rows = "n" if count is None else str(count)
     is_shaped = array.ndim == 2 and array.shape[1] == 2 and (count is None or len(array) == count)
     if not is_shaped or not np.issubdtype(array.dtype, np.integer):
         what = f"an array of whole numbers of shape ({rows}, 2)"
         raise ValueError(f"{name} has the shape {array.shape} and the type {array.dtype}; give {what}")
-    is_off = ((array < 0) | (array >= np.array([width, height]))).any(axis=1)
-    if is_off.any():
-        index = int(np.flatnonzero(is_off)[0])
-        x, y = array[index]
-        raise ValueError(f"{name}[{index}] is ({x}, {y}), off the map; give x below {width} and y below {height}")
+    if (np.abs(array.astype(np.int64)) > 30_000).any():
+        raise ValueError(f"{name} has cells beyond 30000; give -30000 to 30000")
     return np.ascontiguousarray(array, dtype=np.int16)
+
+
+def pairs(name: str, value: ArrayLike | None, default: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """For each robot and each other one, true or false."""
+    array = default if value is None else np.asarray(value)
+    if array.shape != default.shape or array.dtype != np.bool_:
+        what = f"an array of true and false of shape {default.shape}"
+        raise ValueError(f"{name} has the shape {array.shape} and the type {array.dtype}; give {what}")
+    return np.ascontiguousarray(array & ~np.eye(len(default), dtype=bool))
 
 
 def toml(name: str, value: Any) -> str:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
 
-__all__ = ["Avoiders", "Run", "ScenarioError", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
+__all__ = ["Avoiders", "Negotiators", "Run", "ScenarioError", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
 
 class ScenarioError(ValueError):
     """An unreadable or invalid scenario, with file, line, field and remedy."""
@@ -91,6 +91,21 @@ class Avoiders:
         discs_m: _Floats,
         step_s: float,
     ) -> _Floats: ...
+
+@final
+class Negotiators:
+    """Robots on a grid that plan together."""
+
+    def __new__(cls, ids: list[int], starts: NDArray[np.int16], diagonals: bool) -> Negotiators: ...
+    def step(
+        self,
+        at: NDArray[np.int16],
+        goals: NDArray[np.int16],
+        sights: NDArray[np.uint8],
+        beacons: NDArray[np.bool_],
+        reports: NDArray[np.bool_],
+        sensing: int,
+    ) -> NDArray[np.int16]: ...
 
 def lattice_acceleration(
     positions_m: _Floats,

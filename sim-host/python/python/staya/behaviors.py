@@ -1,4 +1,4 @@
-"""ORCA and routing of all robots at once. The flocking laws are in `staya.flock`."""
+"""ORCA, routing and negotiation of all robots at once. The flocking laws are in `staya.flock`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _check
-from ._staya import Avoiders
+from ._staya import Avoiders, Negotiators
 from ._staya import route as _route
 
 Floats = NDArray[np.float64]
@@ -143,6 +143,64 @@ def orca(
         walls=walls,
         discs=discs,
     )
+
+
+class Negotiation:
+    """Robots on a grid without a map, each of which plans the moves of all robots near it by one
+    rule and makes its own.
+
+    `starts`: cells (x, y), shape (n, 2); y grows to the north. `ids`: a number for each robot, all
+    different, which breaks ties; by default 1, 2, and so on. `diagonals`: with eight neighbours
+    instead of four. A robot plans with at most 63 others within 8 cells, and remembers walls within
+    31 cells.
+    """
+
+    def __init__(self, starts: ArrayLike, *, ids: ArrayLike | None = None, diagonals: bool = False) -> None:
+        cells = _check.any_cells("starts", starts, None)
+        numbers = np.arange(1, len(cells) + 1) if ids is None else np.asarray(ids)
+        self._count = len(cells)
+        if numbers.shape != (self._count,) or not np.issubdtype(numbers.dtype, np.integer):
+            raise ValueError(f"ids has the shape {numbers.shape}; give whole numbers of shape ({self._count},)")
+        if len(np.unique(numbers)) < self._count or (numbers < 1).any() or (numbers > 2**32 - 2).any():
+            raise ValueError(f"ids: give different numbers from 1 to {2**32 - 2}")
+        self._robots = Negotiators([int(number) for number in numbers], cells, bool(diagonals))
+
+    def __call__(
+        self,
+        cells: ArrayLike,
+        goals: ArrayLike,
+        sights: ArrayLike,
+        *,
+        beacons: ArrayLike | None = None,
+        reports: ArrayLike | None = None,
+        sensing: Literal["nothing", "cells", "robots"] = "nothing",
+    ) -> NDArray[np.int16]:
+        """Returns the moves (x, y) of one step, each -1, 0 or 1, shape (n, 2).
+
+        `cells` and `goals`: where robots are and want to go, as in `starts`. `sights[i, y, x]`: the
+        11 x 11 cells around robot i, above 0 if closed, row 0 in the south. `beacons[i, j]`:
+        whether robot i receives the beacon of j, which has 15 bytes besides the frame;
+        `reports[i, j]`: the same for its report of 37 bytes, which is sent after the beacons. By
+        default packets arrive up to 8 cells. `sensing`: what robots see of others within 5 cells
+        without radio: nothing, occupied cells, or which robot is where.
+        """
+        at = _check.any_cells("cells", cells, self._count)
+        kinds = ("nothing", "cells", "robots")
+        if sensing not in kinds:
+            raise ValueError(f"sensing is {sensing!r}; give {', '.join(map(repr, kinds))}")
+        seen = np.asarray(sights)
+        if seen.shape != (self._count, 11, 11):
+            raise ValueError(f"sights has the shape {seen.shape}; give an array of shape ({self._count}, 11, 11)")
+        far = np.abs(at[:, None].astype(int) - at[None].astype(int)).max(axis=2, initial=0)
+        near = (far <= 8) & ~np.eye(self._count, dtype=bool)
+        return self._robots.step(
+            at,
+            _check.any_cells("goals", goals, self._count),
+            np.ascontiguousarray(seen > 0, dtype=np.uint8),
+            _check.pairs("beacons", beacons, near),
+            _check.pairs("reports", reports, near),
+            kinds.index(sensing),
+        )
 
 
 class Routes(NamedTuple):

@@ -1,6 +1,7 @@
 //! Single behaviours, applied to all robots at once. Neighbours come from exact positions.
 
 pub mod flock;
+pub mod negotiation;
 pub mod orca;
 pub mod route;
 
