@@ -49,12 +49,10 @@ pub mod grid;
 pub mod land;
 #[cfg(feature = "agent")]
 mod law;
-#[cfg(any(feature = "flock", feature = "formation", feature = "route"))]
+#[cfg(any(feature = "flock", feature = "formation", feature = "negotiation", feature = "route"))]
 mod laws;
 mod list;
 pub mod names;
-#[cfg(feature = "negotiation")]
-pub mod negotiation;
 pub mod neighbor;
 pub mod obstacle;
 #[cfg(feature = "orca")]
@@ -78,6 +76,8 @@ pub mod wire;
 
 #[cfg(feature = "formation")]
 pub use laws::formation;
+#[cfg(feature = "negotiation")]
+pub use laws::negotiation;
 #[cfg(feature = "route")]
 pub use laws::route;
 #[cfg(feature = "flock")]

@@ -113,6 +113,11 @@ fn golden_gate() {
 }
 
 #[test]
+fn golden_corridor() {
+    check("corridor", None);
+}
+
+#[test]
 fn golden_moving_ai_20() {
     check("moving-ai-20", None);
 }

@@ -13,6 +13,7 @@ mod frames;
 mod golden;
 mod matrix;
 mod movingai;
+mod negotiation;
 mod parameters;
 mod programs;
 mod threads;

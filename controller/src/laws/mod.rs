@@ -5,6 +5,7 @@
 //! | `waypoint` | straight to waypoints |
 //! | `lattice`, `goal_flock`, `boids` | flocks; `flock` has their common terms |
 //! | `route`, `formation` | cell by cell; `cells` has their common parts |
+//! | `negotiation` | cell by cell, planned together |
 //! | `external`, `guided` | the caller decides; an operator steers |
 //!
 //! `any` lists those that can be chosen at run time.
@@ -19,6 +20,8 @@ pub mod formation;
 pub mod goal_flock;
 #[cfg(feature = "flock")]
 pub mod lattice;
+#[cfg(feature = "negotiation")]
+pub mod negotiation;
 #[cfg(feature = "route")]
 pub mod route;
 

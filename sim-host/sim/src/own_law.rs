@@ -4,10 +4,11 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use staya_controller::agent::{
-    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OrderOf,
-    Protocol, Radio, Report, Tools, View,
+    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Known, Law, MessageOf,
+    NEIGHBORS, OrderOf, Protocol, Radio, Report, Tools, View,
 };
 use staya_controller::grid::Dir;
+use staya_controller::negotiation::NegotiationGuidance;
 use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
@@ -53,6 +54,9 @@ type Make = fn() -> Own;
 /// The laws that scenario files can name.
 static NAMED: Mutex<BTreeMap<&'static str, Make>> = Mutex::new(BTreeMap::new());
 
+/// The name of [`NegotiationGuidance`], which every program has.
+const NEGOTIATION: &str = "negotiation";
+
 /// Makes a law known to scenario files, as `law.name = "..."`, with its default parameters. A
 /// program calls it before it reads scenarios: then files, sweeps, ranks, checkpoints and views
 /// have the law. A law with the same name is replaced.
@@ -65,7 +69,8 @@ pub(crate) fn named(name: &str) -> Result<Own, Vec<&'static str>> {
     let named = NAMED.lock().unwrap_or_else(PoisonError::into_inner);
     match named.get(name) {
         Some(make) => Ok(make()),
-        None => Err(named.keys().copied().collect()),
+        None if name == NEGOTIATION => Ok(Own::new(NegotiationGuidance::<NEIGHBORS>::default())),
+        None => Err(named.keys().copied().chain([NEGOTIATION]).collect()),
     }
 }
 

@@ -28,7 +28,7 @@ impl Negotiators {
     /// Robots at their starts, (x, y), which they have as goals.
     #[new]
     fn new(ids: Vec<u32>, starts: PyReadonlyArray2<'_, i16>, diagonals: bool) -> PyResult<Self> {
-        let moves = if diagonals { Moves::Eight } else { Moves::Four };
+        let moves = Moves { diagonals, ..Moves::FOUR };
         let ids: Vec<RobotId> = ids.into_iter().map(RobotId).collect();
         let robot = |(&id, cell)| Negotiator::new(id, cell, moves);
         let all = ids.iter().zip(cells(&starts)?).map(robot).collect();

@@ -265,6 +265,7 @@ mod tests {
         let sizes = [
             ("jacksboro.asc", (324, 344)),
             ("figure-5.map", (60, 30)),
+            ("corridor.map", (16, 3)),
             ("arena-40.map", (40, 30)),
             ("office.yaml", (48, 32)),
         ];

@@ -3,11 +3,15 @@
 
 mod area;
 mod distance;
+#[cfg(feature = "agent")]
+mod law;
 mod negotiator;
 mod plan;
 
 pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::Distances;
+#[cfg(feature = "agent")]
+pub use law::{Negotiation, NegotiationGuidance, NegotiationPayload};
 pub use negotiator::{Negotiator, RANGE, REPORTED, Report, Said, Sensed};
 pub use plan::{Fields, Manners, Member, Moves, Plan, Wish};
 

@@ -44,12 +44,34 @@ impl Sight {
 
 /// The closed cells that a robot has seen or was told, within 31 cells of it; 514 bytes. Unknown
 /// cells are open.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Area {
+    #[serde(with = "halves")]
     closed: Plane,
     center: Cell,
     /// Counts the changes.
     version: u16,
+}
+
+/// A [`Plane`] as two arrays; serde has none of 64.
+mod halves {
+    use super::{Plane, SIDE};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    const HALF: usize = SIDE / 2;
+
+    pub fn serialize<T: Serializer>(plane: &Plane, serializer: T) -> Result<T::Ok, T::Error> {
+        let [mut low, mut high] = [[0; HALF]; 2];
+        low.iter_mut().chain(&mut high).zip(plane).for_each(|(half, row)| *half = *row);
+        [low, high].serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Plane, D::Error> {
+        let halves = <[[u64; HALF]; 2]>::deserialize(deserializer)?;
+        let mut plane = [0; SIDE];
+        plane.iter_mut().zip(halves.as_flattened()).for_each(|(row, half)| *row = *half);
+        Ok(plane)
+    }
 }
 
 /// The place of a coordinate in a [`Plane`].

@@ -27,7 +27,7 @@ const STALEMATE: u8 = 2;
 const COURTESY: u32 = 4;
 const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
 
-/// What a robot says of itself in each step, before it decides; 15 bytes on the air.
+/// What a robot says of itself in each step, before it decides; 14 bytes on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Said {
     /// Where it is.
@@ -73,7 +73,7 @@ pub enum Sensed<'a> {
 }
 
 /// A robot nearby, as last heard, and where it should be since.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Known {
     id: RobotId,
     said: Said,
@@ -87,8 +87,9 @@ struct Known {
 ///
 /// In each step: [`see`](Self::see), send what that returns, [`hear`](Self::hear) the others, send
 /// a [`report`](Self::report), [`hear_report`](Self::hear_report) the others, and
-/// [`decide`](Self::decide). Without reports, robots know only the land that they have seen.
-#[derive(Clone, Debug)]
+/// [`decide`](Self::decide). Without reports, robots know only the land that they have seen. A step
+/// ends when it decides; all but that may come repeatedly and in any order.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Negotiator<const N: usize, const F: usize> {
     id: RobotId,
     own: Said,
@@ -102,10 +103,14 @@ pub struct Negotiator<const N: usize, const F: usize> {
     /// the cell that it chose.
     swung: u8,
     refused: u8,
+    /// Whether anything of this step came, and whether it saw its cell in this step.
+    has_begun: bool,
+    has_seen: bool,
     area: Area,
     known: Vec<Known, N>,
     /// Reported robots that it does not know.
     strangers: Vec<Cell, N>,
+    #[serde(skip)]
     fields: Fields<F>,
 }
 
@@ -123,6 +128,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             chosen: Dir::Stay,
             swung: 0,
             refused: 0,
+            has_begun: false,
+            has_seen: false,
             area: Area::new(cell),
             known: Vec::new(),
             strangers: Vec::new(),
@@ -142,27 +149,53 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.own.goal
     }
 
-    /// Begins a step in `cell`. Returns what to say.
+    /// Sees its cell and the land around it. Returns what to say.
     pub fn see(&mut self, cell: Cell, sight: &Sight) -> Said {
+        self.begin();
         self.area.follow(cell);
         self.area.learn(cell, sight);
         self.sight = *sight;
-        let waiting = waiting(cell == self.own.goal, self.own.waiting);
+        if !self.has_seen {
+            self.has_seen = true;
+            self.own.waiting = waiting(cell == self.own.goal, self.own.waiting);
+            self.own.step = self.own.step.wrapping_add(1);
+            self.own.manners = self.manners(cell, self.own.step);
+        }
+        self.own = Said { cell, wish: self.wish(cell), ..self.own };
+        self.own
+    }
+
+    fn wish(&mut self, cell: Cell) -> Wish {
         let distances = self.fields.to(self.own.goal, &self.area, self.moves);
-        let wish = Wish::new(cell, &self.area, distances, self.moves);
-        let step = self.own.step.wrapping_add(1);
-        let manners = self.manners(cell, step);
-        self.own = Said { cell, goal: self.own.goal, waiting, wish, step, manners };
+        Wish::new(cell, &self.area, distances, self.moves)
+    }
+
+    /// What to say after a decision, before the next step: it is where it goes.
+    pub fn promise(&mut self) -> Said {
+        let Said { cell, goal, waiting, step, .. } = self.own;
+        let cell = cell + self.chosen.offset();
+        let (waiting, step) = (self::waiting(cell == goal, waiting), step.wrapping_add(1));
+        Said { cell, goal, waiting, wish: self.wish(cell), step, manners: Manners::default() }
+    }
+
+    /// Does not count the cell that it chose as refused.
+    pub const fn wait(&mut self) {
+        self.chosen = Dir::Stay;
+    }
+
+    fn begin(&mut self) {
+        if core::mem::replace(&mut self.has_begun, true) {
+            return;
+        }
         for other in &mut self.known {
             other.age = other.age.saturating_add(1);
             other.lost = other.lost.saturating_add(1);
             let said = &mut other.said;
             said.step = said.step.wrapping_add(1);
-            said.waiting = self::waiting(said.cell == said.goal, said.waiting);
+            said.waiting = waiting(said.cell == said.goal, said.waiting);
             said.manners = Manners::default();
         }
         self.strangers.clear();
-        self.own
     }
 
     /// A robot that swings to and fro in a corridor pushes on in half of its steps. One that is
@@ -185,6 +218,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
 
     /// Hears another robot in this step.
     pub fn hear(&mut self, id: RobotId, said: &Said) {
+        self.begin();
         if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
             return;
         }
@@ -192,6 +226,15 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = known,
             None => drop(self.known.push(known)),
+        }
+    }
+
+    /// Hears a robot that said that it goes to a cell, and cannot have left `cell`.
+    pub fn hear_at(&mut self, id: RobotId, said: &Said, cell: Cell) {
+        self.hear(id, &Said { cell, ..*said });
+        if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
+            // Its wish is that of another cell.
+            other.age = 1;
         }
     }
 
@@ -215,6 +258,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
 
     /// Hears what another robot reports in this step. O(N) for each robot in it.
     pub fn hear_report(&mut self, from: RobotId, report: &Report) {
+        self.begin();
         self.area.learn(report.cell, &report.sight);
         self.place(from.0 as u8, report.cell);
         for &(number, offset) in &report.heard {
@@ -243,6 +287,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
 
     /// Chooses the move of this step. O(N^2), and the plan: see [`Plan::new`].
     pub fn decide(&mut self, sensed: Sensed<'_>) -> Dir {
+        self.begin();
+        (self.has_begun, self.has_seen) = (false, false);
         let own = self.own;
         self.known.retain(|other| other.lost <= FORGET || !matches!(sensed, Sensed::Nothing));
         let strangers = match sensed {

@@ -12,22 +12,23 @@ use serde::{Deserialize, Serialize};
 
 /// The moves between cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Moves {
-    /// East, north, west and south.
-    #[default]
-    Four,
-    /// All eight neighbours.
-    Eight,
+pub struct Moves {
+    /// To all eight neighbours, not only to the east, north, west and south.
+    pub diagonals: bool,
+    /// Three or more robots may move in a circle, each into the cell of the next one.
+    pub circles: bool,
 }
 
 impl Moves {
+    /// Four neighbours, all robots at once.
+    pub const FOUR: Self = Self { diagonals: false, circles: true };
+    /// Eight neighbours, and only into cells that are free.
+    pub const EIGHT: Self = Self { diagonals: true, circles: false };
+
     /// The moves, without staying.
     #[must_use]
     pub const fn dirs(self) -> &'static [Dir] {
-        match self {
-            Self::Four => &[Dir::East, Dir::North, Dir::West, Dir::South],
-            Self::Eight => &Dir::MOVES,
-        }
+        if self.diagonals { &Dir::MOVES } else { &[Dir::East, Dir::North, Dir::West, Dir::South] }
     }
 }
 
@@ -70,11 +71,24 @@ impl Wish {
 
 /// What a robot does to end a stalemate, in one step. The default is what it does otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "u8", into = "u8")]
 pub struct Manners {
     /// It chooses after all others.
     pub is_last: bool,
     /// It does not begin to exchange its place with another robot.
     pub keeps_on: bool,
+}
+
+impl From<u8> for Manners {
+    fn from(bits: u8) -> Self {
+        Self { is_last: bits & 1 == 1, keeps_on: bits & 2 == 2 }
+    }
+}
+
+impl From<Manners> for u8 {
+    fn from(manners: Manners) -> Self {
+        Self::from(manners.is_last) | Self::from(manners.keeps_on) << 1
+    }
 }
 
 /// A robot in a plan.
@@ -151,7 +165,7 @@ impl<const F: usize> Fields<F> {
         }
         let Some(field) = self.fields.get_mut(index) else { return const { &Distances::EMPTY } };
         if there.is_none() {
-            field.search(goal, area, moves == Moves::Eight);
+            field.search(goal, area, moves.diagonals);
         }
         field
     }
@@ -238,6 +252,13 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         })
     }
 
+    /// Whether the robot in this cell waits for a member's move.
+    fn asks(&self, cell: Cell, member: u8) -> bool {
+        let above = |index: &u8| self.turns.get(usize::from(*index)).and_then(|turn| turn.asked_by);
+        let chain = core::iter::successors(above(&member), above).take(N);
+        chain.into_iter().any(|index| self.member(index).cell == cell)
+    }
+
     fn is_nearer(&mut self, member: u8, a: Cell, b: Cell) -> bool {
         let goal = self.member(member).goal;
         self.fields.to(goal, self.area, self.moves).is_nearer(a, b)
@@ -265,7 +286,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             let to = own + dir.offset();
             let other = self.occupant(to).filter(|&other| other != top);
             let is_exchange = other.is_some_and(|other| self.next(other) == Some(own));
-            if self.is_taken(to, top) || is_exchange {
+            if self.is_taken(to, top) || is_exchange || (!self.moves.circles && self.asks(to, top)) {
                 if let Some(turn) = self.turn(top) {
                     turn.tried = turn.tried.saturating_add(1);
                 }

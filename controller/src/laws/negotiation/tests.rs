@@ -103,7 +103,7 @@ fn an_area_keeps_what_is_near_and_forgets_what_is_far() {
 
 #[test]
 fn distances_are_those_of_a_search_by_cells() {
-    for (seed, moves) in [(1, Moves::Four), (2, Moves::Eight), (3, Moves::Four), (4, Moves::Eight)] {
+    for (seed, moves) in [(1, Moves::FOUR), (2, Moves::EIGHT), (3, Moves::FOUR), (4, Moves::EIGHT)] {
         let mut rng = Rng::new(seed);
         let center = Cell::new(500, -300);
         let mut area = Area::new(center);
@@ -112,7 +112,7 @@ fn distances_are_those_of_a_search_by_cells() {
         }
         let goal = center + Cell::new(5, 7);
         let mut distances = Distances::EMPTY;
-        distances.search(goal, &area, moves == Moves::Eight);
+        distances.search(goal, &area, moves.diagonals);
         let mut far = std::collections::BTreeMap::from([((goal.x, goal.y), 0u32)]);
         let mut queue = VecDeque::from([goal]);
         while let Some(cell) = queue.pop_front() {
@@ -140,7 +140,7 @@ fn plans_never_collide() {
     let mut rng = Rng::new(7);
     let mut moved = 0;
     for round in 0..400 {
-        let moves = if round % 2 == 0 { Moves::Four } else { Moves::Eight };
+        let moves = if round % 2 == 0 { Moves::FOUR } else { Moves::EIGHT };
         let mut area = Area::new(Cell::new(4, 4));
         let frame = (-1..=8).flat_map(|at| [(-1, at), (8, at), (at, -1), (at, 8)]);
         frame.for_each(|(x, y)| area.close(Cell::new(x, y)));
@@ -195,7 +195,7 @@ fn two_robots_pass_each_other_in_corridors_at_any_loss() {
                 };
                 let map = std::boxed::Box::leak(format!("{}{}{}", row('#'), row('.'), row('#')).into_boxed_str());
                 let (west, east) = (Cell::new(1, 1), Cell::new(length + 4, 1));
-                let mut world = World::new(map, &[(west, east), (east, west)], Moves::Four);
+                let mut world = World::new(map, &[(west, east), (east, west)], Moves::FOUR);
                 let mut rng = Rng::new(seed);
                 let steps = world.run(400, |_, _, _| rng.below(100) < percent);
                 assert!(steps.is_some(), "{length} cells, {percent} % lost, seed {seed}: {:?}", world.cells);
@@ -203,7 +203,7 @@ fn two_robots_pass_each_other_in_corridors_at_any_loss() {
         }
     }
     let (west, east) = (Cell::new(1, 1), Cell::new(24, 1));
-    let mut world = World::new(CORRIDOR, &[(west, east), (east, west)], Moves::Four);
+    let mut world = World::new(CORRIDOR, &[(west, east), (east, west)], Moves::FOUR);
     let steps = world.run(100, |_, _, _| false);
     assert!(steps.is_some_and(|steps| steps < 80), "{steps:?}");
     assert_eq!(world.refused, 0, "they know the same");
@@ -234,7 +234,7 @@ fn messages_fit_their_frames() {
 fn two_robots_arrive_from_every_state_of_small_maps() {
     let maps = ["....\n....\n....", ".#..\n....\n..#.", "####\n....\n##.#", ".###\n....\n.#.#"];
     for map in maps {
-        let probe = World::new(map, &[], Moves::Four);
+        let probe = World::new(map, &[], Moves::FOUR);
         let open: Vec<Cell> = (0..3).flat_map(|y| (0..4).map(move |x| Cell::new(x, y))).collect();
         let open: Vec<Cell> = open.into_iter().filter(|&cell| !probe.is_closed(cell)).collect();
         let pairs = || open.iter().flat_map(|&a| open.iter().map(move |&b| (a, b))).filter(|(a, b)| a != b);
@@ -242,7 +242,7 @@ fn two_robots_arrive_from_every_state_of_small_maps() {
         for starts in pairs() {
             for goals in pairs().skip(states % 7).step_by(7) {
                 let ends = [(starts.0, goals.0), (starts.1, goals.1)];
-                let mut world = World::new(map, &ends, Moves::Four);
+                let mut world = World::new(map, &ends, Moves::FOUR);
                 let steps = world.run(60, |_, _, _| false);
                 assert!(steps.is_some(), "{map}: {ends:?} ends at {:?}", world.cells);
                 assert_eq!(world.refused, 0, "{map}: {ends:?}");

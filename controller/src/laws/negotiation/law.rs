@@ -1,0 +1,156 @@
+//! Negotiation as a law.
+
+use super::{Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight};
+use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Protocol, Radio, Status, Tools, View};
+use crate::laws::cells::GridOrder;
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+use crate::time::{Duration, Instant};
+use crate::wire::{Content, ProtocolId};
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+/// The protocol of robots that negotiate.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Negotiation {}
+
+impl Protocol for Negotiation {
+    const ID: ProtocolId = ProtocolId(3);
+    type Payload = NegotiationPayload;
+    type Message = Report;
+    type Order = GridOrder;
+}
+
+/// What a robot that negotiates says in its beacon; 16 bytes at most on the air.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NegotiationPayload {
+    /// Where it is, or goes to in this tick.
+    pub said: Said,
+    /// The move by which it goes there.
+    pub by: Dir,
+    /// Time until it may leave its cell, tenths of a second, at most 25.5 s.
+    pub busy_ds: u8,
+}
+
+impl Content for NegotiationPayload {}
+impl Content for Report {}
+
+/// Robots that pass each other on the grid, with or without a map: at most `N` plan together, with
+/// distances of `F` goals. Cells cost the same, walls apart. Robots of other laws are not seen.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
+    moves: Moves,
+    goal: Option<Cell>,
+    robot: Option<Negotiator<N, F>>,
+    /// When it last decided.
+    decided: Instant,
+}
+
+impl<const N: usize, const F: usize> NegotiationGuidance<N, F> {
+    /// Creates the law for bodies with these moves.
+    #[must_use]
+    pub const fn new(moves: Moves) -> Self {
+        Self { moves, goal: None, robot: None, decided: Instant::from_micros(0) }
+    }
+}
+
+impl<const N: usize, const F: usize> Default for NegotiationGuidance<N, F> {
+    fn default() -> Self {
+        Self::new(Moves::EIGHT)
+    }
+}
+
+impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N, F> {
+    type Surroundings<'a> = OnGrid<'a>;
+    type Protocol = Negotiation;
+    type Workspace = ();
+
+    fn decide(
+        &mut self,
+        view: &View<'_, S, Negotiation>,
+        here: &OnGrid<'_>,
+        _: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput> {
+        let Some(goal) = view.sent_to.or(self.goal) else { return Ok(Decision::idle()) };
+        let (cell, window) = here.seen()?;
+        let robot = self.robot.get_or_insert_with(|| Negotiator::new(view.id, cell, self.moves));
+        if robot.goal() != goal {
+            robot.set_goal(goal);
+        }
+        robot.see(cell, &sight(cell, &window));
+        let mut busy: Vec<Cell, N> = Vec::new();
+        let stands = |at: Cell| view.peers().any(|(_, other)| other.said.cell == at && other.by == Dir::Stay);
+        for (neighbor, NegotiationPayload { said, by, busy_ds }) in view.peers() {
+            if neighbor.heard.since(self.decided) > Duration::ZERO {
+                if by != Dir::Stay && (said.cell == cell || stands(said.cell)) {
+                    robot.hear_at(neighbor.id, &said, said.cell - by.offset());
+                } else {
+                    robot.hear(neighbor.id, &said);
+                }
+            }
+            if view.now.since(neighbor.heard) < Duration::from_millis(i32::from(busy_ds) * 100) {
+                let _ = busy.push(said.cell);
+            }
+        }
+        let dir = robot.decide(Sensed::Nothing);
+        self.decided = view.now;
+        let mut status = Status { is_at_goal: cell == goal, ..Status::default() };
+        let mut moves = Vec::new();
+        if busy.contains(&(cell + dir.offset())) {
+            robot.wait();
+        } else if dir != Dir::Stay {
+            status.makes_way = status.is_at_goal;
+            let _ = moves.push(dir);
+        }
+        Ok(Decision { action: Action::Moves(moves), status })
+    }
+
+    fn payload(&mut self, here: &OnGrid<'_>, _: Dir, radio: &mut Radio<'_, Negotiation>) -> NegotiationPayload {
+        let CellState { cell, busy } = here.cell;
+        let Some(robot) = &mut self.robot else {
+            // Without a goal it stays where it is.
+            let said = Said { cell, goal: cell, waiting: 1, ..Said::default() };
+            return NegotiationPayload { said, by: Dir::Stay, busy_ds: 0 };
+        };
+        radio.broadcast(&robot.report());
+        let said = match here.seen() {
+            Ok((cell, window)) if self.decided != radio.now() => robot.see(cell, &sight(cell, &window)),
+            _ => robot.promise(),
+        };
+        let by = Dir::between(cell, said.cell).unwrap_or_default();
+        let tenths = busy.as_micros().max(0).checked_div(100_000).unwrap_or(0);
+        NegotiationPayload { said, by, busy_ds: u8::try_from(tenths).unwrap_or(u8::MAX) }
+    }
+
+    fn receive(&mut self, from: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
+        if let Some(robot) = &mut self.robot {
+            robot.hear_report(from, report);
+        }
+        true
+    }
+
+    fn order(&mut self, order: &GridOrder) -> bool {
+        let GridOrder::Goal(goal) = order else { return false };
+        self.goal = Some(*goal);
+        true
+    }
+
+    fn report(&self) -> law::Report {
+        law::Report { goal: self.goal, target: self.goal, ..law::Report::default() }
+    }
+}
+
+/// The walls in a window. Cells beyond the edge of the land are closed.
+fn sight(center: Cell, window: &Window<'_>) -> Sight {
+    let sees = |reach: i16| {
+        let edges = [(-reach, 0), (reach, 0), (0, -reach), (0, reach)];
+        edges.into_iter().any(|(x, y)| window.get(center + Cell::new(x, y)).is_some())
+    };
+    let reach = (1..=SIGHT).take_while(|&reach| sees(reach)).last().unwrap_or(0) as u32;
+    Sight::new(center, |cell| match window.get(cell) {
+        Some(class) => class == BLOCKED,
+        None => cell.chebyshev(center) <= reach,
+    })
+}
