@@ -58,7 +58,7 @@ mod halves {
     use super::{Plane, SIDE};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    const HALF: usize = SIDE / 2;
+    const HALF: usize = SIDE >> 1;
 
     pub fn serialize<T: Serializer>(plane: &Plane, serializer: T) -> Result<T::Ok, T::Error> {
         let [mut low, mut high] = [[0; HALF]; 2];

@@ -185,10 +185,11 @@ pub struct Plan<'a, const N: usize, const F: usize> {
 }
 
 impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
-    /// Plans the moves of `members`, of which those beyond the first `N` are ignored. All robots that know the same plan the same.
+    /// Plans the moves of `members`; those beyond the first `N` are ignored. All robots that know
+    /// the same plan the same.
     ///
-    /// Each robot chooses once, among at most 9 cells, and looks along at most 9 corridors of
-    /// [`CORRIDOR`] cells; each look takes O(N). A search is O(64) for each move of the longest way.
+    /// Each robot chooses once, among at most 9 cells, and looks along at most 9 corridors of 200
+    /// cells; each look takes O(N). A search takes 64 words for each move of the longest way.
     pub fn new(members: &'a [Member], area: &'a Area, fields: &'a mut Fields<F>, moves: Moves) -> Self {
         let members = members.get(..N).unwrap_or(members);
         let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves };
@@ -426,8 +427,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         false
     }
 
-    /// The number of ways on from `at`, not back to `from` and not into a dead end with a robot that
-    /// is none of `both`; and one of them.
+    /// The number of ways on from `at`, and one of them: not back to `from`, and not into a dead
+    /// end with a robot that is none of `both`.
     fn ways_on(&self, both: [u8; 2], at: Cell, from: Cell) -> (usize, Cell) {
         let dirs = self.moves.dirs();
         let is_full = |cell: Cell| {
