@@ -93,6 +93,7 @@ pub(super) fn law(
         result.unwrap_or_else(|| {
             let remedy = match nearest(name, known.iter().copied()) {
                 Some(near) => format!("did you mean \"{near}\"?"),
+                None if known.is_empty() => "leave it out: it has none".to_owned(),
                 None => format!("it has {}", known.join(", ")),
             };
             Err(source.error(&field, "the law has no such parameter", remedy))
