@@ -35,8 +35,8 @@ def test_64_robots_arrive_on_a_few_maps_though_a_third_of_the_packets_is_lost(ma
     assert table(Case(maps, 64, lost=0.3), range(4))["CSR"] >= least
 
 
-def test_robots_with_new_goals_reach_more_of_them_than_any_learned_planner():
-    assert table(Case("random", 32, lifelong=True), range(2))["avg_throughput"] > 1.0
+def test_robots_with_new_goals_keep_reaching_them():
+    assert table(Case("random", 32, lifelong=True), range(2))["avg_throughput"] > 2.5
 
 
 def test_a_run_repeats():

@@ -212,6 +212,9 @@ mod tests {
         let [few, many] =
             [compare(&of(&before, true), &of(&far, true)), compare(&of(&before, true), &figures(&[lost]))];
         assert!(few.is_ok() && many.is_err(), "one figure in twenty may be beyond; a missing one may not");
+        let part = |name: &'static str| [("points[4].loss", &["0.3", "0.3", "0.3"][..]), (name, &["1", "2", "3"])];
+        let changed = [("points[4].loss", &["0.3", "0.3", "0.3"][..]), ("points[4].time", &["2", "2", "3"])];
+        assert!(compare(&figures(&part("points[4].time")), &figures(&changed)).is_ok(), "this point loses packets");
         let file = text(&of(&before, true));
         assert_eq!(file.lines().count(), 3);
     }

@@ -179,7 +179,7 @@ class Negotiation:
 
         `cells` and `goals`: where robots are and want to go, as in `starts`. `sights[i, y, x]`: the
         11 x 11 cells around robot i, above 0 if closed, row 0 in the south. `beacons[i, j]`:
-        whether robot i receives the beacon of j, which has 15 bytes besides the frame;
+        whether robot i receives the beacon of j, which has 14 bytes besides the frame;
         `reports[i, j]`: the same for its report of 37 bytes, which is sent after the beacons. By
         default packets arrive up to 8 cells. `sensing`: what robots see of others within 5 cells
         without radio: nothing, occupied cells, or which robot is where.
