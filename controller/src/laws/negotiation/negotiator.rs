@@ -223,9 +223,14 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             return;
         }
         let known = Known { id, said: *said, age: 0, lost: 0 };
-        match self.known.iter_mut().find(|other| other.id == id) {
-            Some(other) => *other = known,
-            None => drop(self.known.push(known)),
+        let far = |other: &Known| other.said.cell.chebyshev(self.own.cell);
+        if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
+            *other = known;
+        } else if let Err(known) = self.known.push(known)
+            && let Some(farthest) = self.known.iter_mut().max_by_key(|other| far(other))
+            && far(&known) < far(farthest)
+        {
+            *farthest = known;
         }
     }
 
