@@ -1,7 +1,7 @@
 //! Negotiation as a law.
 
 use super::{Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight};
-use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Protocol, Radio, Status, Tools, View};
 use crate::laws::cells::GridOrder;
 use crate::robot::RobotId;
@@ -30,8 +30,8 @@ pub struct NegotiationPayload {
     pub said: Said,
     /// The move by which it goes there.
     pub by: Dir,
-    /// Time until it may leave its cell, tenths of a second, at most 25.5 s.
-    pub busy_ds: u8,
+    /// Steps after the next one in which it cannot leave that cell.
+    pub busy: u8,
 }
 
 impl Content for NegotiationPayload {}
@@ -46,13 +46,23 @@ pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
     robot: Option<Negotiator<N, F>>,
     /// When it last decided.
     decided: Instant,
+    /// When its last crossing of a cell ended, or ends if it makes the move that it chose.
+    crossed: Instant,
+    tick: Duration,
 }
 
 impl<const N: usize, const F: usize> NegotiationGuidance<N, F> {
     /// Creates the law for bodies with these moves.
     #[must_use]
     pub const fn new(moves: Moves) -> Self {
-        Self { moves, goal: None, robot: None, decided: Instant::from_micros(0) }
+        Self {
+            moves,
+            goal: None,
+            robot: None,
+            decided: Instant::from_micros(0),
+            crossed: Instant::from_micros(0),
+            tick: Duration::ZERO,
+        }
     }
 }
 
@@ -80,9 +90,8 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             robot.set_goal(goal);
         }
         robot.see(cell, &sight(cell, &window));
-        let mut busy: Vec<Cell, N> = Vec::new();
         let stands = |at: Cell| view.peers().any(|(_, other)| other.said.cell == at && other.by == Dir::Stay);
-        for (neighbor, NegotiationPayload { said, by, busy_ds }) in view.peers() {
+        for (neighbor, NegotiationPayload { said, by, busy }) in view.peers() {
             if neighbor.heard.since(self.decided) > Duration::ZERO {
                 if by != Dir::Stay && (said.cell == cell || stands(said.cell)) {
                     robot.hear_at(neighbor.id, &said, said.cell - by.offset());
@@ -90,17 +99,18 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
                     robot.hear(neighbor.id, &said);
                 }
             }
-            if view.now.since(neighbor.heard) < Duration::from_millis(i32::from(busy_ds) * 100) {
-                let _ = busy.push(said.cell);
+            if view.now.since(neighbor.heard) < view.tick.saturating_mul(busy.into()) {
+                robot.hold(neighbor.id);
             }
         }
         let dir = robot.decide(Sensed::Nothing);
-        self.decided = view.now;
+        let begun = if view.now.since(self.crossed) < view.tick { self.crossed } else { view.now };
+        (self.decided, self.tick) = (view.now, view.tick);
         let mut status = Status { is_at_goal: cell == goal, ..Status::default() };
         let mut moves = Vec::new();
-        if busy.contains(&(cell + dir.offset())) {
-            robot.wait();
-        } else if dir != Dir::Stay {
+        if dir != Dir::Stay {
+            let class = window.get(cell + dir.offset()).unwrap_or(1);
+            self.crossed = begun + crossing(view.tick, dir, class);
             status.makes_way = status.is_at_goal;
             let _ = moves.push(dir);
         }
@@ -112,16 +122,22 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let Some(robot) = &mut self.robot else {
             // Without a goal it stays where it is.
             let said = Said { cell, goal: cell, waiting: 1, ..Said::default() };
-            return NegotiationPayload { said, by: Dir::Stay, busy_ds: 0 };
+            return NegotiationPayload { said, by: Dir::Stay, busy: 0 };
         };
         radio.broadcast(&robot.report());
+        let now = radio.now();
         let said = match here.seen() {
-            Ok((cell, window)) if self.decided != radio.now() => robot.see(cell, &sight(cell, &window)),
+            Ok((cell, window)) if self.decided != now => {
+                self.crossed = now + busy;
+                robot.see(cell, &sight(cell, &window))
+            }
             _ => robot.promise(),
         };
         let by = Dir::between(cell, said.cell).unwrap_or_default();
-        let tenths = busy.as_micros().max(0).checked_div(100_000).unwrap_or(0);
-        NegotiationPayload { said, by, busy_ds: u8::try_from(tenths).unwrap_or(u8::MAX) }
+        // The last step of a crossing ends when it is free.
+        let left = self.crossed.since(now).as_micros().saturating_sub(1);
+        let busy = left.checked_div(self.tick.as_micros()).unwrap_or(0);
+        NegotiationPayload { said, by, busy: u8::try_from(busy.max(0)).unwrap_or(u8::MAX) }
     }
 
     fn receive(&mut self, from: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
@@ -140,6 +156,13 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
     fn report(&self) -> law::Report {
         law::Report { goal: self.goal, target: self.goal, ..law::Report::default() }
     }
+}
+
+/// Time to cross a cell.
+fn crossing(tick: Duration, dir: Dir, class: u8) -> Duration {
+    let length = u64::from(class) * u64::from(dir.length(Norm::Euclidean));
+    let micros = (tick.as_micros().max(0).unsigned_abs() as u64 * length).checked_div(UNIT.into()).unwrap_or(0);
+    Duration::from_micros(i32::try_from(micros).unwrap_or(i32::MAX))
 }
 
 /// The walls in a window. Cells beyond the edge of the land are closed.

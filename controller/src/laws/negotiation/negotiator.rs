@@ -81,6 +81,8 @@ struct Known {
     age: u8,
     /// Steps since its place was heard or reported.
     lost: u8,
+    /// It does not move in this step.
+    holds: bool,
 }
 
 /// A robot that plans with the robots near it: at most `N` with itself, and distances of `F` goals.
@@ -178,11 +180,6 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         Said { cell, goal, waiting, wish: self.wish(cell), step, manners: Manners::default() }
     }
 
-    /// Does not count the cell that it chose as refused.
-    pub const fn wait(&mut self) {
-        self.chosen = Dir::Stay;
-    }
-
     fn begin(&mut self) {
         if core::mem::replace(&mut self.has_begun, true) {
             return;
@@ -190,6 +187,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         for other in &mut self.known {
             other.age = other.age.saturating_add(1);
             other.lost = other.lost.saturating_add(1);
+            other.holds = false;
             let said = &mut other.said;
             said.step = said.step.wrapping_add(1);
             said.waiting = waiting(said.cell == said.goal, said.waiting);
@@ -222,7 +220,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
             return;
         }
-        let known = Known { id, said: *said, age: 0, lost: 0 };
+        let known = Known { id, said: *said, age: 0, lost: 0, holds: false };
         let far = |other: &Known| other.said.cell.chebyshev(self.own.cell);
         if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
             *other = known;
@@ -240,6 +238,13 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
             // Its wish is that of another cell.
             other.age = 1;
+        }
+    }
+
+    /// A robot cannot move in this step.
+    pub fn hold(&mut self, id: RobotId) {
+        if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
+            other.holds = true;
         }
     }
 
@@ -303,10 +308,10 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         };
         self.known.retain(|other| other.said.cell.chebyshev(own.cell) <= RANGE);
         let mut members: Vec<Member, N> = Vec::new();
-        let _ = members.push(member(self.id, &own, true));
+        let _ = members.push(member(self.id, &own, true, false));
         // The newest news of a cell counts.
         self.known.sort_unstable_by_key(|other| (other.lost, other.age, other.id.0));
-        let known = self.known.iter().map(|other| member(other.id, &other.said, other.age == 0));
+        let known = self.known.iter().map(|other| member(other.id, &other.said, other.age == 0, other.holds));
         for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
             if members.iter().all(|other| other.cell != member.cell) {
                 let _ = members.push(member);
@@ -371,13 +376,13 @@ const fn waiting(is_at_goal: bool, before: u16) -> u16 {
     if is_at_goal { 1 } else { before.saturating_add(1) }
 }
 
-fn member(id: RobotId, said: &Said, is_heard: bool) -> Member {
+fn member(id: RobotId, said: &Said, is_heard: bool, holds: bool) -> Member {
     let Said { cell, goal, waiting, wish, step, manners } = *said;
-    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish) }
+    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish), holds }
 }
 
 /// A robot of which only the cell is known.
 fn stranger(cell: Cell) -> Member {
     let (id, manners) = (RobotId::NONE, Manners::default());
-    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None }
+    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false }
 }

@@ -108,6 +108,8 @@ pub struct Member {
     pub manners: Manners,
     /// Its wish; `None` if it is not known.
     pub wish: Option<Wish>,
+    /// It does not move in this step.
+    pub holds: bool,
 }
 
 /// A robot's place in the chain of those that ask each other to move.
@@ -195,12 +197,16 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves };
         let mut order: Vec<(u16, u32, u8), N> = Vec::new();
         for (index, member) in members.iter().enumerate() {
+            if member.holds {
+                plan.go(index as u8, member.cell);
+                continue;
+            }
             let tie = Rng::keyed(0, PURPOSE, member.id.0, 0).next_u32();
             let rank = if member.manners.is_last { 0 } else { member.waiting };
             let _ = order.push((rank, tie, index as u8));
         }
         order.sort_unstable_by(|a, b| b.cmp(a));
-        for (_, _, index) in order {
+        for (.., index) in order {
             if plan.next(index).is_none() {
                 plan.place(index);
             }
@@ -223,6 +229,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             step: 0,
             manners: Manners::default(),
             wish: None,
+            holds: false,
         };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
     }

@@ -105,9 +105,15 @@ impl Part for Grid {
         let mut contest = self.world.contest(tick, commands, own.cells.as_ref(), beside);
         loop {
             let open = contest.round(&mut self.world);
-            if talk.sum(open)? == 0 {
-                contest.finish(&mut self.world);
-                return Ok(());
+            let is_decided = talk.sum(open)? == 0;
+            if is_decided {
+                let [moved, refused] = contest.result();
+                // Two counts of ranks.
+                let ranks = talk.sum(u64::from(moved) | u64::from(refused) << 32)?;
+                if ranks as u32 == 0 || ranks >> 32 == 0 {
+                    contest.finish(&mut self.world);
+                    return Ok(());
+                }
             }
             let settled =
                 |region: &Region| encode(&region.cells.map(|cells| contest.settled(&cells)).unwrap_or_default());
@@ -115,6 +121,9 @@ impl Part for Grid {
             contest.tell();
             for (rank, bytes) in heard {
                 contest.hear(&decode::<Vec<Settled>>(rank, "moves", &bytes)?);
+            }
+            if is_decided {
+                contest.retry();
             }
         }
     }

@@ -1,11 +1,11 @@
 //! Moves on the grid near the borders between MPI ranks.
 //!
 //! Whether a robot may move depends on the moves before it by priority, a chain that may cross
-//! borders several times. A rank therefore gets the bodies of other ranks within [`DEPTH`]
-//! cells with their preferred moves, processes all by priority, and leaves moves undecided that
-//! depend on bodies farther away. While any move in the world is undecided, ranks exchange their
-//! decisions and start another round, which decides at least the first undecided move; usually one
-//! round suffices. The result is that of [`World::advance`] for any partition.
+//! borders several times. A rank therefore gets the bodies of other ranks within [`DEPTH`] cells
+//! with their preferred moves, processes all by priority, and leaves moves undecided that depend on
+//! bodies farther away. While any move in the world is undecided, ranks exchange their decisions
+//! and start another round, which decides at least the first undecided move; usually one round
+//! suffices. Refused bodies then try again, in another pass. The result is that of [`World::advance`] for any partition.
 
 use super::{Body, PRIORITY, World};
 use serde::{Deserialize, Serialize};
@@ -78,6 +78,7 @@ pub struct Settled {
     pub(crate) by: Dir,
 }
 
+#[derive(Clone)]
 struct Mover {
     priority: u64,
     id: RobotId,
@@ -92,6 +93,11 @@ struct Mover {
 }
 
 impl Mover {
+    /// No preferred cell was free.
+    fn is_refused(&self) -> bool {
+        self.by == Some(Dir::Stay) && !self.wish.contains(&Dir::Stay)
+    }
+
     const fn mark(&self) -> u32 {
         if self.body & BESIDE == 0 { self.body + 1 } else { self.body }
     }
@@ -100,7 +106,10 @@ impl Mover {
 /// Moves of one tick, until all are decided.
 pub struct Contest {
     now: u64,
+    /// All attempts, in their order.
     movers: Vec<Mover>,
+    /// Attempts before those of this pass.
+    past: usize,
     beside: HashMap<RobotId, usize>,
     cells: Vec<Cell>,
     before: Vec<(usize, u32)>,
@@ -127,7 +136,7 @@ impl World {
         let near = self.bodies.iter().enumerate().filter(|(_, body)| bounds.distance(body.cell) <= i32::from(depth));
         near.map(|(index, body)| {
             let wish = match commands.map(|commands| &commands[index]) {
-                Some(Command::Move(wish)) if body.free_at <= now => Some(wish.clone()),
+                Some(Command::Move(wish)) if body.free_at <= now && !wish.is_empty() => Some(wish.clone()),
                 _ => None,
             };
             Beside { id: body.id, cell: body.cell, diagonal: body.diagonal(now), wish }
@@ -160,6 +169,7 @@ impl World {
         for (index, (body, command)) in self.bodies.iter().zip(commands).enumerate() {
             if let Command::Move(wish) = command
                 && body.free_at <= now
+                && !wish.is_empty()
             {
                 movers.push(mover(body.id, index as u32, body.cell, wish.clone(), true));
             }
@@ -181,10 +191,11 @@ impl World {
             }
         }
         movers.sort_unstable_by_key(|mover| (mover.priority, mover.id));
-        let others = movers.iter().enumerate().filter(|(_, mover)| mover.body & BESIDE != 0);
-        let beside = others.map(|(at, mover)| (mover.id, at)).collect();
         let diagonals = Diagonals { all: diagonals, own: self.bodies.len() };
-        Contest { now, movers, beside, cells, before: Vec::new(), diagonals }
+        let mut contest =
+            Contest { now, movers, past: 0, beside: HashMap::new(), cells, before: Vec::new(), diagonals };
+        contest.note_beside();
+        contest
     }
 
     /// Keeps only the bodies with the indices `here`, in this order.
@@ -270,6 +281,28 @@ impl World {
 }
 
 impl Contest {
+    fn note_beside(&mut self) {
+        let others = self.movers.iter().enumerate().skip(self.past);
+        let others = others.filter(|(_, mover)| mover.body & BESIDE != 0);
+        self.beside = others.map(|(at, mover)| (mover.id, at)).collect();
+    }
+
+    /// Whether own bodies moved in this pass, and whether own bodies were refused. All moves of the
+    /// pass must be decided.
+    pub fn result(&self) -> [bool; 2] {
+        let own = || self.movers[self.past..].iter().filter(|mover| mover.body & BESIDE == 0);
+        [own().any(|mover| !mover.is_refused()), own().any(Mover::is_refused)]
+    }
+
+    /// Starts the next pass: refused bodies try again.
+    pub fn retry(&mut self) {
+        let again = self.movers[self.past..].iter().filter(|mover| mover.is_refused());
+        let again: Vec<_> = again.map(|mover| Mover { by: None, is_told: false, ..mover.clone() }).collect();
+        self.past = self.movers.len();
+        self.movers.extend(again);
+        self.note_beside();
+    }
+
     /// Processes all moves by priority. Returns the number of undecided moves of this rank.
     pub fn round(&mut self, world: &mut World) -> u64 {
         let mut open = 0;

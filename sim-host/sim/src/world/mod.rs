@@ -211,7 +211,8 @@ impl World {
     ///
     /// A body that may leave takes the first of its preferred moves whose cell is passable and
     /// free, also if another body left that cell earlier in the tick; the order is that of this
-    /// tick's priorities. A diagonal move must also not cross one that is under way in this tick
+    /// tick's priorities. Refused bodies try again after the others, as long as any body moves, so
+    /// that robots can follow each other. A diagonal move must also not cross one that is under way in this tick
     /// ([`Dir::crosses`]), unless [`MoveRules::crossing`] allows it. Entering cell c by move d
     /// keeps the body busy for length(d) * u(c) ticks (eq. 6). A body that moves again as soon as
     /// it is free keeps the remaining fraction of a tick, so a journey takes exactly the sum of
@@ -225,33 +226,37 @@ impl World {
         movers.clear();
         let bodies = self.bodies.par_iter().enumerate().with_min_len(1024);
         movers.par_extend(bodies.filter_map(|(index, body)| {
-            let moves = body.free_at <= now && matches!(commands[index], Command::Move(_));
+            let wants = matches!(&commands[index], Command::Move(preferred) if !preferred.is_empty());
+            let moves = body.free_at <= now && wants;
             let priority = || Rng::keyed(self.seed, PRIORITY, body.id.0, tick).next_u64();
             moves.then(|| (priority(), body.id, index as u32))
         }));
         movers.par_sort_unstable();
-        for &(_, _, index) in &movers {
-            if let Command::Move(preferred) = &commands[index as usize] {
-                self.move_body(index as usize, preferred, now);
-            }
+        let mut refused = movers.len() + 1;
+        while movers.len() < refused {
+            refused = movers.len();
+            movers.retain(|&(_, _, index)| match &commands[index as usize] {
+                Command::Move(preferred) => !self.move_body(index as usize, preferred, now),
+                _ => false,
+            });
         }
         self.movers = movers;
     }
 
-    fn move_body(&mut self, index: usize, preferred: &[Dir], now: u64) {
+    /// Returns false if all preferred moves are refused.
+    fn move_body(&mut self, index: usize, preferred: &[Dir], now: u64) -> bool {
         let body = self.bodies[index];
         let open = preferred.iter().find(|&&dir| dir == Dir::Stay || self.is_open(body.cell, dir, now));
-        let Some(&dir) = open else { return };
+        let Some(&dir) = open else { return false };
         let to = body.cell + dir.offset();
-        let (Some(from_at), Some(to_at)) = (self.terrain.index(body.cell), self.terrain.index(to)) else {
-            return;
-        };
-        if dir == Dir::Stay {
-            return;
+        if let (Some(from_at), Some(to_at)) = (self.terrain.index(body.cell), self.terrain.index(to))
+            && dir != Dir::Stay
+        {
+            self.occupancy[from_at] = 0;
+            self.occupancy[to_at] = index as u32 + 1;
+            self.bodies[index] = self.entered(&body, dir, now);
         }
-        self.occupancy[from_at] = 0;
-        self.occupancy[to_at] = index as u32 + 1;
-        self.bodies[index] = self.entered(&body, dir, now);
+        true
     }
 
     fn entered(&self, body: &Body, dir: Dir, now: u64) -> Body {

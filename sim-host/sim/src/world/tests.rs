@@ -197,17 +197,19 @@ fn a_contested_cell_goes_to_each_robot_equally_often() {
 }
 
 #[test]
-fn a_queue_moves_together_when_the_first_has_priority() {
-    let starts = [(0, 0), (1, 0)];
-    let together = (0..200)
-        .filter(|&tick| {
-            let mut world = world(Terrain::flat(3, 1), MoveRules::default(), &starts);
-            world.advance(tick, &[moves(&[Dir::East]), moves(&[Dir::East])]);
-            assert_eq!(world.bodies()[1].cell, Cell::new(2, 0));
-            world.bodies()[0].cell == Cell::new(1, 0)
-        })
-        .count();
-    assert!((60..140).contains(&together), "{together}");
+fn a_queue_moves_together_and_a_circle_does_not_move() {
+    let queue: Vec<_> = (0..6).map(|x| (x, 0)).collect();
+    let circle = [(0, 1), (1, 1), (1, 2), (0, 2)];
+    for tick in 0..50 {
+        let starts = [&queue[..], &circle[..]].concat();
+        let mut world = world(Terrain::flat(7, 3), MoveRules::default(), &starts);
+        let mut commands = vec![moves(&[Dir::East]); 6];
+        commands.extend([Dir::East, Dir::North, Dir::West, Dir::South].map(|dir| moves(&[dir])));
+        world.advance(tick, &commands);
+        let cells = world.bodies().iter().map(|body| (body.cell.x, body.cell.y));
+        let moved = queue.iter().map(|&(x, y)| (x + 1, y));
+        assert!(cells.eq(moved.chain(circle)), "tick {tick}");
+    }
 }
 
 #[test]

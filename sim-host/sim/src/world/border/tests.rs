@@ -62,7 +62,8 @@ impl Crowd {
         }
         for round in 1.. {
             let open: u64 = contests.iter_mut().zip(&mut self.parts).map(|(contest, part)| contest.round(part)).sum();
-            if open == 0 {
+            let results: Vec<_> = contests.iter().filter(|_| open == 0).map(Contest::result).collect();
+            if open == 0 && !(results.iter().any(|[moved, _]| *moved) && results.iter().any(|[_, refused]| *refused)) {
                 contests.into_iter().zip(&mut self.parts).for_each(|(contest, part)| contest.finish(part));
                 return round;
             }
@@ -75,6 +76,9 @@ impl Crowd {
                 }
             }
             contests.iter_mut().for_each(Contest::tell);
+            if open == 0 {
+                contests.iter_mut().for_each(Contest::retry);
+            }
         }
         unreachable!("the loop returns")
     }
