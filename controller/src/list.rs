@@ -39,6 +39,14 @@ pub(crate) fn sink_last<T: Copy>(items: &mut [T], must_swap: impl Fn(&T, &T) -> 
     }
 }
 
+/// Sorts a short list by distinct keys. O(n^2).
+#[cfg(feature = "negotiation")]
+pub(crate) fn sort_by_key<T: Copy, K: Ord>(items: &mut [T], key: impl Fn(&T) -> K) {
+    for end in 1..=items.len() {
+        sink_last(items.get_mut(..end).unwrap_or_default(), |before, after| key(before) > key(after));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

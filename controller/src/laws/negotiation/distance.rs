@@ -26,27 +26,46 @@ impl Distances {
     }
 
     /// Searches from the goal outwards, 64 cells at once: at most 64 rows for each move of the
-    /// longest way. `diagonals`: with the moves to eight neighbours.
+    /// longest way, and only those near cells that were just reached. `diagonals`: with the moves
+    /// to eight neighbours.
     pub fn search(&mut self, goal: Cell, area: &Area, diagonals: bool) {
         *self = Self { goal, version: area.version(), ..Self::EMPTY };
         let open = area.open();
-        let mut front: Plane = [0; SIDE];
-        set(&mut front, area.inside(goal));
+        let (mut front, mut next): (&mut Plane, &mut Plane) = (&mut [0; SIDE], &mut [0; SIDE]);
         let mut fresh = open;
         let mut remainder = 0u8;
-        while front.iter().any(|&row| row != 0) {
-            let rows = front.iter().zip(&mut fresh).zip(self.low.iter_mut().zip(&mut self.high));
-            for ((front, fresh), (low, high)) in rows {
-                *fresh &= !front;
-                if remainder != 1 {
-                    *low &= !front;
-                }
-                if remainder != 2 {
-                    *high &= !front;
-                }
+        let goal = area.inside(goal);
+        set(front, goal);
+        // A bit for each row of `front` with cells.
+        let mut rows = 1_u64 << place(goal.y);
+        while rows != 0 {
+            for y in ones(rows) {
+                let reached = row(front, y);
+                let keep = |plane: &mut Plane, keeps: bool| {
+                    if let Some(row) = plane.get_mut(y).filter(|_| !keeps) {
+                        *row &= !reached;
+                    }
+                };
+                keep(&mut fresh, false);
+                keep(&mut self.low, remainder == 1);
+                keep(&mut self.high, remainder == 2);
             }
             remainder = if remainder == 2 { 0 } else { remainder.wrapping_add(1) };
-            front = spread(&front, &open, &fresh, diagonals);
+            let mut reached = 0;
+            for y in ones(rows | rows.rotate_left(1) | rows.rotate_right(1)) {
+                let cells = spread(front, &open, y, diagonals) & row(&fresh, y);
+                if let Some(row) = next.get_mut(y) {
+                    *row = cells;
+                }
+                reached |= u64::from(cells != 0) << y;
+            }
+            for y in ones(rows) {
+                if let Some(row) = front.get_mut(y) {
+                    *row = 0;
+                }
+            }
+            core::mem::swap(&mut front, &mut next);
+            rows = reached;
         }
     }
 
@@ -76,26 +95,32 @@ impl Distances {
     }
 }
 
-/// The cells of `fresh` that one move from `front` reaches.
-fn spread(front: &Plane, open: &Plane, fresh: &Plane, diagonals: bool) -> Plane {
-    let row = |plane: &Plane, y: usize| plane.get(y & (SIDE - 1)).copied().unwrap_or(0);
-    let mut next: Plane = [0; SIDE];
-    for (y, next) in next.iter_mut().enumerate() {
-        let (below, above) = (y.wrapping_add(SIDE - 1), y.wrapping_add(1));
-        let from = row(front, y);
-        let mut reached = from.rotate_left(1) | from.rotate_right(1) | row(front, below) | row(front, above);
-        if diagonals {
-            for other in [below, above] {
-                // Both cells beside a diagonal are open: one in the row of the start, one in the
-                // row of the end.
-                let (start, beside) = (row(front, other), row(open, other));
-                let end = row(open, y);
-                reached |= (start & end).rotate_left(1) & beside | (start & end).rotate_right(1) & beside;
-            }
+/// The cells of row `y` that one move from `front` reaches, if they are open.
+fn spread(front: &Plane, open: &Plane, y: usize, diagonals: bool) -> u64 {
+    let (below, above) = (y.wrapping_add(SIDE - 1), y.wrapping_add(1));
+    let from = row(front, y);
+    let mut reached = from.rotate_left(1) | from.rotate_right(1) | row(front, below) | row(front, above);
+    if diagonals {
+        for other in [below, above] {
+            // Both cells beside a diagonal are open: one in the row of the start, one in the row
+            // of the end.
+            let (start, beside) = (row(front, other), row(open, other));
+            let end = row(open, y);
+            reached |= (start & end).rotate_left(1) & beside | (start & end).rotate_right(1) & beside;
         }
-        *next = reached & row(fresh, y);
     }
-    next
+    reached
+}
+
+fn row(plane: &Plane, y: usize) -> u64 {
+    plane.get(y & (SIDE - 1)).copied().unwrap_or(0)
+}
+
+/// The places of the bits that are set.
+fn ones(bits: u64) -> impl Iterator<Item = usize> {
+    core::iter::successors(Some(bits), |bits| Some(bits & bits.wrapping_sub(1)))
+        .take_while(|&bits| bits != 0)
+        .map(|bits| bits.trailing_zeros() as usize)
 }
 
 const _: () = assert!(place(-1) == SIDE - 1);

@@ -4,6 +4,7 @@ use super::area::{Area, Sight};
 use super::plan::{Fields, Manners, Member, Moves, Plan, Wish};
 use crate::fixint;
 use crate::grid::{Cell, Dir};
+use crate::list;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use heapless::Vec;
@@ -258,11 +259,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
                 let _ = near.push((offset.chebyshev(Cell::default()), other.id, offset));
             }
         }
-        near.sort_unstable_by_key(|&(distance, id, _)| (distance, id.0));
+        list::sort_by_key(&mut near, |&(distance, id, _)| (distance, id.0));
         let short = |&(_, id, offset): &(u32, RobotId, Cell)| {
             (id.0 as u8, (offset.x + NEAR + 1) as u8 | ((offset.y + NEAR + 1) as u8) << 4)
         };
-        let heard = near.iter().take(REPORTED).map(short).collect();
+        let heard = list::collect(near.iter().map(short));
         Report { cell: self.own.cell, sight: self.sight, heard }
     }
 
@@ -310,7 +311,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         let mut members: Vec<Member, N> = Vec::new();
         let _ = members.push(member(self.id, &own, true, false));
         // The newest news of a cell counts.
-        self.known.sort_unstable_by_key(|other| (other.lost, other.age, other.id.0));
+        list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
         let known = self.known.iter().map(|other| member(other.id, &other.said, other.age == 0, other.holds));
         for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
             if members.iter().all(|other| other.cell != member.cell) {
@@ -346,8 +347,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// and forgets those for which there is none. Returns the cells of robots that are not known.
     fn match_sensed(&mut self, cells: &[Cell]) -> Vec<Cell, N> {
         let own = self.own.cell;
-        let mut free: Vec<Cell, N> = cells.iter().copied().filter(|&cell| cell != own).take(N).collect();
-        self.known.sort_unstable_by_key(|other| (other.lost, other.age, other.id.0));
+        let mut free: Vec<Cell, N> = list::collect(cells.iter().copied().filter(|&cell| cell != own));
+        list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
         let mut placed: Vec<RobotId, N> = Vec::new();
         for most in [0, MOST_MISSED] {
             for Known { id, said, .. } in &mut self.known {
@@ -356,7 +357,9 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
                 }
                 let far = |&index: &usize| free.get(index).map_or(u32::MAX, |&cell| moves(cell, said.cell));
                 let nearest = (0..free.len()).min_by_key(far).filter(|index| far(index) <= most);
-                if let Some(index) = nearest {
+                if let Some(index) = nearest
+                    && index < free.len()
+                {
                     said.cell = free.swap_remove(index);
                     let _ = placed.push(*id);
                 }

@@ -4,9 +4,10 @@ use super::area::Area;
 use super::distance::Distances;
 use crate::fixint;
 use crate::grid::{Cell, Dir};
+use crate::list;
 use crate::rand::Rng;
 use crate::robot::RobotId;
-use core::cmp::Ordering;
+use core::cmp::{Ordering, Reverse};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -205,8 +206,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             let rank = if member.manners.is_last { 0 } else { member.waiting };
             let _ = order.push((rank, tie, index as u8));
         }
-        order.sort_unstable_by(|a, b| b.cmp(a));
-        for (.., index) in order {
+        list::sort_by_key(&mut order, |&key| Reverse(key));
+        for &(.., index) in &order {
             if plan.next(index).is_none() {
                 plan.place(index);
             }
@@ -338,7 +339,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
                 let _ = order.push((rank, tie, dir));
             }
         }
-        order.sort_unstable_by_key(|&(rank, tie, dir)| (rank, tie, dir.index()));
+        list::sort_by_key(&mut order, |&(rank, tie, dir)| (rank, tie, dir.index()));
         let best = order.first().map_or(Dir::Stay, |&(_, _, dir)| dir);
         let swaps =
             if best == Dir::Stay || member.manners.keeps_on { None } else { self.swap(index, cell + best.offset()) };
