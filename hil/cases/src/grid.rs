@@ -1,6 +1,6 @@
 use crate::hash::Hashes;
 use crate::land::{Land, WINDOW};
-use crate::medium::{Faults, INBOX, Medium};
+use crate::medium::{Faults, Medium};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use serde::Serialize;
@@ -23,13 +23,13 @@ pub(crate) const ROBOTS: usize = 4;
 
 pub(crate) type Route = RouteGuidance<CELLS, VISITS>;
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE>;
-pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, ROBOTS, Unguarded, W>;
+pub(crate) type GridAgent<S, G, W = Postcard, const N: usize = ROBOTS> = Agent<S, G, N, Unguarded, W>;
 
 /// With [`UNIT`] milliseconds, crossing times need no division.
 pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
 
-pub(crate) struct Walker<S: Scalar, G: Law<S>, W = Postcard> {
-    pub(crate) agent: GridAgent<S, G, W>,
+pub(crate) struct Walker<S: Scalar, G: Law<S>, W = Postcard, const N: usize = ROBOTS> {
+    pub(crate) agent: GridAgent<S, G, W, N>,
     pub(crate) cell: Cell,
     pub(crate) free_at_ms: u32,
 }
@@ -50,35 +50,35 @@ pub(crate) fn workspace() -> GridWorkspace<CELLS> {
     GridWorkspace::new()
 }
 
-/// `commander` writes an operator's packets of a tick, which robots receive like each other's.
+/// `N`: robots; `SEATS`: senders of the medium, the last of which is `commander`. It writes an
+/// operator's packets of a tick, which robots receive like each other's.
 #[inline(never)]
-pub(crate) fn run<S, G, W, P>(
+pub(crate) fn run<S, G, W, P, const N: usize, const SEATS: usize, const BYTES: usize>(
     scene: &Scene,
-    walkers: &mut Vec<Walker<S, G, W>, ROBOTS>,
-    wire: W,
-    mut commander: impl FnMut(u32, &mut Vec<u8, INBOX>),
+    walkers: &mut Vec<Walker<S, G, W, N>, N>,
+    medium: &mut Medium<W, SEATS, BYTES>,
+    workspace: &mut G::Workspace,
+    mut commander: impl FnMut(u32, &mut Vec<u8, BYTES>),
     probe: &mut P,
 ) -> Summary
 where
     S: Scalar,
-    G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
-    GridAgent<S, G, W>: Serialize,
+    G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>>,
+    GridAgent<S, G, W, N>: Serialize,
     W: Wire,
     P: Probe<S>,
 {
-    let mut medium = Medium::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
-    let mut workspace = workspace();
     let mut hashes = Hashes::new();
-    let mut summary = Summary::of::<GridAgent<S, G, W>, G::Workspace>();
+    let mut summary = Summary::of::<GridAgent<S, G, W, N>, G::Workspace>();
     let mut out = Outputs::default();
-    let mut commands: [Command<S>; ROBOTS] = [const { Command::Hold }; ROBOTS];
+    let mut commands: [Command<S>; N] = [const { Command::Hold }; N];
     for tick in 0..scene.ticks {
         let mut inbox = Vec::new();
         commander(tick, &mut inbox);
-        medium.send(ROBOTS, &inbox);
+        medium.send(N, &inbox);
         for (index, (walker, command)) in walkers.iter_mut().zip(&mut commands).enumerate() {
             medium.hear(index, tick, &mut inbox);
-            step(scene, walker, tick, &inbox, &mut workspace, probe, &mut out);
+            step(scene, walker, tick, &inbox, workspace, probe, &mut out);
             hashes.step(&out, walker.agent.digest());
             summary.count(&out);
             medium.send(index, &out.outbox);
@@ -107,9 +107,9 @@ where
 }
 
 #[inline(never)]
-fn step<S, G, W, P>(
+fn step<S, G, W, P, const N: usize>(
     scene: &Scene,
-    walker: &mut Walker<S, G, W>,
+    walker: &mut Walker<S, G, W, N>,
     tick: u32,
     inbox: &[u8],
     workspace: &mut G::Workspace,
@@ -139,9 +139,9 @@ fn step<S, G, W, P>(
     probe.step(&mut walker.agent, &inputs, instant(tick), workspace, out);
 }
 
-fn advance<S: Scalar, G: Law<S>, W>(
+fn advance<S: Scalar, G: Law<S>, W, const N: usize>(
     scene: &Scene,
-    walkers: &mut [Walker<S, G, W>],
+    walkers: &mut [Walker<S, G, W, N>],
     index: usize,
     moves: &[staya_controller::grid::Dir],
     tick: u32,
@@ -175,7 +175,7 @@ fn advance<S: Scalar, G: Law<S>, W>(
     }
 }
 
-fn overlaps<S: Scalar, G: Law<S>, W>(walkers: &[Walker<S, G, W>]) -> u32 {
+fn overlaps<S: Scalar, G: Law<S>, W, const N: usize>(walkers: &[Walker<S, G, W, N>]) -> u32 {
     let mut count = 0;
     for (index, one) in walkers.iter().enumerate() {
         let others = walkers.iter().skip(index.saturating_add(1));

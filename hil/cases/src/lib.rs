@@ -14,6 +14,8 @@ mod grid;
 mod hash;
 mod land;
 mod medium;
+#[cfg(feature = "all-cases")]
+mod negotiation;
 mod plane;
 mod scene;
 mod swarms;

@@ -18,14 +18,15 @@ pub(crate) struct Faults {
     pub(crate) twice: u32,
 }
 
-pub(crate) struct Medium<W, const R: usize> {
+/// Between `R` senders, with inboxes of `B` bytes.
+pub(crate) struct Medium<W, const R: usize, const B: usize = INBOX> {
     wire: W,
     said: [Vec<u8, SAID>; R],
     next: [Vec<u8, SAID>; R],
     faults: Faults,
 }
 
-impl<W: Wire, const R: usize> Medium<W, R> {
+impl<W: Wire, const R: usize, const B: usize> Medium<W, R, B> {
     #[inline(never)] // Built in place to save stack.
     pub(crate) const fn new(wire: W, faults: Faults) -> Self {
         Self { wire, said: [const { Vec::new() }; R], next: [const { Vec::new() }; R], faults }
@@ -47,7 +48,7 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    pub(crate) fn hear(&self, receiver: usize, tick: u32, inbox: &mut Vec<u8, INBOX>) {
+    pub(crate) fn hear(&self, receiver: usize, tick: u32, inbox: &mut Vec<u8, B>) {
         inbox.clear();
         for (sender, said) in self.said.iter().enumerate() {
             if sender == receiver {
@@ -63,7 +64,7 @@ impl<W: Wire, const R: usize> Medium<W, R> {
     }
 
     /// Each packet draws equally many random numbers, so that its fate does not affect the next.
-    fn carry(&self, len: usize, packet: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, INBOX>) {
+    fn carry(&self, len: usize, packet: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, B>) {
         let Faults { loss, flip, twice, .. } = self.faults;
         let (is_lost, is_wrong) = (rng.chance_q32(loss), rng.chance_q32(flip));
         let (comes_twice, place) = (rng.chance_q32(twice), rng.below(8 * len as u32));

@@ -36,6 +36,10 @@ pub enum Case {
     GoalFlock,
     /// Boids align their headings.
     Boids,
+    /// Robots that negotiate change rooms through a corridor that is one robot wide. Eight of them
+    /// do not fit the RAM of the nRF51.
+    #[cfg(feature = "all-cases")]
+    Negotiation,
 }
 
 impl Case {
@@ -54,6 +58,8 @@ impl Case {
         Self::Lattice,
         Self::GoalFlock,
         Self::Boids,
+        #[cfg(feature = "all-cases")]
+        Self::Negotiation,
     ];
 
     /// Name in tables.
@@ -73,10 +79,13 @@ impl Case {
             Self::Lattice => "lattice",
             Self::GoalFlock => "goal_flock",
             Self::Boids => "boids",
+            #[cfg(feature = "all-cases")]
+            Self::Negotiation => "negotiation",
         }
     }
 
-    /// Runs the case to its end. Stack: at most about 12 KiB, plus the stack of a step.
+    /// Runs the case to its end. Stack: about 12 KiB, of `negotiation` 48 KiB, plus the stack
+    /// of a step.
     pub fn run<S: Scalar, P: Probe<S>>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::route(probe),
@@ -92,6 +101,8 @@ impl Case {
             Self::Lattice => flocks::lattice(probe),
             Self::GoalFlock => flocks::goals(probe),
             Self::Boids => flocks::boids(probe),
+            #[cfg(feature = "all-cases")]
+            Self::Negotiation => crate::negotiation::swarm(probe),
         }
     }
 }

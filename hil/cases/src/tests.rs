@@ -29,6 +29,7 @@ fn robots_with_goals_arrive_and_never_touch() {
         (Case::Fly, 5),
         (Case::PushOut, 3),
         (Case::GoalFlock, 5),
+        (Case::Negotiation, 8),
     ];
     let mut faults = String::new();
     for (case, robots) in cases {

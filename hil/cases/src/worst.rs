@@ -3,6 +3,8 @@
 
 use crate::hash::Hashes;
 use crate::land::WINDOW;
+#[cfg(feature = "all-cases")]
+use crate::negotiation;
 use crate::plane::STEP;
 use crate::scene;
 use crate::{Probe, Summary};
@@ -70,6 +72,9 @@ pub enum WorstCase {
     GoalFlock,
     /// Boids with all robots in range.
     Boids,
+    /// Negotiation with 15 robots in long corridors, half of them not heard in a step.
+    #[cfg(feature = "all-cases")]
+    Negotiation,
 }
 
 impl WorstCase {
@@ -88,6 +93,8 @@ impl WorstCase {
         Self::Lattice,
         Self::GoalFlock,
         Self::Boids,
+        #[cfg(feature = "all-cases")]
+        Self::Negotiation,
     ];
 
     /// Name in tables.
@@ -107,6 +114,8 @@ impl WorstCase {
             Self::Lattice => "worst_lattice",
             Self::GoalFlock => "worst_goal_flock",
             Self::Boids => "worst_boids",
+            #[cfg(feature = "all-cases")]
+            Self::Negotiation => "worst_negotiation",
         }
     }
 
@@ -145,6 +154,8 @@ impl WorstCase {
                 let guidance = BoidsGuidance::new(params, S::ONE);
                 in_crowd::<S, _, _, P, N>(guidance, Unguarded, probe)
             }
+            #[cfg(feature = "all-cases")]
+            Self::Negotiation => negotiation::worst::<S, P, N>(probe),
         }
     }
 }

@@ -18,6 +18,9 @@ pub struct Budget {
     ram: Option<u64>,
     agent_and_workspace: Option<u64>,
     stack: Option<u64>,
+    /// Cases with another limit of the stack.
+    #[serde(default)]
+    stacks: BTreeMap<String, u64>,
     /// Machine code of the minimal agent, by law.
     #[serde(default)]
     text: BTreeMap<String, u64>,
@@ -45,7 +48,7 @@ impl Budget {
         let most = |value: fn(&Row) -> u64| rows().map(value).max();
         let lockstep =
             measured.programs.iter().find(|(program, _)| program == "lockstep").map(|(_, sections)| sections);
-        let stack = most(|row| row.stack);
+        let stack = rows().filter(|row| !self.stacks.contains_key(&row.case)).map(|row| row.stack).max();
         let ram = lockstep.zip(stack).map(|(it, stack)| it.ram + stack);
         let mut checks = vec![
             ("text of lockstep", self.lockstep_text, lockstep.map(|it| it.text)),
@@ -58,6 +61,11 @@ impl Budget {
         for (case, limit) in &self.instructions {
             let row = rows().find(|row| row.case == *case);
             checks.push((case, Some(*limit), row.map(|row| row.worst)));
+        }
+        let stacks: Vec<String> = self.stacks.keys().map(|case| format!("stack of {case}")).collect();
+        for (name, (case, limit)) in stacks.iter().zip(&self.stacks) {
+            let row = rows().find(|row| row.case == *case);
+            checks.push((name, Some(*limit), row.map(|row| row.stack)));
         }
         let names: Vec<String> = self.text.keys().map(|law| format!("text of {law}")).collect();
         for ((name, limit), law) in names.iter().zip(self.text.values()).zip(self.text.keys()) {
@@ -114,6 +122,19 @@ mod tests {
         let told = budget.breaches(&measured(100, 50, 11, 7));
         assert_eq!(told[0], "RAM of lockstep with the deepest step: 61, at most 60");
         assert_eq!(told[1], "stack of a step: 11, at most 10");
+    }
+
+    #[test]
+    fn a_case_can_have_a_stack_of_its_own() {
+        let text = TEXT.replace("[a.instructions]", "[a.stacks]\nroute = 20\n[a.instructions]");
+        let mut measured = measured(1, 1, 10, 1);
+        measured.rows[0].stack = 20;
+        assert!(Budget::read(&text, "a").unwrap().breaches(&measured).is_empty());
+        measured.rows[0].stack = 21;
+        let told = Budget::read(&text, "a").unwrap().breaches(&measured);
+        assert_eq!(told, ["stack of route: 21, at most 20"]);
+        measured.rows[1].stack = 11;
+        assert_eq!(Budget::read(&text, "a").unwrap().breaches(&measured).len(), 2);
     }
 
     #[test]

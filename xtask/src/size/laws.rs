@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// Each law with its case in `bench`, its guidance and its safety layer in numbers `#` with at most
 /// `K` half-planes.
-const LAWS: [(&str, &str, &str, &str); 9] = [
+const LAWS: [(&str, &str, &str, &str); 10] = [
     ("route", "worst_route", "RouteGuidance", "Unguarded"),
     ("formation", "worst_formation_reflexive", "FormationGuidance", "Unguarded"),
     ("waypoint_orca", "worst_orca_found", "WaypointGuidance", "OrcaSafety<#, K>"),
@@ -17,6 +17,7 @@ const LAWS: [(&str, &str, &str, &str); 9] = [
     ("lattice", "worst_lattice", "LatticeGuidance", "Unguarded"),
     ("goal_flock", "worst_goal_flock", "GoalFlockGuidance", "Unguarded"),
     ("boids", "worst_boids", "BoidsGuidance", "Unguarded"),
+    ("negotiation", "worst_negotiation", "NegotiationGuidance", "Unguarded"),
 ];
 
 /// The measurements of one law.

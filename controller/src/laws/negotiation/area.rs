@@ -170,10 +170,9 @@ impl Area {
     pub fn inside(&self, cell: Cell) -> Cell {
         let Cell { x, y } = self.center;
         let most = HALF - 1;
-        Cell::new(
-            cell.x.clamp(x.saturating_sub(most), x.saturating_add(most)),
-            cell.y.clamp(y.saturating_sub(most), y.saturating_add(most)),
-        )
+        // Not `clamp`, whose assertion would stay in the firmware.
+        let clamp = |at: i16, middle: i16| at.max(middle.saturating_sub(most)).min(middle.saturating_add(most));
+        Cell::new(clamp(cell.x, x), clamp(cell.y, y))
     }
 
     /// The open cells that one move reaches, in the order of `moves`.

@@ -1,9 +1,13 @@
-use crate::grid::{Formation, GridAgent, ROBOTS, Route, Scene, TICK, Walker, run};
+use crate::grid::{self, Formation, GridAgent, ROBOTS, Route, Scene, TICK, Walker};
 use crate::land::Land;
-use crate::medium::{Faults, INBOX};
+use crate::medium::{Faults, INBOX, Medium};
 use crate::{Probe, Summary};
 use heapless::Vec;
-use staya_controller::agent::{AgentConfig, Grid, GridMessage, GridOrder, Protocol as _, TemplatePart, Unguarded};
+use serde::Serialize;
+use staya_controller::agent::{
+    AgentConfig, CELLS, Grid, GridMessage, GridOrder, GridWorkspace, Law, OnGrid, Protocol as _, TemplatePart,
+    Unguarded,
+};
 use staya_controller::formation::{FormationParams, Prediction};
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
@@ -29,6 +33,24 @@ pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let mut walkers = Vec::new();
     add_travellers(&mut walkers);
     run(&scene, &mut walkers, Postcard, |_, _| {}, probe)
+}
+
+/// Runs robots that search windows. An operator has the last seat at the medium.
+#[inline(never)]
+fn run<S: Scalar, G, W: Wire, P: Probe<S>>(
+    scene: &Scene,
+    walkers: &mut Vec<Walker<S, G, W>, ROBOTS>,
+    wire: W,
+    commander: impl FnMut(u32, &mut Vec<u8, INBOX>),
+    probe: &mut P,
+) -> Summary
+where
+    G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>, Workspace = GridWorkspace<CELLS>>,
+    GridAgent<S, G, W>: Serialize,
+{
+    let mut medium = Medium::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
+    let mut workspace = grid::workspace();
+    grid::run(scene, walkers, &mut medium, &mut workspace, commander, probe)
 }
 
 /// Fills the caller's vector because a small part has no memory for two.
