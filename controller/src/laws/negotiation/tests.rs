@@ -156,7 +156,16 @@ fn plans_never_collide() {
             if area.is_open(cell) && members.iter().all(|other| other.cell != cell) {
                 let waiting = rng.below(5) as u16;
                 let manners = Manners { is_last: rng.below(4) == 0, keeps_on: rng.below(4) == 0 };
-                members.push(Member { id: RobotId(number), cell, goal, waiting, step: 0, manners, wish: None });
+                members.push(Member {
+                    id: RobotId(number),
+                    cell,
+                    goal,
+                    waiting,
+                    step: 0,
+                    manners,
+                    wish: None,
+                    holds: false,
+                });
             }
         }
         let mut fields: Fields<4> = Fields::new();
