@@ -45,6 +45,30 @@ def test_robots_that_move_in_turn_move_otherwise(tmp_path):
         walk(tmp_path, "random", 0, 1, SCENARIO.replace(", simultaneous = true", ""))
 
 
+def sweep(folder: Path, maps: str, numbers: range, points: list[tuple[int, float]]) -> dict:
+    """Runs instances in the simulator. Returns POGEMA's metrics by robots and loss."""
+    out = folder / f"{maps}-rows"
+    file = plan(folder, maps, numbers, points)
+    command = [os.environ["STAYA"], "sweep", file, "--out", out, "--restart"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    rates = metrics(out / "rows.csv")
+    print(maps, rates)
+    return rates
+
+
+@pytest.mark.parametrize("maps", ["random", "mazes"])
+def test_16_robots_arrive_in_the_simulator(tmp_path, maps):
+    assert sweep(tmp_path, maps, range(4), [(16, 0.0)])[16, 0.0]["CSR"] == 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("maps", ["random", "mazes"])
+def test_all_maps_in_the_simulator(maps):
+    folder = Path(os.environ["STAYA_TABLES"]) / "pogema"
+    rates = sweep(folder, maps, range(MAPS), POINTS)
+    assert rates[16, 0.0]["CSR"] >= 0.98
+
+
 @pytest.mark.long
 def test_robots_move_as_in_pogema_in_a_million_steps(tmp_path):
     steps = 10**6 // (2 * MAPS) + 1

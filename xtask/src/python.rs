@@ -104,7 +104,7 @@ pub fn pogema(s: &mut Session, extent: Extent) {
             &["tests/pogema"]
         }
     };
-    let program = Some(s.repo.target.join("python-pogema/bin/python"));
+    let program = s.staya("debug");
     let suite_of = Suite { program, environment: vec![("STAYA_TABLES", tables)], arguments };
     suite(s, "robots in POGEMA's world", suite_of, prepare);
 }
