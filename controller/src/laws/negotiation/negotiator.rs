@@ -216,7 +216,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// Hears another robot in this step.
+    /// Hears another robot in this step. If it knows too many, it forgets the robot lost for longest,
+    /// and of those lost for equally long the farthest.
     pub fn hear(&mut self, id: RobotId, said: &Said) {
         self.begin();
         if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
@@ -225,7 +226,16 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         let known = Known { id, said: *said, age: 0, lost: 0 };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = known,
-            None => drop(self.known.push(known)),
+            None => {
+                let Err(known) = self.known.push(known) else { return };
+                let own = self.own.cell;
+                let order = |other: &Known| (other.lost, other.said.cell.chebyshev(own));
+                if let Some(last) = self.known.iter_mut().max_by_key(|other| order(other))
+                    && order(last) > order(&known)
+                {
+                    *last = known;
+                }
+            }
         }
     }
 
