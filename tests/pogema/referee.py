@@ -42,20 +42,23 @@ def land(maps: str, number: int) -> str:
     return MazeGenerator.generate_maze(**sizes.sample(number))
 
 
-def play(case: Case, number: int, first_id: int = 1) -> dict[str, float]:
-    """Runs one instance. Returns POGEMA's metrics."""
-    steps = 256 if case.lifelong and case.maps == "random" else 128
-    config = GridConfig(
-        map=land(case.maps, number),
+def config(maps: str, number: int, robots: int, lifelong: bool = False) -> GridConfig:
+    """An instance."""
+    return GridConfig(
+        map=land(maps, number),
         seed=0,
-        num_agents=case.robots,
+        num_agents=robots,
         obs_radius=5,
-        on_target="restart" if case.lifelong else "nothing",
+        on_target="restart" if lifelong else "nothing",
         collision_system="soft",
-        max_episode_steps=steps,
+        max_episode_steps=256 if lifelong and maps == "random" else 128,
         observation_type="MAPF",
     )
-    world = pogema_v0(config)
+
+
+def play(case: Case, number: int, first_id: int = 1) -> dict[str, float]:
+    """Runs one instance. Returns POGEMA's metrics."""
+    world = pogema_v0(config(case.maps, number, case.robots, case.lifelong))
     seen, _ = world.reset()
     cells, goals = places(seen)
     robots = staya.Negotiation(cells, ids=np.arange(first_id, first_id + case.robots))

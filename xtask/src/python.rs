@@ -87,8 +87,8 @@ pub fn package(s: &mut Session) {
     suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
 }
 
-/// Robots that negotiate in POGEMA's world: a few maps, or all of its tables, which it writes to
-/// `target/pogema.csv`.
+/// Robots that negotiate in POGEMA's world and by its rules in the simulator: a few maps, or all of
+/// its tables, which it writes to `target/pogema.csv` and `target/pogema`.
 pub fn pogema(s: &mut Session, extent: Extent) {
     let prepare = |repo: &Repo| {
         let python = environment(repo, "python-pogema", "tests/pogema/requirements.txt")?;
@@ -104,7 +104,7 @@ pub fn pogema(s: &mut Session, extent: Extent) {
             &["tests/pogema"]
         }
     };
-    let program = Some(s.repo.target.join("python-pogema/bin/python"));
+    let program = s.staya("debug");
     let suite_of = Suite { program, environment: vec![("STAYA_TABLES", tables)], arguments };
     suite(s, "robots in POGEMA's world", suite_of, prepare);
 }

@@ -1,9 +1,10 @@
 //! The module `staya._staya`; the package in `python/staya` provides its interface and checks all
-//! arguments (arrays are contiguous, finite and of the right shape). `simulation` runs scenarios;
-//! `behaviors` applies single behaviours to all robots at once.
+//! arguments (arrays are contiguous, finite and of the right shape). `simulation` runs scenarios,
+//! `bodies` their bodies alone; `behaviors` applies single behaviours to all robots at once.
 #![cfg(feature = "module")]
 
 pub mod behaviors;
+pub mod bodies;
 pub mod simulation;
 mod trace;
 
@@ -19,6 +20,8 @@ mod _staya {
     use super::behaviors::orca::Avoiders;
     #[pymodule_export]
     use super::behaviors::route::route;
+    #[pymodule_export]
+    use super::bodies::GridBodies;
     #[pymodule_export]
     use super::simulation::{Run, ScenarioError};
 }

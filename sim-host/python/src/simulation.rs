@@ -109,7 +109,7 @@ struct Said {
     order: Intervention,
 }
 
-fn scenario_error(error: &impl ToString) -> PyErr {
+pub(crate) fn scenario_error(error: &impl ToString) -> PyErr {
     ScenarioError::new_err(error.to_string().replace("(by --set)", "(by an argument)"))
 }
 

@@ -8,7 +8,7 @@ use staya_controller::agent::{
     NEIGHBORS, OrderOf, Protocol, Radio, Report, Tools, View,
 };
 use staya_controller::grid::Dir;
-use staya_controller::negotiation::NegotiationGuidance;
+use staya_controller::negotiation::{Moves, NegotiationGuidance};
 use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
@@ -64,12 +64,12 @@ pub fn add_law<L: OwnLaw + Default>(name: &'static str) {
     NAMED.lock().unwrap_or_else(PoisonError::into_inner).insert(name, || Own::new(L::default()));
 }
 
-/// A law that scenario files name; `Err` lists the known names.
-pub(crate) fn named(name: &str) -> Result<Own, Vec<&'static str>> {
+/// A law that scenario files name, for bodies with these moves; `Err` lists the known names.
+pub(crate) fn named(name: &str, moves: Moves) -> Result<Own, Vec<&'static str>> {
     let named = NAMED.lock().unwrap_or_else(PoisonError::into_inner);
     match named.get(name) {
         Some(make) => Ok(make()),
-        None if name == NEGOTIATION => Ok(Own::new(NegotiationGuidance::<NEIGHBORS>::default())),
+        None if name == NEGOTIATION => Ok(Own::new(NegotiationGuidance::<NEIGHBORS>::new(moves))),
         None => Err(named.keys().copied().chain([NEGOTIATION]).collect()),
     }
 }

@@ -33,6 +33,8 @@ polygon_m = [[12, 9], [16, 9], [16, 12]]
 [grid]
 norm = "chebyshev"
 corner_cutting = true
+moves = 8
+simultaneous = false
 [radio]
 format = "postcard"
 range_m = 40.5

@@ -215,21 +215,26 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// Hears another robot in this step.
+    /// Hears another robot in this step. If it knows too many, it forgets the robot lost for longest,
+    /// and of those lost for equally long the farthest.
     pub fn hear(&mut self, id: RobotId, said: &Said) {
         self.begin();
         if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
             return;
         }
         let known = Known { id, said: *said, age: 0, lost: 0, holds: false };
-        let far = |other: &Known| other.said.cell.chebyshev(self.own.cell);
-        if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
-            *other = known;
-        } else if let Err(known) = self.known.push(known)
-            && let Some(farthest) = self.known.iter_mut().max_by_key(|other| far(other))
-            && far(&known) < far(farthest)
-        {
-            *farthest = known;
+        match self.known.iter_mut().find(|other| other.id == id) {
+            Some(other) => *other = known,
+            None => {
+                let Err(known) = self.known.push(known) else { return };
+                let own = self.own.cell;
+                let order = |other: &Known| (other.lost, other.said.cell.chebyshev(own));
+                if let Some(last) = self.known.iter_mut().max_by_key(|other| order(other))
+                    && order(last) > order(&known)
+                {
+                    *last = known;
+                }
+            }
         }
     }
 

@@ -239,3 +239,17 @@ fn messages_fit_their_frames() {
     assert_eq!(postcard::from_bytes(&bytes[0]), Ok(said));
     assert_eq!(postcard::from_bytes(&bytes[1]), Ok(report));
 }
+
+#[test]
+fn a_robot_just_heard_replaces_one_that_is_farther_or_was_not_heard() {
+    let mut robot = Negotiator::<2, 2>::new(RobotId(1), Cell::new(0, 0), Moves::FOUR);
+    let said = |x| Said { cell: Cell::new(x, 0), waiting: 1, ..Said::default() };
+    let heard = |robot: &Negotiator<2, 2>| robot.report().heard.iter().map(|&(id, _)| id).collect::<Vec<_>>();
+    for (id, x) in [(2, 3), (3, 5), (4, 4), (5, 6)] {
+        robot.hear(RobotId(id), &said(x));
+    }
+    assert_eq!(heard(&robot), [2, 4]);
+    let _ = robot.decide(Sensed::Nothing);
+    robot.hear(RobotId(5), &said(6));
+    assert_eq!(heard(&robot), [5]);
+}

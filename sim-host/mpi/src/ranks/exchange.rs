@@ -69,6 +69,9 @@ pub enum RankError {
         /// Number of ranks.
         ranks: usize,
     },
+    /// Ranks do not decide simultaneous moves.
+    #[error("ranks cannot share robots that move at once; use `staya run`, or remove grid.simultaneous")]
+    Simultaneous,
     /// A rank does not answer.
     #[error(transparent)]
     Lost(#[from] Lost),

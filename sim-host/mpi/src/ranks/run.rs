@@ -70,6 +70,9 @@ pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     if ranks > 1 && scenario.sensing.is_some() {
         return Err(RankError::Sensing { ranks });
     }
+    if scenario.rules.simultaneous {
+        return Err(RankError::Simultaneous);
+    }
     if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
 }
 

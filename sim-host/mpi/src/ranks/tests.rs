@@ -87,6 +87,14 @@ fn every_scenario(ticks: u32, most: usize, ranks: &[usize]) {
 }
 
 #[test]
+fn robots_that_move_at_once_are_refused() {
+    let mut scenario = load("corridor.toml", 20);
+    scenario.rules.simultaneous = true;
+    let ended = on_ranks(&scenario, 1, &Sharing::default());
+    assert!(matches!(ended[..], [Err(RankError::Simultaneous)]));
+}
+
+#[test]
 fn every_scenario_has_one_hash_on_any_number_of_ranks() {
     every_scenario(20, 500, &[1, 3]);
 }

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
 
-__all__ = ["Avoiders", "Negotiators", "Run", "ScenarioError", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
+__all__ = ["Avoiders", "GridBodies", "Negotiators", "Run", "ScenarioError", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
 
 class ScenarioError(ValueError):
     """An unreadable or invalid scenario, with file, line, field and remedy."""
@@ -106,6 +106,13 @@ class Negotiators:
         reports: NDArray[np.bool_],
         sensing: int,
     ) -> NDArray[np.int16]: ...
+
+@final
+class GridBodies:
+    """Bodies of a scenario that move from cell to cell, without controllers."""
+
+    def __new__(cls, path: str | PathLike[str]) -> GridBodies: ...
+    def step(self, wishes: NDArray[np.int16]) -> NDArray[np.int16]: ...
 
 def lattice_acceleration(
     positions_m: _Floats,

@@ -1,7 +1,7 @@
 //! Checks that involve more than one field.
 
 use super::intervention::tick;
-use super::params::FormationLaw;
+use super::params::{FormationLaw, GridTable};
 use super::ranges::{micros, short, within};
 use super::source::Source;
 use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
@@ -118,6 +118,22 @@ pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Scen
         }
     }
     Ok(())
+}
+
+pub(super) fn moves(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
+    let GridTable { moves, simultaneous, .. } = file.grid;
+    let (field, what, remedy) = match moves {
+        4 if file.plane.is_some() => ("moves", "robots in the plane do not move from cell to cell", "leave it out"),
+        4 if file.law.is_none() => {
+            ("moves", "routes and formations use eight neighbours", "give law.name = \"negotiation\", or leave it out")
+        }
+        8 if simultaneous => {
+            ("simultaneous", "diagonal moves at once would cross each other", "give moves = 4, or leave it out")
+        }
+        4 | 8 => return Ok(()),
+        _ => ("moves", "a cell has 4 or 8 neighbours", "give 4 or 8"),
+    };
+    Err(source.error(&format!("grid.{field}"), what, remedy))
 }
 
 fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), ScenarioError> {

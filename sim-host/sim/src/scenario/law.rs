@@ -8,6 +8,7 @@ use crate::own_law::{Own, named};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AnySurroundings, CellState, InCell, InCells, InPlane, Law, OnGrid};
 use staya_controller::geom::Vec2;
+use staya_controller::negotiation::Moves;
 use std::collections::BTreeMap;
 
 /// `[law]`: all robots have a law that the program adds with
@@ -29,6 +30,8 @@ pub struct NamedLaw {
     pub name: String,
     /// Values by the names of its parameters.
     pub parameters: Vec<(String, f32)>,
+    /// The moves of the bodies, for a law that needs them.
+    pub moves: Moves,
 }
 
 impl NamedLaw {
@@ -38,7 +41,7 @@ impl NamedLaw {
     /// If the program does not add it; [`Scenario::load`](super::Scenario::load) refuses that.
     #[must_use]
     pub fn law(&self) -> Own {
-        let mut law = named(&self.name).unwrap_or_else(|_| panic!("no law {} in this program", self.name));
+        let mut law = named(&self.name, self.moves).unwrap_or_else(|_| panic!("no law {} in this program", self.name));
         for (name, value) in &self.parameters {
             Law::<f32>::parameters(&mut law, &mut |table| {
                 if let Some(index) = table.index(name) {
@@ -56,7 +59,8 @@ pub(super) fn law(
     plane: Option<&PlaneSetup>,
 ) -> Result<Option<NamedLaw>, ScenarioError> {
     let Some(table) = &file.law else { return Ok(None) };
-    let mut law = named(&table.name).map_err(|known| {
+    let moves = Moves { diagonals: file.grid.moves == 8, circles: file.grid.simultaneous };
+    let mut law = named(&table.name, moves).map_err(|known| {
         let what = format!("this program has no law \"{}\"", table.name);
         let remedy = match nearest(&table.name, known.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"?"),
@@ -100,5 +104,5 @@ pub(super) fn law(
         })?;
         parameters.push((name.clone(), value as f32));
     }
-    Ok(Some(NamedLaw { name: table.name.clone(), parameters }))
+    Ok(Some(NamedLaw { name: table.name.clone(), parameters, moves }))
 }

@@ -234,6 +234,7 @@ impl Scenario {
         check::general(&source, &file)?;
         check::times(&source, &file, ticks.max(file.ticks))?;
         check::radio(&source, &file)?;
+        check::moves(&source, &file)?;
         let (terrain, robots, formations, parts, plane) = match &file.plane {
             None => {
                 let terrain = check::terrain(&source, &file)?;
@@ -305,6 +306,8 @@ impl Scenario {
                 norm: file.grid.norm,
                 corner_cutting: file.grid.corner_cutting,
                 crossing: published.is_some(),
+                orthogonal: file.grid.moves == 4,
+                simultaneous: file.grid.simultaneous,
             },
             radio: file.radio.clone(),
             robots,

@@ -16,13 +16,23 @@ use staya_papers::criteria::PublishedParams;
 use std::fmt;
 
 /// `[grid]`.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GridTable {
     /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
     pub norm: Norm,
     /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
     pub corner_cutting: bool,
+    /// Number of neighbours of a cell to which robots move, 4 or 8. Default: 8.
+    pub moves: u8,
+    /// Whether all robots move at once, as in POGEMA; for 4 neighbours. Default: false.
+    pub simultaneous: bool,
+}
+
+impl Default for GridTable {
+    fn default() -> Self {
+        Self { norm: Norm::default(), corner_cutting: false, moves: 8, simultaneous: false }
+    }
 }
 
 const MAX_RADIUS: u8 = 16;

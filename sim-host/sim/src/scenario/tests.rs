@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{FormationParams, NEVER};
 use staya_controller::grid::Cell;
+use staya_controller::negotiation::Moves;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
 use staya_papers::criteria::PublishedParams;
@@ -85,6 +86,19 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             ),
             "s.toml:8: radio.format: robot 255 has no number in mavlink: systems are 1 to 254; give fewer robots",
         ),
+        (&format!("{HEAD}{robots}[grid]\nmoves = 6\n"), "s.toml:8: grid.moves: a cell has 4 or 8 neighbours; give 4"),
+        (
+            &format!("{HEAD}{robots}[grid]\nmoves = 4\n"),
+            "s.toml:8: grid.moves: routes and formations use eight neighbours; give law.name = \"negotiation\"",
+        ),
+        (
+            &format!("{HEAD}{robots}[grid]\nmoves = 4\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n"),
+            "s.toml:8: grid.moves: robots in the plane do not move from cell to cell; leave it out",
+        ),
+        (
+            &format!("{HEAD}{robots}[grid]\nsimultaneous = true\n"),
+            "s.toml:8: grid.simultaneous: diagonal moves at once would cross each other; give moves = 4",
+        ),
         (&format!("{HEAD}{robots}[radio]\nrange_m = nan\n"), "s.toml:8: radio.range_m: NaN is not a distance"),
         (
             &format!("{HEAD}{robots}[radio]\ndelay_ms = -1\n"),
@@ -161,6 +175,18 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         assert!(refusal.starts_with(expected), "expected {expected}\n     got {refusal}\nfor\n{text}");
         assert!(refusal.contains("; "), "no remedy: {refusal}");
     }
+}
+
+#[test]
+fn a_law_gets_the_moves_of_the_bodies() {
+    let robots = with_robots("list = [{ start = [0, 0], goal = [3, 2] }]");
+    let of = |grid: &str| {
+        let scenario = parse(&format!("{robots}[law]\nname = \"negotiation\"\n[grid]\n{grid}")).expect("good");
+        (scenario.rules.orthogonal, scenario.rules.simultaneous, scenario.law.expect("a law").moves)
+    };
+    assert_eq!(of(""), (false, false, Moves::EIGHT));
+    assert_eq!(of("moves = 4\nsimultaneous = true"), (true, true, Moves::FOUR));
+    assert_eq!(of("moves = 4"), (true, false, Moves { diagonals: false, circles: false }));
 }
 
 #[test]

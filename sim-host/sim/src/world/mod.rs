@@ -21,6 +21,7 @@ use staya_controller::agent::Command;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
+use std::collections::HashMap;
 use thiserror::Error;
 
 const PRIORITY: u32 = 0x0057_0001;
@@ -34,6 +35,10 @@ pub struct MoveRules {
     pub corner_cutting: bool,
     /// Whether a diagonal move may cross one that is under way, which counts as a collision.
     pub crossing: bool,
+    /// Whether bodies move to four neighbours only.
+    pub orthogonal: bool,
+    /// Whether all bodies move at once ([`World::advance`]); for orthogonal moves.
+    pub simultaneous: bool,
 }
 
 /// A robot's body.
@@ -218,10 +223,19 @@ impl World {
     /// it is free keeps the remaining fraction of a tick, so a journey takes exactly the sum of
     /// eq. 7.
     ///
+    /// With [`MoveRules::simultaneous`] a body that may leave wants its first move, and all bodies
+    /// move at once. They may follow each other, also in a circle. Two bodies do not exchange
+    /// cells. Of several bodies that want one cell, the first one placed gets it. A body whose cell
+    /// stays occupied does not move. This is the collision system `soft` of
+    /// [POGEMA](https://github.com/Cognitive-AI-Systems/pogema).
+    ///
     /// # Panics
     /// If there are fewer commands than bodies.
     pub fn advance(&mut self, tick: u32, commands: &[Command<f32>]) {
         let now = u64::from(tick) * u64::from(UNIT);
+        if self.rules.simultaneous {
+            return self.advance_at_once(now, commands);
+        }
         let mut movers = std::mem::take(&mut self.movers);
         movers.clear();
         let bodies = self.bodies.par_iter().enumerate().with_min_len(1024);
@@ -259,6 +273,45 @@ impl World {
         true
     }
 
+    /// O(bodies).
+    fn advance_at_once(&mut self, now: u64, commands: &[Command<f32>]) {
+        let wish = |(body, command): (&Body, &Command<f32>)| match command {
+            Command::Move(preferred) if body.free_at <= now => {
+                preferred.first().copied().filter(|&dir| self.is_passable(body.cell, dir)).unwrap_or_default()
+            }
+            _ => Dir::Stay,
+        };
+        let mut dirs: Vec<Dir> = self.bodies.iter().zip(commands).map(wish).collect();
+        let mut takers = HashMap::new();
+        let mut stays = Vec::new();
+        for (index, (body, &dir)) in self.bodies.iter().zip(&dirs).enumerate() {
+            let to = body.cell + dir.offset();
+            let exchanges = self.body_at(to).is_some_and(|other| to + dirs[other].offset() == body.cell);
+            if exchanges || *takers.entry(to).or_insert(index) != index {
+                stays.push(index);
+            }
+        }
+        // A body that stays also stops the one that wants its cell.
+        while let Some(index) = stays.pop() {
+            dirs[index] = Dir::Stay;
+            stays.extend(takers.remove(&self.bodies[index].cell));
+        }
+        let moves: Vec<_> = (0..).zip(dirs).filter(|&(_, dir)| dir != Dir::Stay).collect();
+        for &(index, _) in &moves {
+            self.occupy(self.bodies[index].cell, 0);
+        }
+        for (index, dir) in moves {
+            self.bodies[index] = self.entered(&self.bodies[index], dir, now);
+            self.occupy(self.bodies[index].cell, index as u32 + 1);
+        }
+    }
+
+    fn occupy(&mut self, cell: Cell, mark: u32) {
+        if let Some(at) = self.terrain.index(cell) {
+            self.occupancy[at] = mark;
+        }
+    }
+
     fn entered(&self, body: &Body, dir: Dir, now: u64) -> Body {
         let idle = now - body.free_at;
         let start = if idle < u64::from(UNIT) { body.free_at } else { now };
@@ -282,6 +335,7 @@ impl World {
         let to = from + dir.offset();
         let passable = |x, y| self.terrain.is_passable(Cell::new(x, y));
         self.terrain.is_passable(to)
+            && !(self.rules.orthogonal && dir.is_diagonal())
             && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)))
     }
 

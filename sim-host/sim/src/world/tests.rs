@@ -212,6 +212,32 @@ fn a_queue_moves_together_and_a_circle_does_not_move() {
     }
 }
 
+/// The cells of robots after one simultaneous move of each.
+fn at_once(starts: &[(i16, i16)], dirs: &[Dir]) -> Vec<(i16, i16)> {
+    let rules = MoveRules { orthogonal: true, simultaneous: true, ..MoveRules::default() };
+    let mut world = world(walled(&[(3, 0)], 4, 3), rules, starts);
+    world.advance(0, &dirs.iter().map(|&dir| moves(&[dir])).collect::<Vec<_>>());
+    assert!(world.is_sound());
+    world.bodies().iter().map(|body| (body.cell.x, body.cell.y)).collect()
+}
+
+#[test]
+fn robots_that_move_at_once_follow_each_other_and_do_not_exchange_cells() {
+    use Dir::{East, North, NorthEast, South, Stay, West};
+    let row = [(0, 0), (1, 0)];
+    assert_eq!(at_once(&row, &[East, East]), [(1, 0), (2, 0)]);
+    let circle = [(0, 0), (1, 0), (1, 1), (0, 1)];
+    assert_eq!(at_once(&circle, &[East, North, West, South]), [(1, 0), (1, 1), (0, 1), (0, 0)]);
+    assert_eq!(at_once(&row, &[East, West]), row);
+    let corner = [(0, 0), (1, 1), (2, 0)];
+    assert_eq!(at_once(&corner, &[East, South, West]), [(1, 0), (1, 1), (2, 0)], "the first one placed");
+    // A wall stops the last robot, which stops the others.
+    let queue = [(0, 0), (1, 0), (2, 0)];
+    assert_eq!(at_once(&queue, &[East; 3]), queue);
+    assert_eq!(at_once(&queue, &[East, East, Stay]), queue);
+    assert_eq!(at_once(&row, &[Stay, NorthEast]), row);
+}
+
 #[test]
 fn the_collision_check_does_not_trust_the_occupancy_table() {
     let mut world = world(Terrain::flat(3, 1), MoveRules::default(), &[(0, 0), (1, 0), (2, 0)]);
@@ -276,6 +302,7 @@ proptest! {
     fn no_commands_bring_two_robots_into_one_cell_or_across_each_other(
         cells in prop::collection::vec(0_u8..4, 36),
         corner_cutting: bool,
+        simultaneous: bool,
         seed: u64,
         rounds in prop::collection::vec(prop::collection::vec(any_command(), 36), 1..20),
     ) {
@@ -287,7 +314,7 @@ proptest! {
         let starts: Vec<_> = (1..).map(RobotId)
             .zip(all.filter(|&c| terrain.is_passable(c)).step_by(2))
             .collect();
-        let rules = MoveRules { corner_cutting, ..MoveRules::default() };
+        let rules = MoveRules { corner_cutting, orthogonal: simultaneous, simultaneous, ..MoveRules::default() };
         let mut world = World::new(terrain, rules, seed, starts).expect("starts are free");
         for (tick, commands) in (0..).zip(&rounds) {
             let before = world.bodies().to_vec();
