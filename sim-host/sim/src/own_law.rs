@@ -4,8 +4,8 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use staya_controller::agent::{
-    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Known, Law, MessageOf,
-    NEIGHBORS, OrderOf, Protocol, Radio, Report, Tools, View,
+    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OrderOf,
+    Protocol, Radio, Report, Tools, View,
 };
 use staya_controller::grid::Dir;
 use staya_controller::negotiation::{Moves, NegotiationGuidance};
@@ -69,7 +69,7 @@ pub(crate) fn named(name: &str, moves: Moves) -> Result<Own, Vec<&'static str>> 
     let named = NAMED.lock().unwrap_or_else(PoisonError::into_inner);
     match named.get(name) {
         Some(make) => Ok(make()),
-        None if name == NEGOTIATION => Ok(Own::new(NegotiationGuidance::<NEIGHBORS>::new(moves))),
+        None if name == NEGOTIATION => Ok(Own::new(NegotiationGuidance::<64, 8>::new(moves))),
         None => Err(named.keys().copied().chain([NEGOTIATION]).collect()),
     }
 }

@@ -4,6 +4,7 @@ use super::{Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight};
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Protocol, Radio, Status, Tools, View};
 use crate::laws::cells::GridOrder;
+use crate::neighbor::Neighbor;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
@@ -109,10 +110,10 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             robot.set_goal(goal);
         }
         robot.see(cell, &sight(cell, &window));
-        let stands = |at: Cell| view.peers().any(|(_, other)| other.said.cell == at && other.by == Dir::Stay);
+        let failed: Vec<RobotId, N> = failed(view, cell);
         for (neighbor, NegotiationPayload { said, by, busy }) in view.peers() {
             if neighbor.heard.since(self.decided) > Duration::ZERO {
-                if by != Dir::Stay && (said.cell == cell || stands(said.cell)) {
+                if failed.contains(&neighbor.id) {
                     robot.hear_at(neighbor.id, &said, said.cell - by.offset());
                 } else {
                     robot.hear(neighbor.id, &said);
@@ -159,9 +160,9 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         NegotiationPayload { said, by, busy: u8::try_from(busy.max(0)).unwrap_or(u8::MAX) }
     }
 
-    fn receive(&mut self, from: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
+    fn receive(&mut self, _: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
         if let Some(robot) = &mut self.robot {
-            robot.hear_report(from, report);
+            robot.hear_report(report);
         }
         true
     }
@@ -174,6 +175,24 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
 
     fn report(&self) -> law::Report {
         law::Report { goal: self.goal, target: self.goal, ..law::Report::default() }
+    }
+}
+
+/// The robots that did not get the cell that they said, because another one is there. O(N^3).
+fn failed<S: Copy, const N: usize>(view: &View<'_, S, Negotiation>, own: Cell) -> Vec<RobotId, N> {
+    let mut failed = Vec::new();
+    loop {
+        let is_free = |to: Cell| {
+            let stays = |(other, said): (Neighbor<S, _>, NegotiationPayload)| {
+                (said.by == Dir::Stay || failed.contains(&other.id)) && said.said.cell - said.by.offset() == to
+            };
+            to != own && !view.peers().any(stays)
+        };
+        let mut going = view.peers().filter(|(other, said)| said.by != Dir::Stay && !failed.contains(&other.id));
+        let Some((other, _)) = going.find(|(_, said)| !is_free(said.said.cell)) else { return failed };
+        if failed.push(other.id).is_err() {
+            return failed;
+        }
     }
 }
 

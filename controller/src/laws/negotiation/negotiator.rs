@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Distance up to which robots plan together, cells.
 pub const RANGE: u32 = 8;
-/// Robots in a [`Report`].
+/// Other robots in a [`Report`].
 pub const REPORTED: usize = 8;
 /// Steps after which a robot whose place is not known is forgotten.
 const FORGET: u8 = 6;
@@ -48,7 +48,7 @@ pub struct Said {
     pub manners: Manners,
 }
 
-/// What a robot broadcasts after it has heard the others in a step; at most 37 bytes on the air.
+/// What a robot broadcasts after it has heard the others in a step; at most 39 bytes on the air.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
     /// Where it is.
@@ -56,9 +56,9 @@ pub struct Report {
     pub cell: Cell,
     /// What it sees.
     pub sight: Sight,
-    /// The nearest robots that it heard in this step: the lowest byte of the number, and the
-    /// offsets to the east and to the north plus 8, in the low and in the high four bits.
-    pub heard: Vec<(u8, u8), REPORTED>,
+    /// Itself and the nearest robots that it heard in this step: the lowest byte of the number, and
+    /// the offsets to the east and to the north plus 8, in the low and in the high four bits.
+    pub heard: Vec<(u8, u8), { REPORTED + 1 }>,
 }
 
 /// The robots that a robot senses within 5 cells in this step.
@@ -106,6 +106,9 @@ pub struct Negotiator<const N: usize, const F: usize> {
     /// the cell that it chose.
     swung: u8,
     refused: u8,
+    /// How it behaves by what it saw in this step, and how it promised to behave.
+    manners: Manners,
+    promised: Option<Manners>,
     /// Whether anything of this step came, and whether it saw its cell in this step.
     has_begun: bool,
     has_seen: bool,
@@ -131,6 +134,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             chosen: Dir::Stay,
             swung: 0,
             refused: 0,
+            manners,
+            promised: None,
             has_begun: false,
             has_seen: false,
             area: Area::new(cell),
@@ -162,7 +167,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             self.has_seen = true;
             self.own.waiting = waiting(cell == self.own.goal, self.own.waiting);
             self.own.step = self.own.step.wrapping_add(1);
-            self.own.manners = self.manners(cell, self.own.step);
+            self.manners = self.manners(cell, self.own.step);
+            self.own.manners = self.promised.unwrap_or(self.manners);
         }
         self.own = Said { cell, wish: self.wish(cell), ..self.own };
         self.own
@@ -178,7 +184,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         let Said { cell, goal, waiting, step, .. } = self.own;
         let cell = cell + self.chosen.offset();
         let (waiting, step) = (self::waiting(cell == goal, waiting), step.wrapping_add(1));
-        Said { cell, goal, waiting, wish: self.wish(cell), step, manners: Manners::default() }
+        self.promised = Some(self.manners);
+        Said { cell, goal, waiting, wish: self.wish(cell), step, manners: self.manners }
     }
 
     fn begin(&mut self) {
@@ -257,6 +264,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// What to broadcast after the others were heard.
     #[must_use]
     pub fn report(&self) -> Report {
+        let own = if self.has_begun { Dir::Stay } else { self.chosen };
         let mut near: Vec<(u32, RobotId, Cell), N> = Vec::new();
         for other in self.known.iter().filter(|other| other.age == 0) {
             let offset = other.said.cell - self.own.cell;
@@ -265,18 +273,18 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             }
         }
         list::sort_by_key(&mut near, |&(distance, id, _)| (distance, id.0));
-        let short = |&(_, id, offset): &(u32, RobotId, Cell)| {
+        let short = |(id, offset): (RobotId, Cell)| {
             (id.0 as u8, (offset.x + NEAR + 1) as u8 | ((offset.y + NEAR + 1) as u8) << 4)
         };
-        let heard = list::collect(near.iter().map(short));
+        let near = near.iter().map(|&(_, id, offset)| (id, offset));
+        let heard = list::collect([(self.id, own.offset())].into_iter().chain(near).map(short));
         Report { cell: self.own.cell, sight: self.sight, heard }
     }
 
     /// Hears what another robot reports in this step. O(N) for each robot in it.
-    pub fn hear_report(&mut self, from: RobotId, report: &Report) {
+    pub fn hear_report(&mut self, report: &Report) {
         self.begin();
         self.area.learn(report.cell, &report.sight);
-        self.place(from.0 as u8, report.cell);
         for &(number, offset) in &report.heard {
             let offset = Cell::new((offset & 15).into(), (offset >> 4).into()) - Cell::new(NEAR + 1, NEAR + 1);
             self.place(number, report.cell + offset);
