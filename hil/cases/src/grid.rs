@@ -85,9 +85,16 @@ where
             *command = core::mem::take(&mut out.command);
         }
         medium.turn();
-        for (index, command) in commands.iter().enumerate() {
-            if let Command::Move(moves) = command {
-                advance(scene, walkers, index, moves, tick);
+        // Refused bodies try again after the others, as in the simulator.
+        let mut has_moved = true;
+        while core::mem::take(&mut has_moved) {
+            for (index, command) in commands.iter_mut().enumerate() {
+                if let Command::Move(moves) = command
+                    && advance(scene, walkers, index, moves, tick)
+                {
+                    *command = Command::Hold;
+                    has_moved = true;
+                }
             }
         }
         for walker in walkers.iter() {
@@ -139,16 +146,17 @@ fn step<S, G, W, P, const N: usize>(
     probe.step(&mut walker.agent, &inputs, instant(tick), workspace, out);
 }
 
+/// Returns whether the body moved.
 fn advance<S: Scalar, G: Law<S>, W, const N: usize>(
     scene: &Scene,
     walkers: &mut [Walker<S, G, W, N>],
     index: usize,
     moves: &[staya_controller::grid::Dir],
     tick: u32,
-) {
+) -> bool {
     let now_ms = tick.saturating_mul(UNIT);
     let Some(from) = walkers.get(index).map(|walker| walker.cell) else {
-        return;
+        return false;
     };
     let land = |cell: Cell| scene.land.at(cell);
     let is_open = |dir: &staya_controller::grid::Dir| {
@@ -160,7 +168,7 @@ fn advance<S: Scalar, G: Law<S>, W, const N: usize>(
             && walkers.iter().all(|walker| walker.cell != to)
     };
     let Some(dir) = moves.iter().copied().find(is_open) else {
-        return;
+        return false;
     };
     let to = from + dir.offset();
     let crossing_ms = dir.length(Norm::Euclidean).saturating_mul(land(to).into());
@@ -172,7 +180,9 @@ fn advance<S: Scalar, G: Law<S>, W, const N: usize>(
         let start_ms = if is_going_on { walker.free_at_ms } else { now_ms };
         walker.free_at_ms = start_ms.saturating_add(crossing_ms);
         walker.cell = to;
+        return true;
     }
+    false
 }
 
 fn overlaps<S: Scalar, G: Law<S>, W, const N: usize>(walkers: &[Walker<S, G, W, N>]) -> u32 {

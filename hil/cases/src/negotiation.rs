@@ -87,7 +87,7 @@ fn hear(step: u32, inbox: &mut Inbox) {
         let wish = Wish(along.into_iter().zip([0, 2]).fold(u16::MAX, rank));
         let waiting = rng.below(100) as u16;
         let said = Said { cell, goal, waiting, wish, step: step as u8, manners: Manners::default() };
-        let payload = NegotiationPayload { said, by: Dir::Stay, busy_ds: 0 };
+        let payload = NegotiationPayload { said, by: Dir::Stay, busy: 0 };
         if rng.below(2) == 0 {
             let (protocol, payload) = payload.encode(Negotiation::ID).unwrap_or_default();
             say(Message::Beacon(Beacon { mode: Mode::Cruise, protocol, payload, ..Beacon::default() }));

@@ -40,7 +40,7 @@ impl Content for Report {}
 
 /// Robots that pass each other on the grid, with or without a map: at most `N` plan together, with
 /// distances of `F` goals. Cells cost the same, walls apart. Robots of other laws are not seen. On
-/// a 32-bit part it takes 608 + 28 `N` + 1036 `F` bytes.
+/// a 32-bit part it takes 624 + 28 `N` + 1036 `F` bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
     moves: Moves,
@@ -57,7 +57,7 @@ pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
 #[cfg(target_pointer_width = "32")]
 const _: () = {
     const fn fits<const N: usize, const F: usize>() -> bool {
-        size_of::<NegotiationGuidance<N, F>>() <= 608 + 28 * N + 1036 * F
+        size_of::<NegotiationGuidance<N, F>>() <= 624 + 28 * N + 1036 * F
     }
     assert!(fits::<8, 2>() && fits::<16, 2>() && fits::<32, 4>() && fits::<64, 8>());
 };
@@ -162,7 +162,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
 
     fn receive(&mut self, _: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
         if let Some(robot) = &mut self.robot {
-            robot.hear_report(report);
+            robot.hear_report(None, report);
         }
         true
     }

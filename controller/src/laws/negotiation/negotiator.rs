@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Distance up to which robots plan together, cells.
 pub const RANGE: u32 = 8;
-/// Other robots in a [`Report`].
+/// Robots in a [`Report`].
 pub const REPORTED: usize = 8;
 /// Steps after which a robot whose place is not known is forgotten.
 const FORGET: u8 = 6;
@@ -48,7 +48,7 @@ pub struct Said {
     pub manners: Manners,
 }
 
-/// What a robot broadcasts after it has heard the others in a step; at most 39 bytes on the air.
+/// What a robot broadcasts after it has heard the others in a step; at most 37 bytes on the air.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
     /// Where it is.
@@ -56,9 +56,9 @@ pub struct Report {
     pub cell: Cell,
     /// What it sees.
     pub sight: Sight,
-    /// Itself and the nearest robots that it heard in this step: the lowest byte of the number, and
-    /// the offsets to the east and to the north plus 8, in the low and in the high four bits.
-    pub heard: Vec<(u8, u8), { REPORTED + 1 }>,
+    /// The nearest robots that it heard in this step: the lowest byte of the number, and the
+    /// offsets to the east and to the north plus 8, in the low and in the high four bits.
+    pub heard: Vec<(u8, u8), REPORTED>,
 }
 
 /// The robots that a robot senses within 5 cells in this step.
@@ -222,8 +222,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// Hears another robot in this step. If it knows too many, it forgets the robot lost for longest,
-    /// and of those lost for equally long the farthest.
+    /// Hears another robot in this step. If it knows too many, it forgets the robot lost for
+    /// longest, and of those lost for equally long the farthest.
     pub fn hear(&mut self, id: RobotId, said: &Said) {
         self.begin();
         if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
@@ -264,7 +264,6 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// What to broadcast after the others were heard.
     #[must_use]
     pub fn report(&self) -> Report {
-        let own = if self.has_begun { Dir::Stay } else { self.chosen };
         let mut near: Vec<(u32, RobotId, Cell), N> = Vec::new();
         for other in self.known.iter().filter(|other| other.age == 0) {
             let offset = other.said.cell - self.own.cell;
@@ -273,19 +272,24 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             }
         }
         list::sort_by_key(&mut near, |&(distance, id, _)| (distance, id.0));
-        let short = |(id, offset): (RobotId, Cell)| {
+        let short = |&(_, id, offset): &(u32, RobotId, Cell)| {
             (id.0 as u8, (offset.x + NEAR + 1) as u8 | ((offset.y + NEAR + 1) as u8) << 4)
         };
-        let near = near.iter().map(|&(_, id, offset)| (id, offset));
-        let heard = list::collect([(self.id, own.offset())].into_iter().chain(near).map(short));
+        let heard = list::collect(near.iter().map(short));
         Report { cell: self.own.cell, sight: self.sight, heard }
     }
 
-    /// Hears what another robot reports in this step. O(N) for each robot in it.
-    pub fn hear_report(&mut self, report: &Report) {
+    /// Hears what another robot reports in this step. `from`: that robot, if it did not move since.
+    /// O(N) for each robot in it.
+    pub fn hear_report(&mut self, from: Option<RobotId>, report: &Report) {
         self.begin();
         self.area.learn(report.cell, &report.sight);
-        for &(number, offset) in &report.heard {
+        if let Some(from) = from {
+            self.place(from.0 as u8, report.cell);
+        }
+        // Others may say where they expect this robot.
+        let own = self.id.0 as u8;
+        for &(number, offset) in report.heard.iter().filter(|(number, _)| *number != own) {
             let offset = Cell::new((offset & 15).into(), (offset >> 4).into()) - Cell::new(NEAR + 1, NEAR + 1);
             self.place(number, report.cell + offset);
         }

@@ -53,7 +53,7 @@ impl World {
         let reports: Vec<Report> = self.robots.iter().map(Negotiator::report).collect();
         for (from, to) in pairs() {
             if !is_lost(from, to, true) {
-                self.robots[to].hear_report(&reports[from]);
+                self.robots[to].hear_report(Some(id(from)), &reports[from]);
             }
         }
         let before = self.cells.clone();

@@ -58,7 +58,7 @@ impl Negotiators {
             let said: Vec<Said> = begin(all, &at, &goals, sights);
             self.each(all, beacons, |robot, id, from| robot.hear(id, &said[from]));
             let told: Vec<Report> = all.iter().map(Negotiator::report).collect();
-            self.each(all, reports, |robot, _, from| robot.hear_report(&told[from]));
+            self.each(all, reports, |robot, id, from| robot.hear_report(Some(id), &told[from]));
             let robots = all.par_iter_mut().zip(&at).with_min_len(BATCH);
             let moves = robots.map(|(robot, &own)| self.decide(robot, own, &at, sensing).offset());
             moves.map(|Cell { x, y }| vec![x, y]).collect::<Vec<_>>()

@@ -5,7 +5,8 @@
 //! with their preferred moves, processes all by priority, and leaves moves undecided that depend on
 //! bodies farther away. While any move in the world is undecided, ranks exchange their decisions
 //! and start another round, which decides at least the first undecided move; usually one round
-//! suffices. Refused bodies then try again, in another pass. The result is that of [`World::advance`] for any partition.
+//! suffices. Refused bodies then try again, in another pass. The result is that of
+//! [`World::advance`] for any partition.
 
 use super::{Body, PRIORITY, World};
 use serde::{Deserialize, Serialize};

@@ -217,11 +217,11 @@ impl World {
     /// A body that may leave takes the first of its preferred moves whose cell is passable and
     /// free, also if another body left that cell earlier in the tick; the order is that of this
     /// tick's priorities. Refused bodies try again after the others, as long as any body moves, so
-    /// that robots can follow each other. A diagonal move must also not cross one that is under way in this tick
-    /// ([`Dir::crosses`]), unless [`MoveRules::crossing`] allows it. Entering cell c by move d
-    /// keeps the body busy for length(d) * u(c) ticks (eq. 6). A body that moves again as soon as
-    /// it is free keeps the remaining fraction of a tick, so a journey takes exactly the sum of
-    /// eq. 7.
+    /// that robots can follow each other. A diagonal move must also not cross one that is under way
+    /// in this tick ([`Dir::crosses`]), unless [`MoveRules::crossing`] allows it. Entering cell c
+    /// by move d keeps the body busy for length(d) * u(c) ticks (eq. 6). A body that moves again as
+    /// soon as it is free keeps the remaining fraction of a tick, so a journey takes exactly the
+    /// sum of eq. 7.
     ///
     /// With [`MoveRules::simultaneous`] a body that may leave wants its first move, and all bodies
     /// move at once. They may follow each other, also in a circle. Two bodies do not exchange
