@@ -220,3 +220,14 @@ def test_the_page_fits_a_phone_in_light_and_dark(view, look):
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
         pictures.append(page.screenshot())
     assert pictures[0] != pictures[1]
+
+
+def test_a_robot_that_negotiates_shows_its_plan(view, look):
+    page = look(view("scenarios/corridor.toml", "--paused").url)
+    for step in range(1, 11):
+        page.keyboard.press(".")
+        until(lambda wanted=step: tick(page) == wanted, what=f"tick {step}")
+    select(page, 1)
+    until(lambda: page.evaluate("staya.robot?.tick") == 10, what="its knowledge")
+    assert len(page.evaluate("staya.robot.plan")) == 4
+    assert "planned moves" in page.inner_text("#legend")

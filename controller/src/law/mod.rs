@@ -149,6 +149,12 @@ pub trait Law<S: Scalar>: Sized {
         Report::default()
     }
 
+    /// Where its last decision puts a robot, itself or another one, at the end of the step; for
+    /// displays.
+    fn expects(&self, _id: RobotId) -> Option<Cell> {
+        None
+    }
+
     /// Calls `visit` with each of its tables of parameters.
     fn parameters(&mut self, _visit: &mut dyn FnMut(&mut dyn Parameters)) {}
 }

@@ -158,6 +158,15 @@ macro_rules! laws {
                 )+}
             }
 
+            fn expects(&self, id: $crate::robot::RobotId) -> Option<$crate::grid::Cell> {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => {
+                        $crate::agent::Law::<$number>::expects($crate::laws!(@inside law $($large)?), id)
+                    }
+                )+}
+            }
+
             fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn $crate::parameters::Parameters)) {
                 match self {$(
                     $(#[$attribute])*

@@ -199,6 +199,10 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
         }
     }
 
+    fn expects(&self, id: RobotId) -> Option<Cell> {
+        self.inside.expects(id)
+    }
+
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         self.inside.parameters(visit);
         self.straight.parameters(visit);

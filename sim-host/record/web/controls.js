@@ -391,6 +391,7 @@ export class Controls {
     }
     if (layers.known && app.selected !== null && scene.mode !== "recording")
       key(disc("transparent", css.ghost), "known positions of others");
+    if (app.view.plan().length) key(line(css.selected), "planned moves");
     if (scene.land) {
       key((context) => {
         const shades = context.createLinearGradient(1, 0, 25, 0);

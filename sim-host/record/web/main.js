@@ -143,7 +143,10 @@ class App {
 
   onRobot(robot) {
     if (robot.index !== this.selected) return;
+    const plans = (robot) => Boolean(robot?.plan?.length);
+    const changes = plans(robot) !== plans(this.robot);
     this.robot = robot;
+    if (changes) this.controls.legend();
     this.showWindow();
     this.panel.update();
     this.orders.robot();

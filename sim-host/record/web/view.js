@@ -107,6 +107,9 @@ export class View {
     const place = motion.place(app.selected, [0, 0, 0]);
     if (target && look.layers.targets) below.add(...place, ...target, packed(look.css.selected, 0.6), 1.3, 5);
     if (!look.layers.known || !app.robot?.neighbors) return;
+    for (const [index, to] of this.plan()) {
+      above.add(...motion.place(index, [0, 0, 0]), ...to, packed(look.css.selected, 0.9), 2);
+    }
     for (const { index, age_s, position_m } of app.robot.neighbors) {
       // Old positions are faint.
       const alpha = Math.max(0.2, 0.9 / (1 + age_s / (5 * app.scene.tick_s)));
@@ -114,6 +117,15 @@ export class View {
       const from = index === null || index >= motion.current.n ? null : motion.place(index, [0, 0, 0]);
       if (from) above.add(...from, position_m[0], position_m[1], position_m[2] ?? 0, packed(look.css.ghost, 0.9), 1, 2);
     }
+  }
+
+  /** The moves of itself and others that the selected robot plans: `[robot, end]`. */
+  plan() {
+    const { app } = this;
+    const { land } = app.scene;
+    const moves = land && app.look.layers.known ? (app.robot?.plan ?? []) : [];
+    const center = ({ cell }) => [...cell.map((at, axis) => land.origin_m[axis] + (at + 0.5) * land.cell_m), 0];
+    return moves.filter(({ index }) => index < app.motion.current.n).map((move) => [move.index, center(move)]);
   }
 
   /** Draws the ground, obstacles, and the heights of bodies above it. */
@@ -231,11 +243,19 @@ export class View {
     }
   }
 
-  /** Draws the selected robot's estimates of other positions. */
+  /** Draws the selected robot's estimates of other positions, and the ends of planned moves. */
   drawGhosts() {
     const { app, context } = this;
     const { css } = app.look;
     context.lineWidth = 1.5;
+    context.fillStyle = css.selected;
+    for (const [, [x, y]] of this.plan()) {
+      const at = app.camera.project(x, y, 0);
+      if (!at) continue;
+      context.beginPath();
+      context.arc(at[0], at[1], 3.5, 0, 2 * Math.PI);
+      context.fill();
+    }
     context.strokeStyle = context.fillStyle = css.ghost;
     for (const { index, id, position_m, age_s } of app.robot?.neighbors ?? []) {
       const at = app.camera.project(position_m[0], position_m[1], position_m[2] ?? 0);

@@ -7,7 +7,7 @@ use staya_controller::agent::{
     AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OrderOf,
     Protocol, Radio, Report, Tools, View,
 };
-use staya_controller::grid::Dir;
+use staya_controller::grid::{Cell, Dir};
 use staya_controller::negotiation::{Moves, NegotiationGuidance};
 use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::Parameters;
@@ -148,6 +148,7 @@ trait Hosted: fmt::Debug + Send + Sync {
     fn order(&mut self, order: &AnyOrder) -> bool;
     fn needs(&self, id: RobotId) -> bool;
     fn report(&self) -> Report;
+    fn expects(&self, id: RobotId) -> Option<Cell>;
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters));
 }
 
@@ -217,6 +218,10 @@ impl<L: OwnLaw> Hosted for Held<L> {
 
     fn report(&self) -> Report {
         self.law.report()
+    }
+
+    fn expects(&self, id: RobotId) -> Option<Cell> {
+        self.law.expects(id)
     }
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
@@ -298,6 +303,10 @@ impl Law<f32> for Own {
 
     fn report(&self) -> Report {
         self.0.report()
+    }
+
+    fn expects(&self, id: RobotId) -> Option<Cell> {
+        self.0.expects(id)
     }
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {

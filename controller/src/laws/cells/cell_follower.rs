@@ -117,6 +117,10 @@ where
         Report { target: self.last.as_ref().map_or(shown.target, |last| last.target), ..shown }
     }
 
+    fn expects(&self, id: RobotId) -> Option<Cell> {
+        self.law.expects(id)
+    }
+
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         visit(self);
         self.law.parameters(visit);

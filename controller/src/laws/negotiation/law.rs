@@ -176,6 +176,10 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
     fn report(&self) -> law::Report {
         law::Report { goal: self.goal, target: self.goal, ..law::Report::default() }
     }
+
+    fn expects(&self, id: RobotId) -> Option<Cell> {
+        self.robot.as_ref()?.expects(id)
+    }
 }
 
 /// The robots that did not get the cell that they said, because another one is there. O(N^3).

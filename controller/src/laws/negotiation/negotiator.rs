@@ -348,6 +348,15 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.chosen
     }
 
+    /// Where it expects a robot after the last decision; itself too.
+    #[must_use]
+    pub fn expects(&self, id: RobotId) -> Option<Cell> {
+        if id == self.id {
+            return Some(self.own.cell + self.chosen.offset());
+        }
+        self.known.iter().find(|other| other.id == id).map(|other| other.said.cell)
+    }
+
     /// Puts known robots where they are sensed. Returns the cells of those that are not known.
     fn place_sensed(&mut self, robots: &[(RobotId, Cell)]) -> Vec<Cell, N> {
         let mut unknown = Vec::new();

@@ -11,6 +11,7 @@ use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::{Parameter, Parameters};
 use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
+use std::iter;
 
 /// Another robot, as stored by a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,6 +89,8 @@ pub struct Choice {
 pub struct Inspection {
     /// Known robots, in the order of the neighbour table.
     pub known: Vec<Known>,
+    /// The cells to which its law moves it and robots nearby in this step.
+    pub plan: Vec<(RobotId, Cell)>,
     /// Terrain window; only on the grid.
     pub land: Option<SeenLand>,
     /// Safety decision; only for robots controlled by velocity.
@@ -172,7 +175,10 @@ where
             max_speed_mps: asked.body.max_speed_mps,
             permitted: permitted(agent.safety().inside(), asked),
         });
+        let planned = iter::once(self.id(index)).chain(agent.neighbors().iter().map(|other| other.id));
+        let plan = planned.filter_map(|id| Some((id, agent.law().expects(id)?)));
         Inspection {
+            plan: plan.collect(),
             known: known(agent.neighbors(), own, own_m, now).collect(),
             land,
             choice,

@@ -207,7 +207,7 @@ impl Session {
 
     pub(super) fn robot(&self, index: usize) -> String {
         let observation = self.engine.observation(index);
-        let Inspection { known, land, choice, parameters, sent_bytes, heard_bytes } = self.engine.inspect(index);
+        let Inspection { known, plan, land, choice, parameters, sent_bytes, heard_bytes } = self.engine.inspect(index);
         let origin_m = self.framer.origin_m();
         let robots = &self.scenario.robots;
         let index_of = |id: RobotId| robots.binary_search_by_key(&id, |robot| robot.id).ok();
@@ -224,6 +224,8 @@ impl Session {
                 "age_s": known.age_s, "error_m": error_m,
             })
         });
+        let plan =
+            plan.iter().filter_map(|&(id, cell)| Some(json!({ "index": index_of(id)?, "cell": [cell.x, cell.y] })));
         let parameters = parameters.iter().map(|(parameter, value)| (parameter.name.to_owned(), json!(value)));
         let events = self.events.get(&index).into_iter().flatten();
         let status = observation.status;
@@ -239,6 +241,7 @@ impl Session {
             "up": observation.is_up,
             "wish": choice.as_ref().map(|choice| choice.wish_mps),
             "neighbors": neighbors.collect::<Vec<_>>(),
+            "plan": plan.collect::<Vec<_>>(),
             "window": land.map(|land| window(&land)),
             "orca": choice.map(|choice| orca(&choice)),
             "events": events.map(|(tick, text)| json!({ "tick": tick, "text": text })).collect::<Vec<_>>(),

@@ -183,6 +183,22 @@ fn a_selected_robot_shows_its_knowledge() {
 }
 
 #[test]
+fn a_selected_robot_that_negotiates_shows_its_plan() {
+    let mut run = Running::new(
+        "name = \"t\"\nticks = 50\nlaw.name = \"negotiation\"\nradio.range_m = 5\n\
+         terrain.uniform = { width = 9, height = 1, classes = 1 }\n[robots]\n\
+         list = [{ start = [0, 0], goal = [8, 0] }, { start = [2, 0], goal = [7, 0] }]\n",
+    );
+    run.text("scene");
+    run.say(&json!({ "do": "select", "robot": 0 }));
+    for _ in 0..2 {
+        run.say(&json!({ "do": "step" }));
+    }
+    let robot = run.until(|message| message.ok().filter(|robot| robot["type"] == "robot" && robot["tick"] == 2));
+    assert_eq!(robot["plan"], json!([{ "index": 0, "cell": [3, 0] }, { "index": 1, "cell": [5, 0] }]));
+}
+
+#[test]
 fn a_changing_map_is_sent_to_pages() {
     let mut run = Running::new(
         "name = \"t\"\nticks = 50\n[terrain]\nuniform = { width = 9, height = 1, classes = 1 }\n\
