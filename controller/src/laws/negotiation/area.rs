@@ -6,6 +6,13 @@ use serde::{Deserialize, Serialize};
 /// Columns and rows of an [`Area`]; the outermost column and row on one side are its border.
 pub const SIDE: usize = 64;
 const HALF: i16 = 32;
+/// Most cells at a time that robots block.
+const BLOCKS: usize = 8;
+/// Steps for which a cell is closed that this robot found blocked, at first; doubled so often.
+const FIRST: u8 = 16;
+const MOST_TIMES: u8 = 3;
+/// Steps for which a cell is closed that another robot found blocked.
+const TOLD: u8 = 6;
 /// Radius of a [`Sight`].
 pub const SIGHT: i16 = 5;
 
@@ -42,15 +49,26 @@ impl Sight {
     }
 }
 
-/// The closed cells that a robot has seen or was told, within 31 cells of it; 514 bytes. Unknown
+/// The closed cells that a robot has seen or was told, within 31 cells of it; 568 bytes. Unknown
 /// cells are open.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Area {
     #[serde(with = "halves")]
     closed: Plane,
     center: Cell,
+    blocked: [Block; BLOCKS],
     /// Counts the changes.
     version: u16,
+}
+
+/// A cell in which a robot stays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Block {
+    cell: Cell,
+    /// Steps for which it still counts as closed.
+    left: u8,
+    /// How often this robot found it blocked.
+    times: u8,
 }
 
 /// A [`Plane`] as two arrays; serde has none of 64.
@@ -93,7 +111,12 @@ impl Area {
     /// Nothing is known around `center`.
     #[must_use]
     pub const fn new(center: Cell) -> Self {
-        Self { closed: [0; SIDE], center, version: 0 }
+        Self {
+            closed: [0; SIDE],
+            center,
+            blocked: [Block { cell: Cell::new(0, 0), left: 0, times: 0 }; BLOCKS],
+            version: 0,
+        }
     }
 
     /// Whether a cell is inside, and not its border.
@@ -105,7 +128,54 @@ impl Area {
     /// Whether a cell may be entered, as far as is known. Cells outside may not.
     #[must_use]
     pub fn is_open(&self, cell: Cell) -> bool {
-        self.has(cell) && !bit(&self.closed, cell)
+        self.has(cell) && !bit(&self.closed, cell) && !self.is_blocked(cell)
+    }
+
+    /// Whether a cell is closed because a robot stays there.
+    #[must_use]
+    pub fn is_blocked(&self, cell: Cell) -> bool {
+        self.blocked.iter().any(|block| block.cell == cell && block.left > 0)
+    }
+
+    /// The cells in which this robot found that another one stays.
+    pub fn blocked(&self) -> impl Iterator<Item = Cell> {
+        self.blocked.iter().filter(|block| block.left > 0 && block.times > 0).map(|block| block.cell)
+    }
+
+    /// Closes a cell in which a robot stays: each time that this robot found it so, for twice as
+    /// long; if another one `told` it, for some steps. One more than there is room for replaces the
+    /// one that ends first.
+    pub fn block(&mut self, cell: Cell, told: bool) {
+        let known = self.blocked.iter().position(|block| block.cell == cell);
+        let first = || (0..BLOCKS).min_by_key(|&index| self.blocked.get(index).map(|block| block.left));
+        let Some(block) = known.or_else(first).and_then(|index| self.blocked.get_mut(index)) else { return };
+        if block.cell != cell {
+            *block = Block { cell, left: 0, times: 0 };
+        }
+        let was_open = block.left == 0;
+        if told {
+            block.left = block.left.max(TOLD);
+        } else if was_open {
+            block.left = FIRST << block.times.min(MOST_TIMES);
+            block.times = block.times.saturating_add(1);
+        }
+        self.version = self.version.wrapping_add(was_open.into());
+    }
+
+    /// Opens a cell again, because a robot that moves is there.
+    pub fn unblock(&mut self, cell: Cell) {
+        for block in self.blocked.iter_mut().filter(|block| block.cell == cell) {
+            self.version = self.version.wrapping_add((block.left > 0).into());
+            (block.left, block.times) = (0, 0);
+        }
+    }
+
+    /// A step passes.
+    pub fn pass(&mut self) {
+        for block in &mut self.blocked {
+            self.version = self.version.wrapping_add((block.left == 1).into());
+            block.left = block.left.saturating_sub(1);
+        }
     }
 
     /// Closes a cell inside.
@@ -153,6 +223,11 @@ impl Area {
     pub(super) fn open(&self) -> Plane {
         let border = |at: i16| place(at.wrapping_sub(HALF));
         let mut open = self.closed.map(|row| !row & !(1 << border(self.center.x)));
+        for &Block { cell, .. } in self.blocked.iter().filter(|block| block.left > 0) {
+            if let Some(row) = open.get_mut(place(cell.y)).filter(|_| self.has(cell)) {
+                *row &= !(1 << place(cell.x));
+            }
+        }
         if let Some(row) = open.get_mut(border(self.center.y)) {
             *row = 0;
         }

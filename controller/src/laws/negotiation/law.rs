@@ -2,7 +2,9 @@
 
 use super::{Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight};
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
-use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Protocol, Radio, Status, Tools, View};
+use crate::law::{
+    self, Action, BadInput, CellState, Decision, Law, OnGrid, Protocol, Radio, Status, Tools, View, Wait,
+};
 use crate::laws::cells::GridOrder;
 use crate::neighbor::Neighbor;
 use crate::robot::RobotId;
@@ -31,16 +33,19 @@ pub struct NegotiationPayload {
     pub said: Said,
     /// The move by which it goes there.
     pub by: Dir,
-    /// Steps after the next one in which it cannot leave that cell.
+    /// Steps after the next one in which it cannot leave that cell; 255: it stays there.
     pub busy: u8,
 }
+
+/// Of a robot without a goal, or that an operator stopped.
+const STAYS: u8 = u8::MAX;
 
 impl Content for NegotiationPayload {}
 impl Content for Report {}
 
 /// Robots that pass each other on the grid, with or without a map: at most `N` plan together, with
 /// distances of `F` goals. Cells cost the same, walls apart. Robots of other laws are not seen. On
-/// a 32-bit part it takes 624 + 28 `N` + 1036 `F` bytes.
+/// a 32-bit part it takes 688 + 28 `N` + 1036 `F` bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
     moves: Moves,
@@ -57,7 +62,7 @@ pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
 #[cfg(target_pointer_width = "32")]
 const _: () = {
     const fn fits<const N: usize, const F: usize>() -> bool {
-        size_of::<NegotiationGuidance<N, F>>() <= 624 + 28 * N + 1036 * F
+        size_of::<NegotiationGuidance<N, F>>() <= 688 + 28 * N + 1036 * F
     }
     assert!(fits::<8, 2>() && fits::<16, 2>() && fits::<32, 4>() && fits::<64, 8>());
 };
@@ -113,6 +118,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let failed: Vec<RobotId, N> = failed(view, cell);
         for (neighbor, NegotiationPayload { said, by, busy }) in view.peers() {
             if neighbor.heard.since(self.decided) > Duration::ZERO {
+                robot.moves_in(said.cell - by.offset());
                 if failed.contains(&neighbor.id) {
                     robot.hear_at(neighbor.id, &said, said.cell - by.offset());
                 } else {
@@ -121,12 +127,16 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             }
             if view.now.since(neighbor.heard) < view.tick.saturating_mul(busy.into()) {
                 robot.hold(neighbor.id);
+                if busy == STAYS {
+                    robot.hear_blocked(said.cell);
+                }
             }
         }
         let dir = robot.decide(Sensed::Nothing);
         let begun = if view.now.since(self.crossed) < view.tick { self.crossed } else { view.now };
         (self.decided, self.tick) = (view.now, view.tick);
-        let mut status = Status { is_at_goal: cell == goal, ..Status::default() };
+        let waits_for = robot.is_beside_goal().then_some(Wait::GoalTaken);
+        let mut status = Status { is_at_goal: cell == goal || waits_for.is_some(), waits_for, ..Status::default() };
         let mut moves = Vec::new();
         if dir != Dir::Stay {
             let class = window.get(cell + dir.offset()).unwrap_or(1);
@@ -142,13 +152,16 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let Some(robot) = &mut self.robot else {
             // Without a goal it stays where it is.
             let said = Said { cell, goal: cell, waiting: 1, ..Said::default() };
-            return NegotiationPayload { said, by: Dir::Stay, busy: 0 };
+            return NegotiationPayload { said, by: Dir::Stay, busy: STAYS };
         };
         radio.broadcast(&robot.report());
         let now = radio.now();
+        let mut stays = false;
         let said = match here.seen() {
             Ok((cell, window)) if self.decided != now => {
                 self.crossed = now + busy;
+                stays = busy == Duration::ZERO;
+                robot.is_under_way();
                 robot.see(cell, &sight(cell, &window))
             }
             _ => robot.promise(),
@@ -157,7 +170,8 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         // The last step of a crossing ends when it is free.
         let left = self.crossed.since(now).as_micros().saturating_sub(1);
         let busy = left.checked_div(self.tick.as_micros()).unwrap_or(0);
-        NegotiationPayload { said, by, busy: u8::try_from(busy.max(0)).unwrap_or(u8::MAX) }
+        let busy = u8::try_from(busy.max(0)).unwrap_or(STAYS);
+        NegotiationPayload { said, by, busy: if stays { STAYS } else { busy } }
     }
 
     fn receive(&mut self, _: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {

@@ -26,6 +26,10 @@ const NEAR: i16 = 7;
 const STALEMATE: u8 = 2;
 /// Steps in which a robot that lost its moves goes last or not.
 const COURTESY: u32 = 4;
+/// Refusals in a row, without a word of a robot there, after which a cell counts as blocked.
+const REFUSALS: u8 = 3;
+/// Most blocked cells in a [`Report`].
+const BLOCKED: usize = 2;
 const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
 
 /// What a robot says of itself in each step, before it decides; 14 bytes on the air.
@@ -57,7 +61,8 @@ pub struct Report {
     /// What it sees.
     pub sight: Sight,
     /// The nearest robots that it heard in this step: the lowest byte of the number, and the
-    /// offsets to the east and to the north plus 8, in the low and in the high four bits.
+    /// offsets to the east and to the north plus 8, in the low and in the high four bits. Before
+    /// them cells that it found blocked: these offsets, and 0.
     pub heard: Vec<(u8, u8), REPORTED>,
 }
 
@@ -95,6 +100,8 @@ struct Known {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Negotiator<const N: usize, const F: usize> {
     id: RobotId,
+    goal: Cell,
+    /// What it says; its goal is its own cell where it stays beside its goal.
     own: Said,
     sight: Sight,
     moves: Moves,
@@ -106,6 +113,8 @@ pub struct Negotiator<const N: usize, const F: usize> {
     /// the cell that it chose.
     swung: u8,
     refused: u8,
+    /// The cell that it did not get, and how often in a row without a word of a robot there.
+    barred: (Cell, u8),
     /// How it behaves by what it saw in this step, and how it promised to behave.
     manners: Manners,
     promised: Option<Manners>,
@@ -127,6 +136,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         let manners = Manners { is_last: false, keeps_on: false };
         Self {
             id,
+            goal: cell,
             own: Said { cell, goal: cell, waiting: 1, wish: Wish(0), step: 0, manners },
             sight: Sight([0; 16]),
             moves,
@@ -134,6 +144,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             chosen: Dir::Stay,
             swung: 0,
             refused: 0,
+            barred: (cell, 0),
             manners,
             promised: None,
             has_begun: false,
@@ -147,6 +158,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
 
     /// Gives it a goal. It waits behind others that have waited longer.
     pub const fn set_goal(&mut self, goal: Cell) {
+        self.goal = goal;
         self.own.goal = goal;
         self.own.waiting = 0;
     }
@@ -154,7 +166,19 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// Where it wants to go.
     #[must_use]
     pub const fn goal(&self) -> Cell {
-        self.own.goal
+        self.goal
+    }
+
+    /// Whether it stays beside its goal, which another robot does not leave.
+    #[must_use]
+    pub fn is_beside_goal(&self) -> bool {
+        self.own.goal != self.goal
+    }
+
+    /// Where it wants to be if it is in a cell: beside a goal that is closed, it stays there.
+    fn aim(&self, cell: Cell) -> Cell {
+        let stays = cell.chebyshev(self.goal) == 1 && self.area.is_blocked(self.goal);
+        if stays { cell } else { self.goal }
     }
 
     /// Sees its cell and the land around it. Returns what to say.
@@ -165,27 +189,30 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.sight = *sight;
         if !self.has_seen {
             self.has_seen = true;
+            self.own.goal = self.aim(cell);
             self.own.waiting = waiting(cell == self.own.goal, self.own.waiting);
             self.own.step = self.own.step.wrapping_add(1);
+            self.area.pass();
             self.manners = self.manners(cell, self.own.step);
             self.own.manners = self.promised.unwrap_or(self.manners);
         }
-        self.own = Said { cell, wish: self.wish(cell), ..self.own };
+        self.own = Said { cell, wish: self.wish(cell, self.own.goal), ..self.own };
         self.own
     }
 
-    fn wish(&mut self, cell: Cell) -> Wish {
-        let distances = self.fields.to(self.own.goal, &self.area, self.moves);
+    fn wish(&mut self, cell: Cell, goal: Cell) -> Wish {
+        let distances = self.fields.to(goal, &self.area, self.moves);
         Wish::new(cell, &self.area, distances, self.moves)
     }
 
     /// What to say after a decision, before the next step: it is where it goes.
     pub fn promise(&mut self) -> Said {
-        let Said { cell, goal, waiting, step, .. } = self.own;
+        let Said { cell, waiting, step, .. } = self.own;
         let cell = cell + self.chosen.offset();
+        let goal = self.aim(cell);
         let (waiting, step) = (self::waiting(cell == goal, waiting), step.wrapping_add(1));
         self.promised = Some(self.manners);
-        Said { cell, goal, waiting, wish: self.wish(cell), step, manners: self.manners }
+        Said { cell, goal, waiting, wish: self.wish(cell, goal), step, manners: self.manners }
     }
 
     fn begin(&mut self) {
@@ -213,6 +240,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.swung = if swings { self.swung.saturating_add(1) } else { 0 };
         let is_refused = cell == last && self.chosen != Dir::Stay;
         self.refused = if is_refused { self.refused.saturating_add(1) } else { self.refused.saturating_sub(1) };
+        let wanted = last + self.chosen.offset();
+        self.barred = match self.barred {
+            (barred, count) if is_refused && barred == wanted => (wanted, count.saturating_add(1)),
+            _ => (wanted, is_refused.into()),
+        };
         self.past = [cell, last];
         let coin = |use_: u64, step: u32| Rng::keyed(use_, PURPOSE, self.id.0, step).next_u32() & 1 == 1;
         let step = u32::from(step);
@@ -229,6 +261,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
             return;
         }
+        self.moves_in(said.cell);
         let known = Known { id, said: *said, age: 0, lost: 0, holds: false };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = known,
@@ -245,6 +278,14 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
+    /// A robot that moves is in a cell.
+    pub fn moves_in(&mut self, cell: Cell) {
+        self.area.unblock(cell);
+        if self.barred.0 == cell {
+            self.barred.1 = 0;
+        }
+    }
+
     /// Hears a robot that said that it goes to a cell, and cannot have left `cell`.
     pub fn hear_at(&mut self, id: RobotId, said: &Said, cell: Cell) {
         self.hear(id, &Said { cell, ..*said });
@@ -252,6 +293,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             // Its wish is that of another cell.
             other.age = 1;
         }
+    }
+
+    /// The own move takes more than a step, so it is not refused.
+    pub const fn is_under_way(&mut self) {
+        self.chosen = Dir::Stay;
     }
 
     /// A robot cannot move in this step.
@@ -267,15 +313,15 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         let mut near: Vec<(u32, RobotId, Cell), N> = Vec::new();
         for other in self.known.iter().filter(|other| other.age == 0) {
             let offset = other.said.cell - self.own.cell;
-            if offset.x.abs() <= NEAR && offset.y.abs() <= NEAR {
+            if is_near(offset) {
                 let _ = near.push((offset.chebyshev(Cell::default()), other.id, offset));
             }
         }
         list::sort_by_key(&mut near, |&(distance, id, _)| (distance, id.0));
-        let short = |&(_, id, offset): &(u32, RobotId, Cell)| {
-            (id.0 as u8, (offset.x + NEAR + 1) as u8 | ((offset.y + NEAR + 1) as u8) << 4)
-        };
-        let heard = list::collect(near.iter().map(short));
+        let blocked = self.area.blocked().map(|cell| cell - self.own.cell).filter(|&offset| is_near(offset));
+        let blocked = blocked.take(BLOCKED).map(|offset| (packed(offset), 0));
+        let heard = near.iter().map(|&(_, id, offset)| (id.0 as u8, packed(offset)));
+        let heard = list::collect(blocked.chain(heard).take(REPORTED));
         Report { cell: self.own.cell, sight: self.sight, heard }
     }
 
@@ -289,9 +335,22 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
         // Others may say where they expect this robot.
         let own = self.id.0 as u8;
-        for &(number, offset) in report.heard.iter().filter(|(number, _)| *number != own) {
-            let offset = Cell::new((offset & 15).into(), (offset >> 4).into()) - Cell::new(NEAR + 1, NEAR + 1);
-            self.place(number, report.cell + offset);
+        for &(number, offset) in &report.heard {
+            if offset == 0 {
+                self.hear_blocked(report.cell + unpacked(number));
+            } else if number != own {
+                let cell = report.cell + unpacked(offset);
+                self.moves_in(cell);
+                self.place(number, cell);
+            }
+        }
+    }
+
+    /// Another robot found a cell blocked, or the robot there said that it stays.
+    pub fn hear_blocked(&mut self, cell: Cell) {
+        let moves = |other: &Known| other.said.cell == cell && other.lost == 0 && !other.holds;
+        if cell != self.own.cell && !self.known.iter().any(moves) {
+            self.area.block(cell, true);
         }
     }
 
@@ -318,6 +377,10 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.begin();
         (self.has_begun, self.has_seen) = (false, false);
         let own = self.own;
+        let (barred, refusals) = self.barred;
+        if refusals >= REFUSALS {
+            self.area.block(barred, false);
+        }
         self.known.retain(|other| other.lost <= FORGET || !matches!(sensed, Sensed::Nothing));
         let strangers = match sensed {
             Sensed::Nothing => self.strangers.clone(),
@@ -394,6 +457,18 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.known.retain(|other| other.said.cell.chebyshev(own) > SENSED || placed.contains(&other.id));
         free
     }
+}
+
+fn is_near(offset: Cell) -> bool {
+    offset.x.abs() <= NEAR && offset.y.abs() <= NEAR
+}
+
+const fn packed(offset: Cell) -> u8 {
+    (offset.x + NEAR + 1) as u8 | ((offset.y + NEAR + 1) as u8) << 4
+}
+
+fn unpacked(offset: u8) -> Cell {
+    Cell::new((offset & 15).into(), (offset >> 4).into()) - Cell::new(NEAR + 1, NEAR + 1)
 }
 
 /// Moves between two cells without diagonals.
