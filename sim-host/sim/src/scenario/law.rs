@@ -32,6 +32,8 @@ pub struct NamedLaw {
     pub parameters: Vec<(String, f32)>,
     /// The moves of the bodies, for a law that needs them.
     pub moves: Moves,
+    /// The cruising speed of bodies in the plane, m/s.
+    pub cruise_mps: Option<f32>,
 }
 
 impl NamedLaw {
@@ -41,7 +43,7 @@ impl NamedLaw {
     /// If the program does not add it; [`Scenario::load`](super::Scenario::load) refuses that.
     #[must_use]
     pub fn law(&self) -> Own {
-        let mut law = named(&self.name, self.moves).unwrap_or_else(|_| panic!("no law {} in this program", self.name));
+        let mut law = named(&self.name, self.moves, self.cruise_mps).unwrap_or_else(|_| panic!("no law {} in this program", self.name));
         for (name, value) in &self.parameters {
             Law::<f32>::parameters(&mut law, &mut |table| {
                 if let Some(index) = table.index(name) {
@@ -60,7 +62,8 @@ pub(super) fn law(
 ) -> Result<Option<NamedLaw>, ScenarioError> {
     let Some(table) = &file.law else { return Ok(None) };
     let moves = Moves { diagonals: file.grid.moves == 8, circles: file.grid.simultaneous };
-    let mut law = named(&table.name, moves).map_err(|known| {
+    let cruise_mps = plane.map(|setup| setup.general.cruise_mps as f32);
+    let mut law = named(&table.name, moves, cruise_mps).map_err(|known| {
         let what = format!("this program has no law \"{}\"", table.name);
         let remedy = match nearest(&table.name, known.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"?"),
@@ -104,5 +107,5 @@ pub(super) fn law(
         })?;
         parameters.push((name.clone(), value as f32));
     }
-    Ok(Some(NamedLaw { name: table.name.clone(), parameters, moves }))
+    Ok(Some(NamedLaw { name: table.name.clone(), parameters, moves, cruise_mps }))
 }

@@ -1,0 +1,280 @@
+//! Negotiation of bodies that move in the plane.
+
+use super::law::sight;
+use super::{Moves, Negotiator, Report, Said, Sensed};
+use crate::geom::Vec2;
+use crate::grid::{Cell, Dir};
+use crate::law::{self, Action, BadInput, Decision, InCells, Law, Protocol, Radio, Status, Tools, View};
+use crate::laws::cells::GridOrder;
+use crate::parameters::{Parameters, SPEED};
+use crate::robot::RobotId;
+use crate::scalar::Scalar;
+use crate::time::{Duration, Instant};
+use crate::wire::{Content, ProtocolId};
+use serde::{Deserialize, Serialize};
+
+/// The time of a step is that of a cell at cruising speed and a tenth, so that a robot can catch
+/// up; tenths.
+const SLACK: i32 = 11;
+/// Distance beyond the braking distance at which a robot is late, thousandths of a cell.
+const LATE: i32 = 300;
+/// Steps in a row that a robot is late, after which it starts from where it is.
+const GIVES_UP: u8 = 4;
+
+/// The protocol of robots that negotiate in the plane, in steps that begin at the same time.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum InStep {}
+
+impl Protocol for InStep {
+    const ID: ProtocolId = ProtocolId(4);
+    type Payload = InStepPayload;
+    type Message = Report;
+    type Order = GridOrder;
+}
+
+/// What a robot that negotiates in the plane says in its beacon; 16 bytes on the air.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InStepPayload {
+    /// Where it is at the end of this step.
+    pub said: Said,
+    /// The move by which it goes there.
+    pub by: Dir,
+    /// How far the step is.
+    pub beat: Beat,
+}
+
+impl Content for InStepPayload {}
+
+/// A moment of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "u8", into = "u8")]
+pub struct Beat {
+    /// Time since the step began, 128ths of a step; at most 127.
+    pub phase: u8,
+    /// Whether the robot will not leave its cell in the next step.
+    pub is_late: bool,
+}
+
+impl From<u8> for Beat {
+    fn from(bits: u8) -> Self {
+        Self { phase: bits >> 1, is_late: bits & 1 == 1 }
+    }
+}
+
+impl From<Beat> for u8 {
+    fn from(beat: Beat) -> Self {
+        beat.phase << 1 | Self::from(beat.is_late)
+    }
+}
+
+/// [`NegotiationGuidance`](super::NegotiationGuidance) on a body in the plane, between the centres
+/// of cells, to four neighbours. The discs of two robots that follow each other around a corner
+/// pass at 0.7 cells: their diameter must be less.
+///
+/// All robots begin their steps at the same time: a robot whose step is behind that of a robot it
+/// hears moves on to that. They need equal cells and cruising speeds. In a step the robot follows a
+/// point that moves to the centre of the next cell at constant speed. It takes its move back if
+/// another robot has said that it stays in that cell, or enters it and has waited longer. A robot
+/// that is behind its point stays in the next step.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
+    speed_mps: S,
+    goal: Option<Cell>,
+    robot: Option<Negotiator<N, F>>,
+    /// Where it was at the start of the step, and the move that it makes in it.
+    from: Cell,
+    by: Dir,
+    /// What it says and broadcasts in this step.
+    said: Said,
+    shared: Report,
+    step: u8,
+    began: Instant,
+    length: Duration,
+    decided: Instant,
+    is_late: bool,
+    /// Steps in a row that it is late.
+    late: u8,
+}
+
+crate::parameters! {
+    impl[S: Scalar, const N: usize, const F: usize] NegotiationInPlane<S, N, F> { SPEED => speed_mps }
+}
+
+impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
+    /// Creates the law with a cruising speed of `speed_mps`, within the speed limit of the body.
+    #[must_use]
+    pub const fn new(speed_mps: S) -> Self {
+        Self {
+            speed_mps,
+            goal: None,
+            robot: None,
+            from: Cell { x: 0, y: 0 },
+            by: Dir::Stay,
+            said: Said {
+                cell: Cell { x: 0, y: 0 },
+                goal: Cell { x: 0, y: 0 },
+                waiting: 1,
+                wish: super::Wish(0),
+                step: 0,
+                manners: super::Manners { is_last: false, keeps_on: false },
+            },
+            shared: Report { cell: Cell { x: 0, y: 0 }, sight: super::Sight([0; 16]), heard: heapless::Vec::new() },
+            step: 0,
+            began: Instant::from_micros(0),
+            length: Duration::ZERO,
+            decided: Instant::from_micros(0),
+            is_late: false,
+            late: 0,
+        }
+    }
+
+    /// Not inlined, so that a new robot takes no stack in a decision.
+    #[inline(never)]
+    fn begin(&mut self, id: RobotId, cell: Cell, now: Instant) {
+        if self.robot.is_none() {
+            self.robot = Some(Negotiator::new(id, cell, Moves::FOUR));
+            (self.from, self.by) = (cell, Dir::Stay);
+            self.began = now - self.length;
+        }
+    }
+
+    /// Advances the clock to that of the robots ahead. Returns whether a step begins.
+    fn keep_time(&mut self, view: &View<'_, S, InStep>) -> bool {
+        let length = self.length.as_micros().max(1);
+        let mut passed = view.now.since(self.began).as_micros().max(0);
+        for (other, InStepPayload { said, beat, .. }) in view.peers() {
+            if other.heard.since(self.decided) <= Duration::ZERO {
+                continue;
+            }
+            let steps = said.step.wrapping_sub(1).wrapping_sub(self.step) as i8;
+            let theirs = i64::from(length) * (i64::from(steps) * 128 + i64::from(beat.phase)) >> 7;
+            passed = passed.max(i32::try_from(theirs).unwrap_or(0));
+        }
+        let steps = passed.checked_div(length).unwrap_or(0);
+        self.began = view.now - Duration::from_micros(passed - length.saturating_mul(steps));
+        self.step = self.step.wrapping_add(steps as u8);
+        steps > 0
+    }
+
+    /// Whether another robot has a better claim to the cell that it enters, or wants to exchange
+    /// cells with it.
+    fn loses(&self, view: &View<'_, S, InStep>) -> bool {
+        let own = &self.said;
+        self.by != Dir::Stay
+            && view.peers().any(|(other, InStepPayload { said, by, .. })| {
+                let start = said.cell - by.offset();
+                let is_ahead = (said.waiting, other.id.0) > (own.waiting, view.id.0);
+                said.step == own.step
+                    && ((said.cell == own.cell && (by == Dir::Stay || is_ahead))
+                        || (said.cell == self.from && start == own.cell))
+            })
+    }
+}
+
+impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S, N, F> {
+    type Surroundings<'a> = InCells<'a, S>;
+    type Protocol = InStep;
+    type Workspace = ();
+
+    fn decide(
+        &mut self,
+        view: &View<'_, S, InStep>,
+        here: &InCells<'_, S>,
+        _: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput> {
+        let Some(goal) = view.sent_to.or(self.goal) else { return Ok(Decision::idle()) };
+        view.can_move()?;
+        let (under, window) = here.grid.seen()?;
+        let place = here.in_cell;
+        let crossing_s = place.cell_m.checked_div(self.speed_mps.max(S::from_milli(1))).ok_or(BadInput)?;
+        let length = (crossing_s * S::from_ratio(SLACK, 10) * S::from_i32(1000)).floor_to_i32().ok_or(BadInput)?;
+        self.length = Duration::from_millis(length);
+        self.begin(view.id, under, view.now);
+        let to_center = |cell: Cell| {
+            let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
+            let cells = cell - under;
+            Vec2::new(along(cells.x, place.offset_m.x), along(cells.y, place.offset_m.y)) - view.ahead_m.xy()
+        };
+        let speed = self.speed_mps.min(view.body.max_speed_mps);
+        let lag_m = view.body.braking_m(speed) + speed * view.body.step_s + place.cell_m * S::from_milli(LATE);
+        if self.keep_time(view) {
+            self.from = self.from + self.by.offset();
+            let was_late = to_center(self.from).norm() > lag_m;
+            self.late = if was_late { self.late.saturating_add(1) } else { 0 };
+            if self.late >= GIVES_UP {
+                (self.from, self.late) = (under, 0);
+            }
+            let Some(robot) = &mut self.robot else { return Ok(Decision::idle()) };
+            if robot.goal() != goal {
+                robot.set_goal(goal);
+            }
+            robot.set_step(self.step);
+            robot.see(self.from, &sight(self.from, under, &window));
+            for (other, InStepPayload { said, beat, .. }) in view.peers() {
+                if said.step == self.step {
+                    robot.hear(other.id, &said);
+                    if beat.is_late {
+                        robot.hold(other.id);
+                    }
+                }
+            }
+            let dir = robot.decide(Sensed::Nothing);
+            self.by = if was_late { Dir::Stay } else { dir };
+            self.said = if was_late { robot.stay() } else { robot.promise() };
+            self.shared = robot.report();
+        } else if self.loses(view)
+            && let Some(robot) = &mut self.robot
+        {
+            self.by = Dir::Stay;
+            self.said = robot.stay();
+        }
+        self.decided = view.now;
+        let passed = S::from_micro(view.now.since(self.began).as_micros());
+        let share = passed.checked_div(S::from_micro(self.length.as_micros())).unwrap_or(S::ONE);
+        let (start, end) = (to_center(self.from), to_center(self.said.cell));
+        let way = start + (end - start) * share;
+        let distance = way.norm();
+        self.is_late = distance > lag_m;
+        let wish = way.normalized().unwrap_or_default() * view.body.stopping_speed(distance).min(speed);
+        let is_there = self.from == goal && self.by == Dir::Stay;
+        let status = Status { is_at_goal: is_there, makes_way: is_there, ..Status::default() };
+        Ok(Decision { action: Action::Velocity { wish_mps: wish.extend(S::ZERO), way_m: None }, status })
+    }
+
+    fn payload(&mut self, here: &InCells<'_, S>, _: Dir, radio: &mut Radio<'_, InStep>) -> InStepPayload {
+        let now = radio.now();
+        let (said, by, is_late) = if self.robot.is_some() && self.decided == now {
+            radio.broadcast(&self.shared);
+            (self.said, self.by, self.is_late)
+        } else {
+            // It does not decide: it stays where it is.
+            let (cell, step) = (here.grid.cell.cell, self.step.wrapping_add(1));
+            (Said { cell, goal: cell, waiting: 1, step, ..Said::default() }, Dir::Stay, true)
+        };
+        let passed = i64::from(now.since(self.began).as_micros().max(0)) << 7;
+        let phase = passed.checked_div(self.length.as_micros().into()).unwrap_or(0).min(127) as u8;
+        InStepPayload { said, by, beat: Beat { phase, is_late } }
+    }
+
+    fn receive(&mut self, _: RobotId, report: &Report, _: &mut Radio<'_, InStep>) -> bool {
+        if let Some(robot) = &mut self.robot {
+            robot.hear_report(None, report);
+        }
+        true
+    }
+
+    fn order(&mut self, order: &GridOrder) -> bool {
+        let GridOrder::Goal(goal) = order else { return false };
+        self.goal = Some(*goal);
+        true
+    }
+
+    fn report(&self) -> law::Report {
+        law::Report { goal: self.goal, target: self.goal, ..law::Report::default() }
+    }
+
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        visit(self);
+    }
+}
