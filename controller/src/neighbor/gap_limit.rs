@@ -73,6 +73,9 @@ pub struct GapLimit<'a, S> {
     pub may_be_alone: bool,
     /// Silence after which a lost robot counts as standing in any case.
     pub stands_after: Duration,
+    /// Whether the robot may follow a robot that recedes: the way on which that one can brake at
+    /// most adds to the gap.
+    pub is_agreed: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -237,6 +240,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             let other_m = body.braking_m(comes_mps) + comes_mps.max(S::ZERO) * self.lag_s;
             ((gap * S::HALF).min(gap - other_m), S::ZERO)
         };
+        let left_m = if self.is_agreed { left_m + body.braking_m(-comes_mps) } else { left_m };
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
         let mut limit = Limit { ahead, slant, left_m, growth_mps };
         if self.lag_s > S::ZERO {

@@ -13,11 +13,10 @@ use crate::time::{Duration, Instant};
 use crate::wire::{Content, ProtocolId};
 use serde::{Deserialize, Serialize};
 
-/// The time of a step is that of a cell at cruising speed and a tenth, so that a robot can catch
-/// up; tenths.
-const SLACK: i32 = 11;
-/// Distance beyond the braking distance at which a robot is late, thousandths of a cell.
-const LATE: i32 = 300;
+/// Time of a step, tenths of the time that a cell takes at cruising speed; leaves speed to catch up.
+const SLACK: i32 = 12;
+/// Part of its distance from the point that a robot makes up for in a second.
+const PULL: i32 = 3;
 /// Steps in a row that a robot is late, after which it starts from where it is.
 const GIVES_UP: u8 = 4;
 
@@ -82,7 +81,8 @@ pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
     speed_mps: S,
     goal: Option<Cell>,
     robot: Option<Negotiator<N, F>>,
-    /// Where it was at the start of the step, and the move that it makes in it.
+    /// The cell at the start of the last step and of this one, and the move in this one.
+    before: Cell,
     from: Cell,
     by: Dir,
     /// What it says and broadcasts in this step.
@@ -109,6 +109,7 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
             speed_mps,
             goal: None,
             robot: None,
+            before: Cell { x: 0, y: 0 },
             from: Cell { x: 0, y: 0 },
             by: Dir::Stay,
             said: Said {
@@ -134,7 +135,7 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
     fn begin(&mut self, id: RobotId, cell: Cell, now: Instant) {
         if self.robot.is_none() {
             self.robot = Some(Negotiator::new(id, cell, Moves::FOUR));
-            (self.from, self.by) = (cell, Dir::Stay);
+            (self.before, self.from, self.by) = (cell, cell, Dir::Stay);
             self.began = now - self.length;
         }
     }
@@ -172,6 +173,18 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
     }
 }
 
+/// The time of a step: a body turns a corner in it. `None` if it is not a minute at most.
+fn step_length<S: Scalar>(cell_m: S, speed_mps: S, max_acceleration_mps2: S) -> Option<Duration> {
+    let crossing_s = cell_m.checked_div(speed_mps.max(S::from_milli(1)))? * S::from_ratio(SLACK, 10);
+    // A corner takes sqrt(2) cells / step^2.
+    let turn_s = (cell_m * S::TWO.sqrt()).checked_div(max_acceleration_mps2).unwrap_or(S::ZERO).sqrt();
+    let length_s = crossing_s.max(turn_s);
+    if length_s > S::from_i32(60) {
+        return None;
+    }
+    (length_s * S::from_i32(1000)).floor_to_i32().map(Duration::from_millis)
+}
+
 impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S, N, F> {
     type Surroundings<'a> = InCells<'a, S>;
     type Protocol = InStep;
@@ -187,9 +200,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
         view.can_move()?;
         let (under, window) = here.grid.seen()?;
         let place = here.in_cell;
-        let crossing_s = place.cell_m.checked_div(self.speed_mps.max(S::from_milli(1))).ok_or(BadInput)?;
-        let length = (crossing_s * S::from_ratio(SLACK, 10) * S::from_i32(1000)).floor_to_i32().ok_or(BadInput)?;
-        self.length = Duration::from_millis(length);
+        self.length = step_length(place.cell_m, self.speed_mps, view.body.max_acceleration_mps2).ok_or(BadInput)?;
         self.begin(view.id, under, view.now);
         let to_center = |cell: Cell| {
             let along = |cells: i16, offset: S| S::from_i32(cells.into()) * place.cell_m - offset;
@@ -197,13 +208,13 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
             Vec2::new(along(cells.x, place.offset_m.x), along(cells.y, place.offset_m.y)) - view.ahead_m.xy()
         };
         let speed = self.speed_mps.min(view.body.max_speed_mps);
-        let lag_m = view.body.braking_m(speed) + speed * view.body.step_s + place.cell_m * S::from_milli(LATE);
         if self.keep_time(view) {
+            self.before = self.from;
             self.from = self.from + self.by.offset();
-            let was_late = to_center(self.from).norm() > lag_m;
+            let was_late = self.is_late;
             self.late = if was_late { self.late.saturating_add(1) } else { 0 };
             if self.late >= GIVES_UP {
-                (self.from, self.late) = (under, 0);
+                (self.before, self.from, self.late) = (under, under, 0);
             }
             let Some(robot) = &mut self.robot else { return Ok(Decision::idle()) };
             if robot.goal() != goal {
@@ -211,9 +222,15 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
             }
             robot.set_step(self.step);
             robot.see(self.from, &sight(self.from, under, &window));
-            for (other, InStepPayload { said, beat, .. }) in view.peers() {
-                if said.step == self.step {
-                    robot.hear(other.id, &said);
+            for (other, InStepPayload { said, by, beat }) in view.peers() {
+                // A robot whose step began already was there when it began.
+                let is_ahead = said.step == self.step.wrapping_add(1);
+                if said.step == self.step || is_ahead {
+                    if is_ahead {
+                        robot.hear_at(other.id, &said, said.cell - by.offset());
+                    } else {
+                        robot.hear(other.id, &said);
+                    }
                     if beat.is_late {
                         robot.hold(other.id);
                     }
@@ -230,15 +247,19 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
             self.said = robot.stay();
         }
         self.decided = view.now;
-        let passed = S::from_micro(view.now.since(self.began).as_micros());
-        let share = passed.checked_div(S::from_micro(self.length.as_micros())).unwrap_or(S::ONE);
-        let (start, end) = (to_center(self.from), to_center(self.said.cell));
-        let way = start + (end - start) * share;
-        let distance = way.norm();
-        self.is_late = distance > lag_m;
-        let wish = way.normalized().unwrap_or_default() * view.body.stopping_speed(distance).min(speed);
+        // The mean of the point over the last step: a spline of constant acceleration in each step.
+        let [passed, length] = [view.now.since(self.began), self.length].map(|span| S::from_micro(span.as_micros()));
+        let share = passed.checked_div(length).unwrap_or(S::ONE);
+        let rest = S::ONE - share;
+        let [before, from, end] = [self.before, self.from, self.said.cell].map(to_center);
+        let [last, next] = [from - before, end - from];
+        let way = from - last * (rest * rest * S::HALF) + next * (share * share * S::HALF);
+        let rate = S::ONE.checked_div(length).unwrap_or(S::ZERO);
+        let wish = (last * rest + next * share) * rate + way * S::from_i32(PULL);
+        self.is_late = way.norm() > place.cell_m * S::HALF;
+        let wish = wish.clamp_norm(speed);
         let is_there = self.from == goal && self.by == Dir::Stay;
-        let status = Status { is_at_goal: is_there, makes_way: is_there, ..Status::default() };
+        let status = Status { is_at_goal: is_there, makes_way: is_there, is_agreed: true, ..Status::default() };
         Ok(Decision { action: Action::Velocity { wish_mps: wish.extend(S::ZERO), way_m: None }, status })
     }
 

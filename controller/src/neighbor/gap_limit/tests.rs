@@ -65,6 +65,7 @@ impl<S: Scalar> Mover<S> {
             inflation,
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            is_agreed: false,
         };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
@@ -179,6 +180,7 @@ fn a_robot_turned_aside_is_not_turned_into_a_wall() {
         inflation,
         may_be_alone: false,
         stands_after: STANDS_AFTER,
+        is_agreed: false,
     };
     let east = Vec3::new(1.0, 0.0, 0.0);
     let open = room.limit(&mut table, &[], east).unwrap();
@@ -208,6 +210,7 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
             inflation,
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            is_agreed: false,
         };
         let v = room.limit(&mut mover.table, &wall, Vec3::new(1.0, 0.0, 0.0)).unwrap();
         mover.at_m += v.cast() * 0.1;
@@ -235,6 +238,7 @@ fn a_body_with_a_lag_that_slides_past_a_silent_robot_takes_no_more_of_the_gap() 
             inflation,
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            is_agreed: false,
         };
         room.limit(&mut mover.table, &[], Vec3::new(9.0, 0.0, 0.0)).unwrap().x
     };
@@ -269,6 +273,7 @@ fn into_a_corner(lag_s: f64, [speed, most, room_m]: [f64; 3], angles: [f64; 2]) 
             inflation: StalenessInflation { growth_mps: 1.0, max_m: 0.1 },
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            is_agreed: false,
         };
         let wall = |one: usize| [-99.0, 99.0].map(|along| walls[one] * away_m[one] + walls[one].perp() * along);
         let walls = [0, 1].map(|one| Obstacle::Wall(wall(one)));

@@ -43,7 +43,8 @@ impl NamedLaw {
     /// If the program does not add it; [`Scenario::load`](super::Scenario::load) refuses that.
     #[must_use]
     pub fn law(&self) -> Own {
-        let mut law = named(&self.name, self.moves, self.cruise_mps).unwrap_or_else(|_| panic!("no law {} in this program", self.name));
+        let mut law = named(&self.name, self.moves, self.cruise_mps)
+            .unwrap_or_else(|_| panic!("no law {} in this program", self.name));
         for (name, value) in &self.parameters {
             Law::<f32>::parameters(&mut law, &mut |table| {
                 if let Some(index) = table.index(name) {
