@@ -148,7 +148,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             let _ = limits.push(limit);
         }
         let step_s = self.body.step_s;
-        let lags = self.lag_s > S::ZERO;
+        let brakes_for_walls = self.brakes_for_walls();
         let mut v = if is_hidden { Vec3::ZERO } else { velocity_mps };
         let mut brake_s = self.brake_s(v);
         for _ in 0..ROUNDS {
@@ -168,7 +168,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             }
         }
         // The safety layer has considered obstacles for the original velocity only, without a lag.
-        if lags || v != velocity_mps {
+        if brakes_for_walls || v != velocity_mps {
             v = self.before(obstacles, v);
         }
         let allowed = |v: Vec3<S>| {
@@ -181,7 +181,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         if self.body.has_inertia() {
             reached = self.body.reach(v);
             // From the present velocity the body may reach none that is allowed.
-            let off_mps = if lags { self.before(obstacles, reached) - reached } else { Vec3::ZERO };
+            let off_mps = if brakes_for_walls { self.before(obstacles, reached) - reached } else { Vec3::ZERO };
             if allowed(reached) < S::ONE || off_mps.norm() > S::from_micro(TOLERANCE_UM) {
                 v = Vec3::ZERO;
                 reached = self.body.reach(v);
@@ -256,7 +256,7 @@ impl<S: Scalar> GapLimit<'_, S> {
     #[inline(never)]
     fn before(&self, obstacles: &[Obstacle<S>], mut v: Vec3<S>) -> Vec3<S> {
         let (mut span_s, mut rolls_m) = (self.body.step_s, Vec3::ZERO);
-        if self.lag_s > S::ZERO {
+        if self.brakes_for_walls() {
             span_s += self.brake_s(v) * S::HALF;
             rolls_m = self.own_mps * self.lag_s;
         }
@@ -267,6 +267,11 @@ impl<S: Scalar> GapLimit<'_, S> {
             v -= ahead * (v.dot(ahead) - most).max(S::ZERO);
         }
         v
+    }
+
+    /// Whether the body must be able to brake before obstacles after this step.
+    fn brakes_for_walls(&self) -> bool {
+        self.lag_s > S::ZERO || self.is_agreed
     }
 
     /// Time to brake to rest, seconds; 0 without inertia.

@@ -149,7 +149,7 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
                 continue;
             }
             let steps = said.step.wrapping_sub(1).wrapping_sub(self.step) as i8;
-            let theirs = i64::from(length) * (i64::from(steps) * 128 + i64::from(beat.phase)) >> 7;
+            let theirs = (i64::from(length) * (i64::from(steps) * 128 + i64::from(beat.phase))) >> 7;
             passed = passed.max(i32::try_from(theirs).unwrap_or(0));
         }
         let steps = passed.checked_div(length).unwrap_or(0);
