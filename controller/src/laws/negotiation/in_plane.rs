@@ -3,9 +3,10 @@
 use super::law::sight;
 use super::{Moves, Negotiator, Report, Said, Sensed};
 use crate::geom::Vec2;
-use crate::grid::{Cell, Dir};
+use crate::grid::{BLOCKED, Cell, Dir};
 use crate::law::{self, Action, BadInput, Decision, InCells, Law, Protocol, Radio, Status, Tools, View};
 use crate::laws::cells::GridOrder;
+use crate::neighbor::Neighbor;
 use crate::parameters::{Parameters, SPEED};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -19,6 +20,9 @@ const SLACK: i32 = 12;
 const PULL: i32 = 3;
 /// Steps in a row that a robot is late, after which it starts from where it is.
 const GIVES_UP: u8 = 4;
+
+/// Of two robots in one cell, the nearer to its centre leaves in one of so many steps.
+const YIELDS: u32 = 4;
 
 /// The protocol of robots that negotiate in the plane, in steps that begin at the same time.
 #[derive(Clone, Copy, Debug)]
@@ -158,6 +162,11 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
         steps > 0
     }
 
+    /// Whether another robot is in its cell too.
+    fn shares(&self, view: &View<'_, S, InStep>) -> bool {
+        view.peers().any(|(_, other)| other.said.step == self.step && other.said.cell == self.from)
+    }
+
     /// Whether another robot has a better claim to the cell that it enters, or wants to exchange
     /// cells with it.
     fn loses(&self, view: &View<'_, S, InStep>) -> bool {
@@ -194,7 +203,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
         &mut self,
         view: &View<'_, S, InStep>,
         here: &InCells<'_, S>,
-        _: Tools<'_, S, Self>,
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
         let Some(goal) = view.sent_to.or(self.goal) else { return Ok(Decision::idle()) };
         view.can_move()?;
@@ -211,10 +220,26 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
         if self.keep_time(view) {
             self.before = self.from;
             self.from = self.from + self.by.offset();
-            let was_late = self.is_late;
-            self.late = if was_late { self.late.saturating_add(1) } else { 0 };
-            if self.late >= GIVES_UP {
-                (self.before, self.from, self.late) = (under, under, 0);
+            self.late = if self.is_late { self.late.saturating_add(1) } else { 0 };
+            // Whether no other robot is nearer to the centre of a cell.
+            let is_nearest = |cell: Cell| {
+                let way = to_center(cell);
+                let beside =
+                    |other: Neighbor<S, _>| other.offset_at(view.state.position, view.now, view.ages.expire_after);
+                view.peers().all(|(other, _)| (way - beside(other).xy()).norm() > way.norm())
+            };
+            let shares = self.shares(view);
+            let yields = shares && (!is_nearest(self.from) || tools.rng.below(YIELDS) == 0);
+            let was_late = self.is_late || yields;
+            if yields || self.late >= GIVES_UP {
+                let is_free = |cell: &Cell| {
+                    let is_open = window.get(*cell).is_some_and(|class| class != BLOCKED);
+                    is_open && !(shares && *cell == self.from) && is_nearest(*cell)
+                };
+                let around = Moves::FOUR.dirs().iter().chain(&[Dir::Stay]).map(|dir| under + dir.offset());
+                let nearest = around.filter(is_free).min_by(|a, b| to_center(*a).norm().order(to_center(*b).norm()));
+                self.from = nearest.unwrap_or(self.from);
+                (self.before, self.late) = (self.from, 0);
             }
             let Some(robot) = &mut self.robot else { return Ok(Decision::idle()) };
             if robot.goal() != goal {
