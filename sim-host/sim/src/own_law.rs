@@ -55,7 +55,7 @@ type Make = fn() -> Own;
 static NAMED: Mutex<BTreeMap<&'static str, Make>> = Mutex::new(BTreeMap::new());
 
 /// The name of [`NegotiationGuidance`] and [`NegotiationInPlane`], which every program has.
-const NEGOTIATION: &str = "negotiation";
+pub(crate) const NEGOTIATION: &str = "negotiation";
 
 /// Makes a law known to scenario files, as `law.name = "..."`, with its default parameters. A
 /// program calls it before it reads scenarios: then files, sweeps, ranks, checkpoints and views

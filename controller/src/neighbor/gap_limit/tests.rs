@@ -65,7 +65,8 @@ impl<S: Scalar> Mover<S> {
             inflation,
             may_be_alone: false,
             stands_after: STANDS_AFTER,
-            is_agreed: false,
+            // With robots of both kinds.
+            is_agreed: body.id.0 % 3 != 0,
         };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
@@ -217,6 +218,35 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);
         assert!(gaps.0 > 1e-3 && gaps.1 > 1e-3, "{gaps:?} in step {step}");
     }
+}
+
+/// 0.2 m behind a robot at 1 m/s, which brakes at 2 m/s^2 at most.
+#[test]
+fn a_robot_follows_closely_only_if_its_motion_is_agreed() {
+    let speed = |is_agreed, other_mps: f64| {
+        let (mut mover, mut other) = (Mover::<f32>::new(1, [0.0; 3], 2.0), Mover::<f32>::new(2, [0.0; 3], 2.0));
+        other.at_m.x = 2.0 * RADIUS_M + 0.2;
+        other.velocity_mps.x = other_mps;
+        let (own, now) = (mover.position(), moment(1));
+        let _ = mover.table.put(other.news(1), own, now, |_| false);
+        mover.body.velocity_mps.x = 1.0;
+        let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
+        let room = GapLimit {
+            body: &mover.body,
+            own,
+            own_mps: Vec3::ZERO,
+            lag_s: 0.0,
+            now,
+            news: STEP,
+            inflation,
+            may_be_alone: false,
+            stands_after: STANDS_AFTER,
+            is_agreed,
+        };
+        room.limit(&mut mover.table, &[], Vec3::new(1.0, 0.0, 0.0)).unwrap().x
+    };
+    assert_eq!([speed(true, 1.0), speed(false, 1.0)], [1.0, 0.0], "0: it brakes");
+    assert_eq!(speed(true, 0.0), 0.0);
 }
 
 /// The place of a silent robot is uncertain, so a body that slides past it may slide towards it.

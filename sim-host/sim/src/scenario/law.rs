@@ -4,12 +4,17 @@ use super::de::nearest;
 use super::ranges;
 use super::source::{ScenarioError, Source};
 use super::{PlaneSetup, ScenarioFile};
-use crate::own_law::{Own, named};
+use crate::own_law::{NEGOTIATION, Own, named};
+use crate::terrain::Terrain;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AnySurroundings, CellState, InCell, InCells, InPlane, Law, OnGrid};
 use staya_controller::geom::Vec2;
 use staya_controller::negotiation::Moves;
 use std::collections::BTreeMap;
+
+/// Largest radius of robots that negotiate, cells: two that follow each other around a corner pass
+/// at 0.7 cells.
+const WIDEST: f64 = 0.35;
 
 /// `[law]`: all robots have a law that the program adds with
 /// [`add_law`](crate::engine::add_law). The guidance still decides which goals the file gives.
@@ -60,6 +65,7 @@ pub(super) fn law(
     source: &Source<'_>,
     file: &ScenarioFile,
     plane: Option<&PlaneSetup>,
+    terrain: Option<&Terrain>,
 ) -> Result<Option<NamedLaw>, ScenarioError> {
     let Some(table) = &file.law else { return Ok(None) };
     let moves = Moves { diagonals: file.grid.moves == 8, circles: file.grid.simultaneous };
@@ -87,6 +93,18 @@ pub(super) fn law(
     if !law.fits(&here) {
         let remedy = if plane.is_some() { "give [terrain], or another law" } else { "give [plane], or another law" };
         return Err(source.error("law.name", place, remedy));
+    }
+    if let (true, Some(setup), Some(land)) = (table.name == NEGOTIATION, plane, terrain) {
+        if !setup.kinds().all(|group| group.guidance.kind().is_on_grid()) {
+            let what = "robots that negotiate have goals in cells";
+            return Err(source.error("plane.guidance", what, "give guidance = \"route\""));
+        }
+        let widest_m = land.cell_m * WIDEST;
+        if let Some(group) = setup.kinds().find(|group| group.radius_m > widest_m) {
+            let what = format!("{} m are more than {WIDEST} cells: robots touch at a corner", group.radius_m);
+            let remedy = format!("give at most {widest_m}, or a larger terrain.cell_m");
+            return Err(source.error("plane.radius_m", what, remedy));
+        }
     }
     let mut parameters = Vec::new();
     for (name, &value) in &table.parameters {
