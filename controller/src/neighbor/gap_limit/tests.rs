@@ -66,7 +66,7 @@ impl<S: Scalar> Mover<S> {
             may_be_alone: false,
             stands_after: STANDS_AFTER,
             // With robots of both kinds.
-            is_agreed: body.id.0 % 3 != 0,
+            is_agreed: body.id.0 % 2 == 0,
         };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
@@ -223,10 +223,10 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
 /// 0.2 m behind a robot at 1 m/s, which brakes at 2 m/s^2 at most.
 #[test]
 fn a_robot_follows_closely_only_if_its_motion_is_agreed() {
-    let speed = |is_agreed, other_mps: f64| {
+    let speed = |is_agreed, other_mps: f32| {
         let (mut mover, mut other) = (Mover::<f32>::new(1, [0.0; 3], 2.0), Mover::<f32>::new(2, [0.0; 3], 2.0));
         other.at_m.x = 2.0 * RADIUS_M + 0.2;
-        other.velocity_mps.x = other_mps;
+        other.body.velocity_mps.x = other_mps;
         let (own, now) = (mover.position(), moment(1));
         let _ = mover.table.put(other.news(1), own, now, |_| false);
         mover.body.velocity_mps.x = 1.0;
@@ -245,7 +245,8 @@ fn a_robot_follows_closely_only_if_its_motion_is_agreed() {
         };
         room.limit(&mut mover.table, &[], Vec3::new(1.0, 0.0, 0.0)).unwrap().x
     };
-    assert_eq!([speed(true, 1.0), speed(false, 1.0)], [1.0, 0.0], "0: it brakes");
+    assert!(speed(true, 1.0) > 0.99);
+    assert_eq!(speed(false, 1.0), 0.0, "it brakes");
     assert_eq!(speed(true, 0.0), 0.0);
 }
 
