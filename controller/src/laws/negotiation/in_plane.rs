@@ -18,10 +18,9 @@ use serde::{Deserialize, Serialize};
 const SLACK: i32 = 12;
 /// Part of its distance from the point that a robot makes up for in a second.
 const PULL: i32 = 3;
-/// Steps in a row that a robot is late, after which it starts from where it is.
+/// Steps in a row that a robot is late, after which it chooses its cell again.
 const GIVES_UP: u8 = 4;
-
-/// Of two robots in one cell, the nearer to its centre leaves in one of so many steps.
+/// If two robots are in one cell, the nearer one leaves with a probability of 1 / `YIELDS` a step.
 const YIELDS: u32 = 4;
 
 /// The protocol of robots that negotiate in the plane, in steps that begin at the same time.
@@ -36,7 +35,7 @@ impl Protocol for InStep {
     type Order = GridOrder;
 }
 
-/// What a robot that negotiates in the plane says in its beacon; 16 bytes on the air.
+/// The payload of a robot that negotiates in the plane; at most 16 bytes on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InStepPayload {
     /// Where it is at the end of this step.
@@ -71,15 +70,23 @@ impl From<Beat> for u8 {
     }
 }
 
-/// [`NegotiationGuidance`](super::NegotiationGuidance) on a body in the plane, between the centres
-/// of cells, to four neighbours. The discs of two robots that follow each other around a corner
-/// pass at 0.7 cells: their diameter must be less.
+/// [`NegotiationGuidance`](super::NegotiationGuidance) on a body in the plane: moves between the
+/// centres of cells, to four neighbours, with one plan for each step. Two robots that follow each
+/// other around a corner pass at a distance of 0.7 cells, so their diameters must be less. Robots
+/// need equal cells, cruising speeds and accelerations.
 ///
-/// All robots begin their steps at the same time: a robot whose step is behind that of a robot it
-/// hears moves on to that. They need equal cells and cruising speeds. In a step the robot follows a
-/// point that moves to the centre of the next cell at constant speed. It takes its move back if
-/// another robot has said that it stays in that cell, or enters it and has waited longer. A robot
-/// that is behind its point stays in the next step.
+/// *Clock:* all robots begin their steps together. A robot whose clock is behind that of a robot
+/// that it hears adopts that clock.
+///
+/// *Path:* a point moves to the centre of the next cell at constant speed; the robot follows the
+/// mean of its places over the last step, a quadratic B-spline.
+///
+/// *Claims:* a robot takes its move back if another one has said that it stays in that cell, or
+/// that it enters the cell and has waited longer. A robot half a cell from its path is late: it
+/// stays in the next step. A robot that is late for long, or shares its cell, moves to the nearest
+/// centre to which no other robot is nearer.
+///
+/// A decision takes O(N), and at the start of a step what a [`Plan`](super::Plan) takes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
     speed_mps: S,
@@ -89,7 +96,7 @@ pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
     before: Cell,
     from: Cell,
     by: Dir,
-    /// What it says and broadcasts in this step.
+    /// Its beacon and its broadcast in this step.
     said: Said,
     shared: Report,
     step: u8,
