@@ -368,6 +368,7 @@ pub struct Status {
     pub makes_way: bool,
     /// Its motion is agreed with the robots that share its protocol: the safety layer leaves them
     /// to the limit of gaps.
+    #[serde(skip)]
     pub is_agreed: bool,
 }
 

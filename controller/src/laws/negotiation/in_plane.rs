@@ -156,12 +156,14 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
         let length = self.length.as_micros().max(1);
         let mut passed = view.now.since(self.began).as_micros().max(0);
         for (other, InStepPayload { said, beat, .. }) in view.peers() {
-            if other.heard.since(self.decided) <= Duration::ZERO {
+            // The clock of a robot that does not decide stands still.
+            if beat.is_late || other.heard.since(self.decided) <= Duration::ZERO {
                 continue;
             }
             let steps = said.step.wrapping_sub(1).wrapping_sub(self.step) as i8;
             let theirs = (i64::from(length) * (i64::from(steps) * 128 + i64::from(beat.phase))) >> 7;
-            passed = passed.max(i32::try_from(theirs).unwrap_or(0));
+            let since = view.now.since(other.heard).as_micros().max(0);
+            passed = passed.max(i32::try_from(theirs).unwrap_or(0).saturating_add(since));
         }
         let steps = passed.checked_div(length).unwrap_or(0);
         self.began = view.now - Duration::from_micros(passed - length.saturating_mul(steps));
