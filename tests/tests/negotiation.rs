@@ -1,7 +1,98 @@
 //! Robots that negotiate in the simulator.
 
+use staya_controller::grid::{BLOCKED, Cell};
+use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::terrain::Terrain;
 use staya_tests::{root, run, scenario};
+
+/// Cells of half a metre, for discs 0.3 m wide.
+fn in_plane(map: &str, ends: &[([u8; 2], [u8; 2])], loss: f64, more: &str) -> Scenario {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let rows: Vec<&str> = map.split_whitespace().collect();
+    let (width, height) = (rows[0].len(), rows.len());
+    let map = format!("type octile\nheight {height}\nwidth {width}\nmap\n{}\n", rows.join("\n"));
+    std::fs::write(folder.path().join("maze.map"), map).expect("a map");
+    let list = ends.iter().map(|(start, goal)| format!("{{ start = {start:?}, goal = {goal:?} }}"));
+    let text = format!(
+        "name = \"maze\"\nticks = 2400\ntick_s = 0.05\n\
+         [terrain]\nfile = \"maze.map\"\ncell_m = 0.5\n\
+         [law]\nname = \"negotiation\"\n\
+         [robots]\nlist = [{}]\n\
+         [radio]\nrange_m = 3\nloss = {loss}\n\
+         [plane]\nradius_m = 0.15\nmax_speed_mps = 1\nmax_acceleration_mps2 = 2\nguidance = \"route\"\n\
+         [plane.orca]\nhorizon_s = 1\nwall_horizon_s = 0.3\nalone_mps = 1\n{more}",
+        list.collect::<Vec<_>>().join(", "),
+    );
+    let overrides = Overrides { seed: None, ticks: None };
+    Scenario::parse(&text, &folder.path().join("s.toml"), &overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Distance of a disc to the walls, metres.
+fn to_walls(land: &Terrain, robot: &RobotRow) -> f64 {
+    let [x, y, _] = robot.motion.position_m;
+    let Cell { x: column, y: row } = robot.motion.cell;
+    let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| Cell::new(column + dx, row + dy)));
+    let walls = around.filter(|&cell| land.index(cell).is_some() && land.get(cell) == BLOCKED).map(|cell| {
+        let [at_x, at_y] = land.center_m(cell);
+        let [dx, dy] = [x - at_x, y - at_y].map(|way| (way.abs() - land.cell_m / 2.0).max(0.0));
+        (dx * dx + dy * dy).sqrt()
+    });
+    walls.fold(f64::INFINITY, f64::min) - 0.15
+}
+
+/// All arrive, and touch neither each other nor a wall. Returns the ticks.
+fn all_arrive(scenario: &Scenario, what: &str) -> u32 {
+    let (outcome, rows) = run(scenario);
+    let gap_m = outcome.clearance.expect("bodies").bodies_m;
+    assert_eq!((outcome.arrived, outcome.collisions), (scenario.robots.len(), 0), "{what}");
+    assert!(gap_m > 0.001, "{what}: {gap_m} m");
+    let robots = rows.iter().flat_map(|(_, robots)| robots);
+    let wall_m = robots.map(|robot| to_walls(&scenario.terrain, robot)).fold(f64::INFINITY, f64::min);
+    assert!(wall_m > 0.001, "{what}: {wall_m} m from a wall");
+    outcome.ticks
+}
+
+#[test]
+fn two_discs_pass_each_other_at_the_only_side_cell_of_a_corridor() {
+    let map = "@@@@.@@@@@ .......... @@@@@@@@@@";
+    for loss in [0.0, 0.3, 0.6] {
+        for seed in 1..=3 {
+            let mut scenario = in_plane(map, &[([0, 1], [9, 1]), ([9, 1], [0, 1])], loss, "");
+            scenario.seed = seed;
+            let ticks = all_arrive(&scenario, &format!("seed {seed}, loss {loss}"));
+            // Nine cells at a cell in 0.6 s are 108 ticks.
+            assert!(ticks < 400, "seed {seed}, loss {loss}: {ticks} ticks");
+        }
+    }
+}
+
+/// Four robots whose ways cross in a maze of corridors one cell wide.
+const MAZE: (&str, [([u8; 2], [u8; 2]); 4]) = (
+    ".@...@. ...@... .@.@.@. .....@. @@.@@@. ....... .@...@.",
+    [([0, 0], [6, 6]), ([6, 6], [0, 0]), ([0, 6], [6, 0]), ([6, 0], [0, 6])],
+);
+
+#[test]
+fn four_discs_cross_a_maze_at_any_loss() {
+    for loss in [0.0, 0.3, 0.6] {
+        for seed in 1..=3 {
+            let mut scenario = in_plane(MAZE.0, &MAZE.1, loss, "");
+            scenario.seed = seed;
+            all_arrive(&scenario, &format!("seed {seed}, loss {loss}"));
+        }
+    }
+}
+
+/// A robot that restarts has another clock, and no memory. After a restart at 1 s two robots block
+/// each other for ever.
+#[test]
+fn a_robot_that_restarts_in_the_maze_joins_the_steps_of_the_others() {
+    for at_s in [2.3, 3.6] {
+        let fault = format!("[[fault]]\nrobot = 2\nat_s = {at_s}\ndown_s = 1.33\n");
+        all_arrive(&in_plane(MAZE.0, &MAZE.1, 0.0, &fault), &format!("restarts after {at_s} s"));
+    }
+}
 
 #[test]
 fn robots_pass_each_other_in_a_corridor_at_any_loss() {

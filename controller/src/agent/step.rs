@@ -3,8 +3,8 @@
 use super::contact_loss::ContactState;
 use super::link::{ReceiveContext, Received, beacon, report};
 use super::{
-    Action, Agent, Command, Decision, Event, Inputs, KinematicState, Last, Law, OrderOf, Outgoing, Outputs, Perception,
-    Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
+    Action, Agent, Command, Decision, Event, Inputs, KinematicState, Known, Last, Law, OrderOf, Outgoing, Outputs,
+    Perception, Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
@@ -323,6 +323,12 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 wish_mps = wish_mps.clamp_norm(config.contact_loss.alone_mps);
             }
         }
+        let is_agreed = decision.is_some_and(|decision| decision.status.is_agreed);
+        if is_agreed {
+            let known = table.as_slice();
+            let shares = |id| known.find(id).is_some_and(|other| other.payload.is_some());
+            nearby.retain(|other| !(other.gives_way && shares(other.id)));
+        }
         let input = SafetyInput { body, wish_mps, way_m, nearby, obstacles: plane.obstacles };
         let mut safe = safety.keep_clear(&input, rng);
         let mut is_hidden = false;
@@ -330,7 +336,18 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             let (stands_after, may_be_alone) = (config.contact_loss.stands_after, config.contact_loss.may_be_alone());
             let KinematicState { position: own, velocity_mps: own_mps } = inputs.state;
             let (news, lag_s) = (config.tick, config.lag_s);
-            let room = GapLimit { body: &body, own, own_mps, lag_s, now, news, inflation, may_be_alone, stands_after };
+            let room = GapLimit {
+                body: &body,
+                own,
+                own_mps,
+                lag_s,
+                now,
+                news,
+                inflation,
+                may_be_alone,
+                stands_after,
+                is_agreed,
+            };
             let within = room.limit(table, plane.obstacles, safe);
             is_hidden = within.is_none();
             safe = within.unwrap_or(Vec3::ZERO);

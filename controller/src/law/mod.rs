@@ -372,6 +372,10 @@ pub struct Status {
     pub is_off_place: bool,
     /// It moves although it arrived or waits: it makes way, or its waypoint moves.
     pub makes_way: bool,
+    /// Its motion is agreed with the robots that share its protocol: the safety layer leaves them
+    /// to the limit of gaps.
+    #[serde(skip)]
+    pub is_agreed: bool,
 }
 
 /// A required input of the guidance law is missing or contradicts another one.

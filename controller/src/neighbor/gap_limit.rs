@@ -73,6 +73,9 @@ pub struct GapLimit<'a, S> {
     pub may_be_alone: bool,
     /// Silence after which a lost robot counts as standing in any case.
     pub stands_after: Duration,
+    /// Whether the robot may follow a robot that recedes: the way on which that one can brake at
+    /// most adds to the gap.
+    pub is_agreed: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -145,7 +148,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             let _ = limits.push(limit);
         }
         let step_s = self.body.step_s;
-        let lags = self.lag_s > S::ZERO;
+        let brakes_for_walls = self.brakes_for_walls();
         let mut v = if is_hidden { Vec3::ZERO } else { velocity_mps };
         let mut brake_s = self.brake_s(v);
         for _ in 0..ROUNDS {
@@ -165,7 +168,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             }
         }
         // The safety layer has considered obstacles for the original velocity only, without a lag.
-        if lags || v != velocity_mps {
+        if brakes_for_walls || v != velocity_mps {
             v = self.before(obstacles, v);
         }
         let allowed = |v: Vec3<S>| {
@@ -178,7 +181,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         if self.body.has_inertia() {
             reached = self.body.reach(v);
             // From the present velocity the body may reach none that is allowed.
-            let off_mps = if lags { self.before(obstacles, reached) - reached } else { Vec3::ZERO };
+            let off_mps = if brakes_for_walls { self.before(obstacles, reached) - reached } else { Vec3::ZERO };
             if allowed(reached) < S::ONE || off_mps.norm() > S::from_micro(TOLERANCE_UM) {
                 v = Vec3::ZERO;
                 reached = self.body.reach(v);
@@ -237,6 +240,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             let other_m = body.braking_m(comes_mps) + comes_mps.max(S::ZERO) * self.lag_s;
             ((gap * S::HALF).min(gap - other_m), S::ZERO)
         };
+        let left_m = if self.is_agreed { left_m + body.braking_m(-comes_mps) } else { left_m };
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
         let mut limit = Limit { ahead, slant, left_m, growth_mps };
         if self.lag_s > S::ZERO {
@@ -252,7 +256,7 @@ impl<S: Scalar> GapLimit<'_, S> {
     #[inline(never)]
     fn before(&self, obstacles: &[Obstacle<S>], mut v: Vec3<S>) -> Vec3<S> {
         let (mut span_s, mut rolls_m) = (self.body.step_s, Vec3::ZERO);
-        if self.lag_s > S::ZERO {
+        if self.brakes_for_walls() {
             span_s += self.brake_s(v) * S::HALF;
             rolls_m = self.own_mps * self.lag_s;
         }
@@ -263,6 +267,11 @@ impl<S: Scalar> GapLimit<'_, S> {
             v -= ahead * (v.dot(ahead) - most).max(S::ZERO);
         }
         v
+    }
+
+    /// Whether the body must be able to brake before obstacles after this step.
+    fn brakes_for_walls(&self) -> bool {
+        self.lag_s > S::ZERO || self.is_agreed
     }
 
     /// Time to brake to rest, seconds; 0 without inertia.

@@ -8,7 +8,7 @@ use staya_controller::agent::{
     Protocol, Radio, Report, Tools, View,
 };
 use staya_controller::grid::{Cell, Dir};
-use staya_controller::negotiation::{Moves, NegotiationGuidance};
+use staya_controller::negotiation::{Moves, NegotiationGuidance, NegotiationInPlane};
 use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
@@ -54,8 +54,8 @@ type Make = fn() -> Own;
 /// The laws that scenario files can name.
 static NAMED: Mutex<BTreeMap<&'static str, Make>> = Mutex::new(BTreeMap::new());
 
-/// The name of [`NegotiationGuidance`], which every program has.
-const NEGOTIATION: &str = "negotiation";
+/// The name of [`NegotiationGuidance`] and [`NegotiationInPlane`], which every program has.
+pub(crate) const NEGOTIATION: &str = "negotiation";
 
 /// Makes a law known to scenario files, as `law.name = "..."`, with its default parameters. A
 /// program calls it before it reads scenarios: then files, sweeps, ranks, checkpoints and views
@@ -64,12 +64,16 @@ pub fn add_law<L: OwnLaw + Default>(name: &'static str) {
     NAMED.lock().unwrap_or_else(PoisonError::into_inner).insert(name, || Own::new(L::default()));
 }
 
-/// A law that scenario files name, for bodies with these moves; `Err` lists the known names.
-pub(crate) fn named(name: &str, moves: Moves) -> Result<Own, Vec<&'static str>> {
+/// A law that scenario files name, for bodies with these moves, or in the plane with this cruising
+/// speed; `Err` lists the known names.
+pub(crate) fn named(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Result<Own, Vec<&'static str>> {
     let named = NAMED.lock().unwrap_or_else(PoisonError::into_inner);
     match named.get(name) {
         Some(make) => Ok(make()),
-        None if name == NEGOTIATION => Ok(Own::new(NegotiationGuidance::<64, 8>::new(moves))),
+        None if name == NEGOTIATION => Ok(match cruise_mps {
+            Some(speed) => Own::new(NegotiationInPlane::<f32, 64, 8>::new(speed)),
+            None => Own::new(NegotiationGuidance::<64, 8>::new(moves)),
+        }),
         None => Err(named.keys().copied().chain([NEGOTIATION]).collect()),
     }
 }

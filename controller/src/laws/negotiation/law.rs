@@ -114,7 +114,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         if robot.goal() != goal {
             robot.set_goal(goal);
         }
-        robot.see(cell, &sight(cell, &window));
+        robot.see(cell, &sight(cell, cell, &window));
         let failed: Vec<RobotId, N> = failed(view, cell);
         for (neighbor, NegotiationPayload { said, by, busy }) in view.peers() {
             if neighbor.heard.since(self.decided) > Duration::ZERO {
@@ -162,7 +162,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
                 self.crossed = now + busy;
                 stays = busy == Duration::ZERO;
                 robot.is_under_way();
-                robot.see(cell, &sight(cell, &window))
+                robot.see(cell, &sight(cell, cell, &window))
             }
             _ => robot.promise(),
         };
@@ -221,15 +221,16 @@ fn crossing(tick: Duration, dir: Dir, class: u8) -> Duration {
     Duration::from_micros(i32::try_from(micros).unwrap_or(i32::MAX))
 }
 
-/// The walls in a window. Cells beyond the edge of the land are closed.
-fn sight(center: Cell, window: &Window<'_>) -> Sight {
+/// The walls around a cell, in a window with the centre `eye`. Cells beyond the edge of the land are
+/// closed.
+pub(super) fn sight(cell: Cell, eye: Cell, window: &Window<'_>) -> Sight {
     let sees = |reach: i16| {
         let edges = [(-reach, 0), (reach, 0), (0, -reach), (0, reach)];
-        edges.into_iter().any(|(x, y)| window.get(center + Cell::new(x, y)).is_some())
+        edges.into_iter().any(|(x, y)| window.get(eye + Cell::new(x, y)).is_some())
     };
     let reach = (1..=SIGHT).take_while(|&reach| sees(reach)).last().unwrap_or(0) as u32;
-    Sight::new(center, |cell| match window.get(cell) {
+    Sight::new(cell, |cell| match window.get(cell) {
         Some(class) => class == BLOCKED,
-        None => cell.chebyshev(center) <= reach,
+        None => cell.chebyshev(eye) <= reach,
     })
 }

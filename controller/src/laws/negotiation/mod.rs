@@ -4,12 +4,16 @@
 mod area;
 mod distance;
 #[cfg(feature = "agent")]
+mod in_plane;
+#[cfg(feature = "agent")]
 mod law;
 mod negotiator;
 mod plan;
 
 pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::Distances;
+#[cfg(feature = "agent")]
+pub use in_plane::{Beat, InStep, InStepPayload, NegotiationInPlane};
 #[cfg(feature = "agent")]
 pub use law::{Negotiation, NegotiationGuidance, NegotiationPayload};
 pub use negotiator::{Negotiator, RANGE, REPORTED, Report, Said, Sensed};

@@ -163,6 +163,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         self.own.waiting = 0;
     }
 
+    /// Numbers the step that it sees next, for robots that count their steps together.
+    pub const fn set_step(&mut self, step: u8) {
+        self.own.step = step.wrapping_sub(1);
+    }
+
     /// Where it wants to go.
     #[must_use]
     pub const fn goal(&self) -> Cell {
@@ -207,8 +212,17 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
 
     /// What to say after a decision, before the next step: it is where it goes.
     pub fn promise(&mut self) -> Said {
+        self.promise_of(self.chosen)
+    }
+
+    /// What to say instead of a [`promise`](Self::promise) if it does not move after all.
+    pub fn stay(&mut self) -> Said {
+        self.promise_of(Dir::Stay)
+    }
+
+    fn promise_of(&mut self, dir: Dir) -> Said {
         let Said { cell, waiting, step, .. } = self.own;
-        let cell = cell + self.chosen.offset();
+        let cell = cell + dir.offset();
         let goal = self.aim(cell);
         let (waiting, step) = (self::waiting(cell == goal, waiting), step.wrapping_add(1));
         self.promised = Some(self.manners);

@@ -65,6 +65,8 @@ impl<S: Scalar> Mover<S> {
             inflation,
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            // With robots of both kinds.
+            is_agreed: body.id.0 % 2 == 0,
         };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
@@ -179,6 +181,7 @@ fn a_robot_turned_aside_is_not_turned_into_a_wall() {
         inflation,
         may_be_alone: false,
         stands_after: STANDS_AFTER,
+        is_agreed: false,
     };
     let east = Vec3::new(1.0, 0.0, 0.0);
     let open = room.limit(&mut table, &[], east).unwrap();
@@ -208,12 +211,43 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
             inflation,
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            is_agreed: false,
         };
         let v = room.limit(&mut mover.table, &wall, Vec3::new(1.0, 0.0, 0.0)).unwrap();
         mover.at_m += v.cast() * 0.1;
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);
         assert!(gaps.0 > 1e-3 && gaps.1 > 1e-3, "{gaps:?} in step {step}");
     }
+}
+
+/// 0.2 m behind a robot at 1 m/s, which brakes at 2 m/s^2 at most.
+#[test]
+fn a_robot_follows_closely_only_if_its_motion_is_agreed() {
+    let speed = |is_agreed, other_mps: f32| {
+        let (mut mover, mut other) = (Mover::<f32>::new(1, [0.0; 3], 2.0), Mover::<f32>::new(2, [0.0; 3], 2.0));
+        other.at_m.x = 2.0 * RADIUS_M + 0.2;
+        other.body.velocity_mps.x = other_mps;
+        let (own, now) = (mover.position(), moment(1));
+        let _ = mover.table.put(other.news(1), own, now, |_| false);
+        mover.body.velocity_mps.x = 1.0;
+        let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
+        let room = GapLimit {
+            body: &mover.body,
+            own,
+            own_mps: Vec3::ZERO,
+            lag_s: 0.0,
+            now,
+            news: STEP,
+            inflation,
+            may_be_alone: false,
+            stands_after: STANDS_AFTER,
+            is_agreed,
+        };
+        room.limit(&mut mover.table, &[], Vec3::new(1.0, 0.0, 0.0)).unwrap().x
+    };
+    assert!(speed(true, 1.0) > 0.99);
+    assert_eq!(speed(false, 1.0), 0.0, "it brakes");
+    assert_eq!(speed(true, 0.0), 0.0);
 }
 
 /// The place of a silent robot is uncertain, so a body that slides past it may slide towards it.
@@ -235,6 +269,7 @@ fn a_body_with_a_lag_that_slides_past_a_silent_robot_takes_no_more_of_the_gap() 
             inflation,
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            is_agreed: false,
         };
         room.limit(&mut mover.table, &[], Vec3::new(9.0, 0.0, 0.0)).unwrap().x
     };
@@ -269,6 +304,7 @@ fn into_a_corner(lag_s: f64, [speed, most, room_m]: [f64; 3], angles: [f64; 2]) 
             inflation: StalenessInflation { growth_mps: 1.0, max_m: 0.1 },
             may_be_alone: false,
             stands_after: STANDS_AFTER,
+            is_agreed: false,
         };
         let wall = |one: usize| [-99.0, 99.0].map(|along| walls[one] * away_m[one] + walls[one].perp() * along);
         let walls = [0, 1].map(|one| Obstacle::Wall(wall(one)));

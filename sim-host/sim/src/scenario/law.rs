@@ -4,12 +4,17 @@ use super::de::nearest;
 use super::ranges;
 use super::source::{ScenarioError, Source};
 use super::{PlaneSetup, ScenarioFile};
-use crate::own_law::{Own, named};
+use crate::own_law::{NEGOTIATION, Own, named};
+use crate::terrain::Terrain;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AnySurroundings, CellState, InCell, InCells, InPlane, Law, OnGrid};
 use staya_controller::geom::Vec2;
 use staya_controller::negotiation::Moves;
 use std::collections::BTreeMap;
+
+/// Largest radius of robots that negotiate, cells: two that follow each other around a corner pass
+/// at 0.7 cells.
+const WIDEST: f64 = 0.35;
 
 /// `[law]`: all robots have a law that the program adds with
 /// [`add_law`](crate::engine::add_law). The guidance still decides which goals the file gives.
@@ -32,6 +37,8 @@ pub struct NamedLaw {
     pub parameters: Vec<(String, f32)>,
     /// The moves of the bodies, for a law that needs them.
     pub moves: Moves,
+    /// The cruising speed of bodies in the plane, m/s.
+    pub cruise_mps: Option<f32>,
 }
 
 impl NamedLaw {
@@ -41,7 +48,8 @@ impl NamedLaw {
     /// If the program does not add it; [`Scenario::load`](super::Scenario::load) refuses that.
     #[must_use]
     pub fn law(&self) -> Own {
-        let mut law = named(&self.name, self.moves).unwrap_or_else(|_| panic!("no law {} in this program", self.name));
+        let mut law = named(&self.name, self.moves, self.cruise_mps)
+            .unwrap_or_else(|_| panic!("no law {} in this program", self.name));
         for (name, value) in &self.parameters {
             Law::<f32>::parameters(&mut law, &mut |table| {
                 if let Some(index) = table.index(name) {
@@ -57,10 +65,12 @@ pub(super) fn law(
     source: &Source<'_>,
     file: &ScenarioFile,
     plane: Option<&PlaneSetup>,
+    terrain: Option<&Terrain>,
 ) -> Result<Option<NamedLaw>, ScenarioError> {
     let Some(table) = &file.law else { return Ok(None) };
     let moves = Moves { diagonals: file.grid.moves == 8, circles: file.grid.simultaneous };
-    let mut law = named(&table.name, moves).map_err(|known| {
+    let cruise_mps = plane.map(|setup| setup.general.cruise_mps as f32);
+    let mut law = named(&table.name, moves, cruise_mps).map_err(|known| {
         let what = format!("this program has no law \"{}\"", table.name);
         let remedy = match nearest(&table.name, known.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"?"),
@@ -84,6 +94,18 @@ pub(super) fn law(
         let remedy = if plane.is_some() { "give [terrain], or another law" } else { "give [plane], or another law" };
         return Err(source.error("law.name", place, remedy));
     }
+    if let (true, Some(setup), Some(land)) = (table.name == NEGOTIATION, plane, terrain) {
+        if !setup.kinds().all(|group| group.guidance.kind().is_on_grid()) {
+            let what = "robots that negotiate have goals in cells";
+            return Err(source.error("plane.guidance", what, "give guidance = \"route\""));
+        }
+        let widest_m = land.cell_m * WIDEST;
+        if let Some(group) = setup.kinds().find(|group| group.radius_m > widest_m) {
+            let what = format!("{} m are more than {WIDEST} cells: robots touch at a corner", group.radius_m);
+            let remedy = format!("give at most {widest_m}, or a larger terrain.cell_m");
+            return Err(source.error("plane.radius_m", what, remedy));
+        }
+    }
     let mut parameters = Vec::new();
     for (name, &value) in &table.parameters {
         let field = format!("law.parameters.{name}");
@@ -104,5 +126,5 @@ pub(super) fn law(
         })?;
         parameters.push((name.clone(), value as f32));
     }
-    Ok(Some(NamedLaw { name: table.name.clone(), parameters, moves }))
+    Ok(Some(NamedLaw { name: table.name.clone(), parameters, moves, cruise_mps }))
 }

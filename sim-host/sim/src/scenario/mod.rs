@@ -293,7 +293,7 @@ impl Scenario {
         let formation_params = params::formation(&source, &file.formation)?;
         let published = params::published(&source, &file.formation)?;
         let looks_ahead = params::looks_ahead(&file.formation);
-        let law = law::law(&source, &file, plane.as_ref())?;
+        let law = law::law(&source, &file, plane.as_ref(), land)?;
         let mut scenario = Self {
             name: file.name.clone(),
             seed: file.seed,
