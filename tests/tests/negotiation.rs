@@ -108,6 +108,21 @@ fn robots_pass_each_other_in_a_corridor_at_any_loss() {
 }
 
 #[test]
+fn a_crowd_walks_around_dead_robots() {
+    let file = root().join("scenarios/moving-ai-20.toml");
+    let mut text = std::fs::read_to_string(&file).unwrap().replace("count = 20", "count = 60");
+    text += "[law]\nname = \"negotiation\"\n";
+    for (robot, at_s) in [(8, 3), (21, 4), (33, 5), (46, 6), (55, 7)] {
+        text += &format!("[[fault]]\nrobot = {robot}\nat_s = {at_s}\ndown_s = 10000\n");
+    }
+    for seed in 4..=6 {
+        let scenario = Scenario::parse(&text, &file, &Overrides { seed: Some(seed), ticks: Some(200) }).unwrap();
+        let (outcome, _) = run(&scenario);
+        assert_eq!((outcome.arrived, outcome.collisions), (55, 0), "seed {seed}");
+    }
+}
+
+#[test]
 fn a_crowd_arrives_sooner_by_negotiation_than_by_routes() {
     let file = root().join("scenarios/moving-ai-20.toml");
     let text = std::fs::read_to_string(&file).unwrap().replace("count = 20", "count = 60");

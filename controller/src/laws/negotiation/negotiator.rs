@@ -27,7 +27,7 @@ const STALEMATE: u8 = 2;
 /// Steps in which a robot that lost its moves goes last or not.
 const COURTESY: u32 = 4;
 /// Refusals in a row, without a word of a robot there, after which a cell counts as blocked.
-const REFUSALS: u8 = 3;
+const REFUSALS: u8 = 4;
 /// Most blocked cells in a [`Report`].
 const BLOCKED: usize = 2;
 const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
@@ -353,9 +353,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             if offset == 0 {
                 self.hear_blocked(report.cell + unpacked(number));
             } else if number != own {
-                let cell = report.cell + unpacked(offset);
-                self.moves_in(cell);
-                self.place(number, cell);
+                self.place(number, report.cell + unpacked(offset));
             }
         }
     }

@@ -15,6 +15,8 @@ struct World {
     map: Vec<&'static [u8]>,
     robots: Vec<Negotiator<16, 4>>,
     cells: Vec<Cell>,
+    /// The first so many robots are dead.
+    dead: usize,
     refused: usize,
 }
 
@@ -28,7 +30,7 @@ impl World {
         };
         let cells = ends.iter().map(|&(start, _)| start).collect();
         let robots = ends.iter().zip(1..).map(robot).collect();
-        Self { map: map.split_whitespace().map(str::as_bytes).collect(), robots, cells, refused: 0 }
+        Self { map: map.split_whitespace().map(str::as_bytes).collect(), robots, cells, dead: 0, refused: 0 }
     }
 
     fn is_closed(&self, cell: Cell) -> bool {
@@ -45,6 +47,8 @@ impl World {
         let id = |index: usize| RobotId(index as u32 + 1);
         let count = self.robots.len();
         let pairs = || (0..count).flat_map(|to| (0..count).map(move |from| (from, to))).filter(|(from, to)| from != to);
+        let dead = self.dead;
+        let mut is_lost = |from: usize, to: usize, is_report: bool| from < dead || is_lost(from, to, is_report);
         for (from, to) in pairs() {
             if !is_lost(from, to, false) {
                 self.robots[to].hear(id(from), &said[from]);
@@ -59,6 +63,7 @@ impl World {
         let before = self.cells.clone();
         let dirs: Vec<Dir> = self.robots.iter_mut().map(|robot| robot.decide(Sensed::Nothing)).collect();
         let mut next: Vec<Cell> = before.iter().zip(&dirs).map(|(&cell, dir)| cell + dir.offset()).collect();
+        next[..dead].copy_from_slice(&before[..dead]);
         // Until nobody has to stay any more.
         while let Some(stays) = (0..count).find(|&index| {
             let meets = |other: usize| {
@@ -74,7 +79,7 @@ impl World {
     }
 
     fn has_arrived(&self) -> bool {
-        self.robots.iter().zip(&self.cells).all(|(robot, &cell)| robot.goal() == cell)
+        self.robots.iter().zip(&self.cells).skip(self.dead).all(|(robot, &cell)| robot.goal() == cell)
     }
 
     /// Steps until all have arrived.
@@ -252,4 +257,40 @@ fn a_robot_just_heard_replaces_one_that_is_farther_or_was_not_heard() {
     let _ = robot.decide(Sensed::Nothing);
     robot.hear(RobotId(5), &said(6));
     assert_eq!(heard(&robot), [5]);
+}
+
+#[test]
+fn robots_walk_around_a_dead_one_and_wait_beside_it_if_it_stands_on_the_goal() {
+    let map = ".......\n.#####.\n.#####.\n.......";
+    let [dead, start, second] = [Cell::new(3, 0), Cell::new(0, 0), Cell::new(0, 1)];
+    let goal = Cell::new(6, 0);
+    for (first, last) in [(goal, Cell::new(6, 1)), (dead, goal)] {
+        let mut world = World::new(map, &[(dead, dead), (start, first), (second, last)], Moves::FOUR);
+        world.dead = 1;
+        // Who knows of the dead robot goes 12 cells.
+        world.run(30, |_, _, _| false);
+        assert_eq!(world.cells[2], last);
+        if first == dead {
+            assert!(world.robots[1].is_beside_goal() && world.cells[1].chebyshev(dead) == 1);
+        } else {
+            assert_eq!(world.cells[1], first);
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_says_that_it_stays_is_a_wall_until_it_moves() {
+    let mut robot = Negotiator::<8, 2>::new(RobotId(1), Cell::new(0, 0), Moves::FOUR);
+    robot.set_goal(Cell::new(5, 0));
+    let stays = Said { cell: Cell::new(1, 0), goal: Cell::new(1, 0), waiting: 1, ..Said::default() };
+    for (is_held, expected) in [(true, false), (false, true), (true, false)] {
+        robot.see(Cell::new(0, 0), &Sight::default());
+        robot.hear(RobotId(2), &stays);
+        if is_held {
+            robot.hold(RobotId(2));
+            robot.hear_blocked(stays.cell);
+        }
+        robot.decide(Sensed::Nothing);
+        assert_eq!(robot.see(Cell::new(0, 0), &Sight::default()).wish.rank(Dir::East).is_some(), expected);
+    }
 }
