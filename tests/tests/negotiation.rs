@@ -5,6 +5,7 @@ use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_tests::{root, run, scenario};
+use std::path::PathBuf;
 
 /// Cells of half a metre, for discs 0.3 m wide.
 fn in_plane(map: &str, ends: &[([u8; 2], [u8; 2])], loss: f64, more: &str) -> Scenario {
@@ -107,12 +108,20 @@ fn robots_pass_each_other_in_a_corridor_at_any_loss() {
     }
 }
 
+const LAW: &str = "[law]\nname = \"negotiation\"\n";
+
+/// Sixty robots of a benchmark among walls.
+fn crowd() -> (PathBuf, String) {
+    let file = root().join("scenarios/moving-ai-20.toml");
+    let text = std::fs::read_to_string(&file).unwrap().replace("count = 20", "count = 60");
+    assert!(text.contains(LAW));
+    (file, text)
+}
+
 #[test]
 fn a_crowd_walks_around_dead_robots() {
-    let file = root().join("scenarios/moving-ai-20.toml");
-    let mut text = std::fs::read_to_string(&file).unwrap().replace("count = 20", "count = 60");
-    text += "[law]\nname = \"negotiation\"\n";
-    for (robot, at_s) in [(8, 3), (21, 4), (33, 5), (46, 6), (55, 7)] {
+    let (file, mut text) = crowd();
+    for (robot, at_s) in [(10, 3), (21, 4), (34, 5), (46, 6), (55, 7)] {
         text += &format!("[[fault]]\nrobot = {robot}\nat_s = {at_s}\ndown_s = 10000\n");
     }
     for seed in 4..=6 {
@@ -124,14 +133,13 @@ fn a_crowd_walks_around_dead_robots() {
 
 #[test]
 fn a_crowd_arrives_sooner_by_negotiation_than_by_routes() {
-    let file = root().join("scenarios/moving-ai-20.toml");
-    let text = std::fs::read_to_string(&file).unwrap().replace("count = 20", "count = 60");
+    let (file, text) = crowd();
     for seed in 4..=6 {
-        let run = |law: &str| {
+        let run = |text: &str| {
             let overrides = Overrides { seed: Some(seed), ticks: None };
-            run(&Scenario::parse(&format!("{text}{law}"), &file, &overrides).unwrap()).0
+            run(&Scenario::parse(text, &file, &overrides).unwrap()).0
         };
-        let (by_routes, negotiated) = (run(""), run("[law]\nname = \"negotiation\"\n"));
+        let (by_routes, negotiated) = (run(&text.replace(LAW, "")), run(&text));
         assert_eq!((negotiated.arrived, negotiated.collisions), (60, 0), "seed {seed}");
         assert!(negotiated.ticks < by_routes.ticks, "seed {seed}: {} and {}", negotiated.ticks, by_routes.ticks);
     }
