@@ -50,7 +50,11 @@ impl<S: Scalar> Dimension for Vec2<S> {
             lean(params, &Situation { wish, ..*situation }, goal)
         });
         // A robot that waits for its turn must not back off: its turn comes.
-        if right_of_way.takes_turns() { wish } else { stuck.wish(situation, wish, patience, rng) }
+        if right_of_way.takes_turns() {
+            *stuck = Patience::NEW;
+            return wish;
+        }
+        stuck.wish(situation, wish, patience, rng)
     }
 
     fn waits_for_turn(memory: &Self::Memory) -> bool {

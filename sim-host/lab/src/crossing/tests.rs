@@ -109,3 +109,18 @@ fn two_crowds_pass_a_door_that_is_one_robot_wide() {
     assert!(run.turns >= 1 && run.last_s.is_some(), "{run:?}");
     assert!(run.least_wall_gap_m.is_some_and(|gap| gap > 0.0), "{run:?}");
 }
+
+/// A robot of 0.3 m needs 1.2 s at 0.5 m/s to pass the place of the one before it.
+#[test]
+fn robots_pass_a_door_close_behind_each_other() {
+    let conditions = Conditions { range_m: 6.0, ..Conditions::default() };
+    for loss in [0.0, 0.1, 0.3] {
+        let conditions = Conditions { loss, ..conditions };
+        let (widths_m, seeds) = (vec![0.7], if loss > 0.0 { 4 } else { 1 });
+        let plan = doorway::Plan { widths_m, robots: 5, seed: 40, seeds, conditions, ..doorway::Plan::default() };
+        for run in plan.measure().expect("a sound plan").runs {
+            assert_eq!((run.arrived, run.overlaps, run.through), (10, 0, [5, 5]), "{run:?}");
+            assert!(run.turns <= 3 && run.last_s.is_some_and(|last| last < 50.0), "{run:?}");
+        }
+    }
+}

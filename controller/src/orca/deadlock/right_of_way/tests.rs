@@ -37,10 +37,16 @@ fn rank_and_robots_in_the_door_decide_before_turns_do() {
         // A robot that comes out, or stands in the door, stops even an impatient one.
         (Traffic { comes_out: true, ..NO_TRAFFIC }, [false, false]),
         (Traffic { against: true, ..NO_TRAFFIC }, [false, false]),
-        // Others before this one: only impatience counts, and only behind no robot in the door.
-        (Traffic { rank: 1, ..NO_TRAFFIC }, [false, true]),
-        (Traffic { rank: 3, opposite: true, ..NO_TRAFFIC }, [false, true]),
-        (Traffic { rank: 1, ahead: true, ..NO_TRAFFIC }, [false, false]),
+        // Behind a waiting robot only impatience counts, and only behind no robot in the door.
+        (Traffic { is_behind: true, rank: 1, ..NO_TRAFFIC }, [false, true]),
+        (Traffic { is_behind: true, rank: 3, opposite: true, ..NO_TRAFFIC }, [false, true]),
+        (Traffic { is_behind: true, ahead: true, ..NO_TRAFFIC }, [false, false]),
+        // Behind a robot that moves to the door, it follows.
+        (Traffic { is_behind: true, leads: true, ..NO_TRAFFIC }, [true, true]),
+        (Traffic { is_behind: true, leads: true, ahead: true, ..NO_TRAFFIC }, [true, true]),
+        // The nearer one of two that meet goes first, unless it is the turn of the other.
+        (Traffic { opposite: true, oncoming: true, ..NO_TRAFFIC }, [true, true]),
+        (Traffic { opposite: true, oncoming: true, oncoming_is_nearer: true, ..NO_TRAFFIC }, [false, false]),
         // The first of its side, while robots wait on the other one.
         (Traffic { opposite: true, ..NO_TRAFFIC }, [true, true]),
         (Traffic { opposite: true, opposite_is_nearer: true, ..NO_TRAFFIC }, [false, true]),
@@ -58,20 +64,23 @@ fn directions_take_turns() {
     let opposite = Traffic { opposite: true, opposite_is_nearer: true, ..NO_TRAFFIC };
     let deep = Gap { depth: 0.5, ..DOOR };
     let memory = |last, goes, turn_m| RightOfWay { last_went_ahead: Some(last), goes, turn_m, ..RightOfWay::NEW };
-    // The last robot came out: the turn is this side's, until its own robot is in the door.
-    assert_eq!(may_go(&memory(false, false, 9.0), Traffic { ahead: false, ..opposite }, DOOR, false), [true, true]);
-    let ahead = Traffic { ahead: true, ..opposite };
-    assert_eq!(may_go(&memory(false, false, 9.0), ahead, DOOR, false), [false, true]);
-    // The last robot went in: the others' turn, unless this one has begun.
-    for goes in [false, true] {
-        let own = Traffic { ahead: false, ..opposite };
-        assert_eq!(may_go(&memory(true, goes, 0.0), own, DOOR, false), [goes, true]);
+    // The others' turn, of 50 radii, with one of them on its way, and when it is over.
+    for (turn_m, oncoming, wanted) in [(7.4, false, false), (7.6, false, true), (7.6, true, false)] {
+        let traffic = Traffic { oncoming, ..opposite };
+        let patient_only = may_go(&memory(false, false, turn_m), traffic, DOOR, false);
+        assert_eq!(patient_only, [wanted, !oncoming], "{turn_m} {oncoming}");
     }
-    // In a long passage robots follow for the time of two passages: four times half its depth.
-    let ahead = || Traffic { ahead: true, ..opposite };
-    assert_eq!(may_go(&memory(true, false, 1.9), ahead(), deep, false), [true, true]);
-    assert_eq!(may_go(&memory(true, true, 2.0), ahead(), deep, false), [false, true]);
-    assert_eq!(may_go(&memory(true, true, 0.0), ahead(), DOOR, false), [false, true]);
+    // The own turn: robots follow until it is over; those in the lane still do.
+    let ahead = || Traffic { ahead: true, leads: true, ..opposite };
+    let near = Gap { middle: Vec2::new(0.6, 0.0), ..DOOR };
+    for goes in [false, true] {
+        assert_eq!(may_go(&memory(true, goes, 7.4), ahead(), DOOR, false), [true, true]);
+        assert_eq!(may_go(&memory(true, goes, 7.6), ahead(), DOOR, false), [false, true]);
+        assert_eq!(may_go(&memory(true, goes, 7.6), ahead(), near, false), [goes, true]);
+    }
+    // In a long passage it lasts for two passages more: four times half its depth.
+    assert_eq!(may_go(&memory(true, false, 9.4), ahead(), deep, false), [true, true]);
+    assert_eq!(may_go(&memory(true, false, 9.6), ahead(), deep, false), [false, true]);
 }
 
 #[test]
@@ -131,5 +140,41 @@ fn robots_behind_the_door_are_opposite_unless_parked_or_leaving() {
         ([1.8, 0.0], 0.0, Mode::Cruise, false),
     ] {
         assert_eq!(seen(&[(9, at, speed, mode)]).3, is_opposite, "{at:?} {speed} {mode:?}");
+    }
+}
+
+#[test]
+fn robots_follow_at_their_spacing() {
+    let pace_in = |gap: Gap<f64>, at: [f64; 2], speed: f64, mode: Mode| {
+        let nearby = [Nearby { mode, ..robot(9, at, [speed, 0.0]) }];
+        let traffic = with_approach(gap, &nearby, |approach| approach.traffic());
+        (traffic.leads, traffic.pace_mps)
+    };
+    let pace = |at, speed, mode| pace_in(DOOR, at, speed, mode);
+    // 2.2 radii ahead is 0.33 m; at a speed of half a metre per second 0.15 m change by as much.
+    for (at, speed, wanted) in [(0.33, 0.4, 0.4), (0.33 + 0.15, 0.4, 0.9), (0.33 - 0.06, 0.4, 0.2), (0.2, 0.1, 0.0)] {
+        let (leads, got) = pace([at, 0.0], speed, Mode::Cruise);
+        assert!(leads && (got - wanted).abs() < 1e-9, "{at} {speed}: {got}");
+    }
+    // Behind the door it still counts, a parked robot and one behind do not.
+    assert!((pace([1.1, 0.0], 0.2, Mode::Cruise).1 - (0.2 + (1.1 - 0.33) / 0.3)).abs() < 1e-9);
+    assert_eq!(pace([0.3, 0.0], 0.4, Mode::Arrived), (false, f64::MAX));
+    assert_eq!(pace([-0.3, 0.0], 0.4, Mode::Cruise), (false, f64::MAX));
+    assert_eq!(pace([0.3, 0.0], 0.04, Mode::Hold), (false, f64::MAX), "a stationary one");
+    // In a passage that begins 0.5 m ahead, and behind it, its place along the passage counts.
+    for at in [0.6, 1.3, 1.7] {
+        let (leads, got) = pace_in(Gap { depth: 0.5, ..DOOR }, [at, 0.0], 0.2, Mode::Cruise);
+        assert!(leads && (got - (0.2 + (at - 0.33) / 0.3)).abs() < 1e-9, "{at}: {got}");
+    }
+}
+
+#[test]
+fn a_silent_robot_has_no_place_in_the_order() {
+    for (at, gives_way) in [([0.4, 0.0], true), ([0.4, 0.0], false), ([1.3, 0.0], true), ([1.3, 0.0], false)] {
+        let nearby = [Nearby { gives_way, ..robot(9, at, [0.0, 0.0]) }];
+        let got = with_approach(DOOR, &nearby, |approach| approach.traffic());
+        let counts = |is_here: bool| gives_way && is_here;
+        assert_eq!((got.rank, got.is_behind), (i32::from(counts(at[0] < 1.0)), counts(at[0] < 1.0)), "{at:?}");
+        assert_eq!(got.opposite, counts(at[0] > 1.0), "{at:?}");
     }
 }

@@ -182,6 +182,34 @@ fn door(seed: u32) -> Scene {
     sheet.scene(seed, 2.0 * depth + 30.0 + 25.0 * f64::from(each), &[(&a, true), (&b, true)])
 }
 
+/// Two groups at a door for one, and a robot between them whose computer is down from 0.12 s on: in
+/// the mouth for 20 s, or forever where others have room to pass it. In scenes with an even seed
+/// 30 % of the packets are lost.
+fn dead_at_door(seed: u32, is_in_mouth: bool) -> Scene {
+    let mut draw = Draw::new(31, seed);
+    let mut sheet = Sheet::new("dead-at-door", &mut draw);
+    let (half, each) = (draw.within(1.1, 1.9), draw.whole(2, 5));
+    for side in [-1.0, 1.0] {
+        for k in 0..each {
+            let x = 12.0 + 4.0 * f64::from(k / 3);
+            let y = (f64::from(k % 3) - 1.0) * 4.0 + draw.within(-0.2, 0.2);
+            sheet.robot([side * x, y], &[], [-side * x, -y]);
+        }
+    }
+    let (dead, down_s) = if is_in_mouth {
+        ([draw.within(-1.0, 1.0), draw.within(-1.0, 1.0) * (half - 1.05)], 20.0)
+    } else {
+        ([draw.within(4.5, 6.0), draw.within(-2.0, 2.0)], 1e5)
+    };
+    sheet.robot(dead, &[], [-20.0, dead[1]]);
+    let (a, b) = door_walls(half, 0.0);
+    let mut scene = sheet.scene(seed, 150.0 + 25.0 * f64::from(each), &[(&a, true), (&b, true)]);
+    let (loss, robot) = (if seed.is_multiple_of(2) { 0.3 } else { 0.0 }, 2 * each + 1);
+    let fault = format!("[[fault]]\nrobot = {robot}\nat_s = 0.12\ndown_s = {down_s}\n");
+    let _ = write!(scene.text, "[radio]\nloss = {loss}\n{fault}");
+    scene
+}
+
 fn door_walls(half: f64, depth: f64) -> ([P; 4], [P; 4]) {
     let side = |y: f64, far: f64| [[-depth, y], [depth, y], [depth, far], [-depth, far]];
     (side(half, 90.0), side(-half, -90.0))
@@ -222,6 +250,24 @@ fn a_crowd_with_one_goal_ends_within_six_or_ten_free_times() {
 #[test]
 fn two_groups_change_places_through_a_door() {
     all_arrive_in_time(10, door);
+}
+
+#[test]
+fn robots_pass_a_dead_one_near_a_door_and_wait_for_one_in_it() {
+    for seed in (0..8).chain(UNSEEN..UNSEEN + 8) {
+        for (is_in_mouth, dead) in [(false, 1), (true, 0)] {
+            let Scene { text, wanted_s } = dead_at_door(seed, is_in_mouth);
+            let scene = scenario(&text);
+            let all = scene.robots.len() - dead;
+            let outcome = simulate(&scene, |moment, _| {
+                let is_over = moment.arrived >= all;
+                if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            let outcome = outcome.expect("placed");
+            assert_eq!((outcome.arrived, outcome.collisions), (all, 0), "seed {seed}\n{text}");
+            assert!(outcome.seconds <= wanted_s, "seed {seed}: {} s, wanted {wanted_s} s\n{text}", outcome.seconds);
+        }
+    }
 }
 
 #[test]
