@@ -316,7 +316,9 @@ impl<'a, S: Scalar> Approach<'a, S> {
                 }
             }
             if place.x < S::ZERO {
-                let is_before = is_nearer && !is_parked;
+                // Where robots could pass it, a silent robot keeps its place in the order.
+                let counts = other.gives_way || !self.is_narrow;
+                let is_before = is_nearer && !other.mode.is_parked() && counts;
                 let waits = is_before && speed_ahead > -slow;
                 traffic.rank += i32::from(waits);
                 traffic.flows |= self.is_narrow && is_before && speed_ahead.abs() > slow;
