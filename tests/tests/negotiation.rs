@@ -69,16 +69,14 @@ fn two_discs_pass_each_other_at_the_only_side_cell_of_a_corridor() {
 }
 
 /// Four robots whose ways cross in a maze of corridors one cell wide.
-const MAZE: (&str, [([u8; 2], [u8; 2]); 4]) = (
-    ".@...@. ...@... .@.@.@. .....@. @@.@@@. ....... .@...@.",
-    [([0, 0], [6, 6]), ([6, 6], [0, 0]), ([0, 6], [6, 0]), ([6, 0], [0, 6])],
-);
+const MAZE: &str = ".@...@. ...@... .@.@.@. .....@. @@.@@@. ....... .@...@.";
+const CROSSING: [([u8; 2], [u8; 2]); 4] = [([0, 0], [6, 6]), ([6, 6], [0, 0]), ([0, 6], [6, 0]), ([6, 0], [0, 6])];
 
 #[test]
 fn four_discs_cross_a_maze_at_any_loss() {
     for loss in [0.0, 0.3, 0.6] {
         for seed in 1..=3 {
-            let mut scenario = in_plane(MAZE.0, &MAZE.1, loss, "");
+            let mut scenario = in_plane(MAZE, &CROSSING, loss, "");
             scenario.seed = seed;
             all_arrive(&scenario, &format!("seed {seed}, loss {loss}"));
         }
@@ -91,7 +89,7 @@ fn four_discs_cross_a_maze_at_any_loss() {
 fn a_robot_that_restarts_in_the_maze_joins_the_steps_of_the_others() {
     for at_s in [2.3, 3.6] {
         let fault = format!("[[fault]]\nrobot = 2\nat_s = {at_s}\ndown_s = 1.33\n");
-        all_arrive(&in_plane(MAZE.0, &MAZE.1, 0.0, &fault), &format!("restarts after {at_s} s"));
+        all_arrive(&in_plane(MAZE, &CROSSING, 0.0, &fault), &format!("restarts after {at_s} s"));
     }
 }
 

@@ -4,8 +4,6 @@
 mod area;
 mod distance;
 #[cfg(feature = "agent")]
-mod in_plane;
-#[cfg(feature = "agent")]
 mod law;
 mod negotiator;
 mod plan;
@@ -13,9 +11,7 @@ mod plan;
 pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::Distances;
 #[cfg(feature = "agent")]
-pub use in_plane::{Beat, InStep, InStepPayload, NegotiationInPlane};
-#[cfg(feature = "agent")]
-pub use law::{Negotiation, NegotiationGuidance, NegotiationPayload};
+pub use law::{Beat, InStep, InStepPayload, Negotiation, NegotiationGuidance, NegotiationInPlane, NegotiationPayload};
 pub use negotiator::{Negotiator, RANGE, REPORTED, Report, Said, Sensed};
 pub use plan::{Fields, Manners, Member, Moves, Plan, Wish};
 

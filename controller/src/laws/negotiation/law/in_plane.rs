@@ -1,7 +1,7 @@
 //! Negotiation of bodies that move in the plane.
 
-use super::law::sight;
-use super::{Moves, Negotiator, Report, Said, Sensed};
+use super::super::{Manners, Moves, Negotiator, Report, Said, Sensed, Sight, Wish};
+use super::sight;
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, Dir};
 use crate::law::{self, Action, BadInput, Decision, InCells, Law, Protocol, Radio, Status, Tools, View};
@@ -14,7 +14,7 @@ use crate::time::{Duration, Instant};
 use crate::wire::{Content, ProtocolId};
 use serde::{Deserialize, Serialize};
 
-/// Time of a step, tenths of the time that a cell takes at cruising speed; leaves speed to catch up.
+/// Time of a step, tenths of that for a cell at cruising speed; leaves speed to catch up.
 const SLACK: i32 = 12;
 /// Part of its distance from the point that a robot makes up for in a second.
 const PULL: i32 = 3;
@@ -86,7 +86,7 @@ impl From<Beat> for u8 {
 /// stays in the next step. A robot that is late for long, or shares its cell, moves to the nearest
 /// centre to which no other robot is nearer.
 ///
-/// A decision takes O(N), and at the start of a step what a [`Plan`](super::Plan) takes.
+/// A decision takes O(N), and at the start of a step what a [`Plan`](crate::negotiation::Plan) takes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
     speed_mps: S,
@@ -127,11 +127,11 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
                 cell: Cell { x: 0, y: 0 },
                 goal: Cell { x: 0, y: 0 },
                 waiting: 1,
-                wish: super::Wish(0),
+                wish: Wish(0),
                 step: 0,
-                manners: super::Manners { is_last: false, keeps_on: false },
+                manners: Manners { is_last: false, keeps_on: false },
             },
-            shared: Report { cell: Cell { x: 0, y: 0 }, sight: super::Sight([0; 16]), heard: heapless::Vec::new() },
+            shared: Report { cell: Cell { x: 0, y: 0 }, sight: Sight([0; 16]), heard: heapless::Vec::new() },
             step: 0,
             began: Instant::from_micros(0),
             length: Duration::ZERO,

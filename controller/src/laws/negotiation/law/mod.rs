@@ -1,5 +1,7 @@
 //! Negotiation as a law.
 
+mod in_plane;
+
 use super::{Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight};
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{
@@ -13,6 +15,8 @@ use crate::time::{Duration, Instant};
 use crate::wire::{Content, ProtocolId};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
+
+pub use in_plane::{Beat, InStep, InStepPayload, NegotiationInPlane};
 
 /// The protocol of robots that negotiate.
 #[derive(Clone, Copy, Debug)]
@@ -221,9 +225,9 @@ fn crossing(tick: Duration, dir: Dir, class: u8) -> Duration {
     Duration::from_micros(i32::try_from(micros).unwrap_or(i32::MAX))
 }
 
-/// The walls around a cell, in a window with the centre `eye`. Cells beyond the edge of the land are
-/// closed.
-pub(super) fn sight(cell: Cell, eye: Cell, window: &Window<'_>) -> Sight {
+/// The walls around a cell, in a window with the centre `eye`. Cells beyond the edge of the land
+/// are closed.
+fn sight(cell: Cell, eye: Cell, window: &Window<'_>) -> Sight {
     let sees = |reach: i16| {
         let edges = [(-reach, 0), (reach, 0), (0, -reach), (0, reach)];
         edges.into_iter().any(|(x, y)| window.get(eye + Cell::new(x, y)).is_some())
