@@ -86,7 +86,7 @@ impl From<Beat> for u8 {
 /// stays in the next step. A robot that is late for long, or shares its cell, moves to the nearest
 /// centre to which no other robot is nearer.
 ///
-/// A decision takes O(N), and at the start of a step what a [`Plan`](crate::negotiation::Plan) takes.
+/// A decision takes O(N), and at the start of a step as much as a plan.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
     speed_mps: S,
