@@ -197,7 +197,7 @@ fn robots_that_negotiate_in_the_plane_fit_around_corners_and_have_goals_in_cells
     let cells = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
     let route = |radius_m: f64| with(&format!("radius_m = {radius_m}\nguidance = \"route\"\n"), cells);
     assert_eq!(parse(&route(0.15)).expect("good").law.expect("a law").cruise_mps, Some(1.0));
-    assert!(refusal(&route(0.2)).starts_with("s.toml:11: plane.radius_m: 0.2 m are more than 0.35 cells"));
+    assert!(refusal(&route(0.2)).starts_with("s.toml:12: plane.radius_m: 0.2 m are more than 0.35 cells"));
     let in_metres = "radius_m = 0.15\n[plane.robots]\nlist = [{ start_m = [0.25, 0.25], goal_m = [1.75, 1.25] }]\n";
     assert!(refusal(&with(in_metres, "")).contains("plane.guidance: robots that negotiate have goals in cells; give"));
 }
