@@ -1,5 +1,7 @@
 //! A robot that negotiates: what it knows of land and robots, from step to step.
 
+mod sensed;
+
 use super::area::{Area, Sight};
 use super::plan::{Fields, Manners, Member, Moves, Plan, Wish};
 use crate::fixint;
@@ -10,16 +12,14 @@ use crate::robot::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+pub use sensed::Sensed;
+
 /// Distance up to which robots plan together, cells.
 pub const RANGE: u32 = 8;
 /// Robots in a [`Report`].
 pub const REPORTED: usize = 8;
 /// Steps after which a robot whose place is not known is forgotten.
 const FORGET: u8 = 6;
-/// Moves that a robot may be away from where the last plan put it.
-const MOST_MISSED: u32 = 2;
-/// Cells around a robot in which it senses others.
-const SENSED: u32 = 5;
 /// Most cells to a robot in a [`Report`], along each axis.
 const NEAR: i16 = 7;
 /// Steps of a robot to and fro, or without the move that it planned, that are a stalemate.
@@ -29,7 +29,7 @@ const COURTESY: u32 = 4;
 /// Refusals in a row, without a word of a robot there, after which a cell counts as blocked.
 const REFUSALS: u8 = 4;
 /// Most blocked cells in a [`Report`].
-const BLOCKED: usize = 2;
+const MOST_BLOCKED: usize = 2;
 const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
 
 /// What a robot says of itself in each step, before it decides; 14 bytes on the air.
@@ -64,18 +64,6 @@ pub struct Report {
     /// offsets to the east and to the north plus 8, in the low and in the high four bits. Before
     /// them cells that it found blocked: these offsets, and 0.
     pub heard: Vec<(u8, u8), REPORTED>,
-}
-
-/// The robots that a robot senses within 5 cells in this step.
-#[derive(Clone, Copy, Debug, Default)]
-pub enum Sensed<'a> {
-    /// It has no such sensor.
-    #[default]
-    Nothing,
-    /// The occupied cells.
-    Cells(&'a [Cell]),
-    /// Which robot is where.
-    Robots(&'a [(RobotId, Cell)]),
 }
 
 /// A robot nearby, as last heard, and where it should be since.
@@ -275,7 +263,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
             return;
         }
-        self.moves_in(said.cell);
+        self.free(said.cell);
+        self.note(id, said);
+    }
+
+    fn note(&mut self, id: RobotId, said: &Said) {
         let known = Known { id, said: *said, age: 0, lost: 0, holds: false };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = known,
@@ -292,8 +284,18 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// A robot that moves is in a cell.
-    pub fn moves_in(&mut self, cell: Cell) {
+    /// Hears a robot that stays where it is: its cell is closed.
+    pub fn hear_staying(&mut self, id: RobotId, said: &Said) {
+        self.begin();
+        if id != self.id && said.cell.chebyshev(self.own.cell) <= RANGE {
+            self.note(id, said);
+            self.hold(id);
+            self.area.block(said.cell, true);
+        }
+    }
+
+    /// A robot in this cell moves, so nothing blocks it.
+    pub fn free(&mut self, cell: Cell) {
         self.area.unblock(cell);
         if self.barred.0 == cell {
             self.barred.1 = 0;
@@ -309,8 +311,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// The own move takes more than a step, so it is not refused.
-    pub const fn is_under_way(&mut self) {
+    /// The own move takes more than a step, or is put off, so it is not refused.
+    pub const fn take_time(&mut self) {
         self.chosen = Dir::Stay;
     }
 
@@ -333,7 +335,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
         list::sort_by_key(&mut near, |&(distance, id, _)| (distance, id.0));
         let blocked = self.area.blocked().map(|cell| cell - self.own.cell).filter(|&offset| is_near(offset));
-        let blocked = blocked.take(BLOCKED).map(|offset| (packed(offset), 0));
+        let blocked = blocked.take(MOST_BLOCKED).map(|offset| (packed(offset), 0));
         let heard = near.iter().map(|&(_, id, offset)| (id.0 as u8, packed(offset)));
         let heard = list::collect(blocked.chain(heard).take(REPORTED));
         Report { cell: self.own.cell, sight: self.sight, heard }
@@ -358,9 +360,9 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// Another robot found a cell blocked, or the robot there said that it stays.
-    pub fn hear_blocked(&mut self, cell: Cell) {
-        let moves = |other: &Known| other.said.cell == cell && other.lost == 0 && !other.holds;
+    /// Another robot found a cell blocked.
+    fn hear_blocked(&mut self, cell: Cell) {
+        let moves = |other: &Known| other.said.cell == cell && other.lost == 0;
         if cell != self.own.cell && !self.known.iter().any(moves) {
             self.area.block(cell, true);
         }
@@ -430,44 +432,6 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             return Some(self.own.cell + self.chosen.offset());
         }
         self.known.iter().find(|other| other.id == id).map(|other| other.said.cell)
-    }
-
-    /// Puts known robots where they are sensed. Returns the cells of those that are not known.
-    fn place_sensed(&mut self, robots: &[(RobotId, Cell)]) -> Vec<Cell, N> {
-        let mut unknown = Vec::new();
-        for &(id, cell) in robots {
-            match self.known.iter_mut().find(|other| other.id == id) {
-                Some(other) => other.said.cell = cell,
-                None => drop(unknown.push(cell)),
-            }
-        }
-        unknown
-    }
-
-    /// Puts each known robot within 5 cells into the nearest sensed cell, at most two moves away,
-    /// and forgets those for which there is none. Returns the cells of robots that are not known.
-    fn match_sensed(&mut self, cells: &[Cell]) -> Vec<Cell, N> {
-        let own = self.own.cell;
-        let mut free: Vec<Cell, N> = list::collect(cells.iter().copied().filter(|&cell| cell != own));
-        list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
-        let mut placed: Vec<RobotId, N> = Vec::new();
-        for most in [0, MOST_MISSED] {
-            for Known { id, said, .. } in &mut self.known {
-                if said.cell.chebyshev(own) > SENSED || placed.contains(id) {
-                    continue;
-                }
-                let far = |&index: &usize| free.get(index).map_or(u32::MAX, |&cell| moves(cell, said.cell));
-                let nearest = (0..free.len()).min_by_key(far).filter(|index| far(index) <= most);
-                if let Some(index) = nearest
-                    && index < free.len()
-                {
-                    said.cell = free.swap_remove(index);
-                    let _ = placed.push(*id);
-                }
-            }
-        }
-        self.known.retain(|other| other.said.cell.chebyshev(own) > SENSED || placed.contains(&other.id));
-        free
     }
 }
 

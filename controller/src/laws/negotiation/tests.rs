@@ -285,10 +285,10 @@ fn a_robot_that_says_that_it_stays_is_a_wall_until_it_moves() {
     let stays = Said { cell: Cell::new(1, 0), goal: Cell::new(1, 0), waiting: 1, ..Said::default() };
     for (is_held, expected) in [(true, false), (false, true), (true, false)] {
         robot.see(Cell::new(0, 0), &Sight::default());
-        robot.hear(RobotId(2), &stays);
         if is_held {
-            robot.hold(RobotId(2));
-            robot.hear_blocked(stays.cell);
+            robot.hear_staying(RobotId(2), &stays);
+        } else {
+            robot.hear(RobotId(2), &stays);
         }
         robot.decide(Sensed::Nothing);
         assert_eq!(robot.see(Cell::new(0, 0), &Sight::default()).wish.rank(Dir::East).is_some(), expected);

@@ -17,6 +17,22 @@ fn moment(step: i32) -> Instant {
     Instant::from_micros(1) + STEP.saturating_mul(step)
 }
 
+/// The rule of a robot without a lag that was at rest.
+fn still<S: Scalar>(body: &Body<S>, own: Position, now: Instant) -> GapLimit<'_, S> {
+    GapLimit {
+        body,
+        own,
+        own_mps: Vec3::ZERO,
+        lag_s: S::ZERO,
+        now,
+        news: STEP,
+        inflation: StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(100) },
+        may_be_alone: false,
+        stands_after: STANDS_AFTER,
+        is_agreed: false,
+    }
+}
+
 struct Mover<S> {
     table: NeighborTable<S, 4>,
     body: Body<S>,
@@ -55,19 +71,8 @@ impl<S: Scalar> Mover<S> {
             let _ = table.put(neighbor, own, now, |_| false);
         }
         let inflation = StalenessInflation { growth_mps: S::ONE, max_m: body.radius_m };
-        let room = GapLimit {
-            body: &body,
-            own,
-            own_mps: Vec3::ZERO,
-            lag_s: S::ZERO,
-            now,
-            news: STEP,
-            inflation,
-            may_be_alone: false,
-            stands_after: STANDS_AFTER,
-            // With robots of both kinds.
-            is_agreed: body.id.0 % 2 == 0,
-        };
+        // With robots of both kinds.
+        let room = GapLimit { inflation, is_agreed: body.id.0 % 2 == 0, ..still(&body, own, now) };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
         body.velocity_mps = velocity_mps;
@@ -170,19 +175,7 @@ fn a_robot_turned_aside_is_not_turned_into_a_wall() {
     let wall = [Obstacle::Wall([Vec2::new(-1.0, -0.16), Vec2::new(1.0, -0.16)])];
     let mut table = mover.table.clone();
     let _ = table.put(other.news(0), Position::ORIGIN, moment(1), |_| false);
-    let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-    let room = GapLimit {
-        body: &mover.body,
-        own: Position::ORIGIN,
-        own_mps: Vec3::ZERO,
-        lag_s: 0.0,
-        now: moment(1),
-        news: STEP,
-        inflation,
-        may_be_alone: false,
-        stands_after: STANDS_AFTER,
-        is_agreed: false,
-    };
+    let room = still(&mover.body, Position::ORIGIN, moment(1));
     let east = Vec3::new(1.0, 0.0, 0.0);
     let open = room.limit(&mut table, &[], east).unwrap();
     assert!(open.y < -0.2 && open.x > 0.4, "{open:?}: aside");
@@ -200,19 +193,7 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
         let wall = [Obstacle::Wall([Vec2::new(-9.0, y), Vec2::new(9.0, y)])];
         let (own, now) = (mover.position(), moment(step));
         let _ = mover.table.put(other.news(step - 1), own, now, |_| false);
-        let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-        let room = GapLimit {
-            body: &mover.body,
-            own,
-            own_mps: Vec3::ZERO,
-            lag_s: 0.0,
-            now,
-            news: STEP,
-            inflation,
-            may_be_alone: false,
-            stands_after: STANDS_AFTER,
-            is_agreed: false,
-        };
+        let room = still(&mover.body, own, now);
         let v = room.limit(&mut mover.table, &wall, Vec3::new(1.0, 0.0, 0.0)).unwrap();
         mover.at_m += v.cast() * 0.1;
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);
@@ -230,19 +211,7 @@ fn a_robot_follows_closely_only_if_its_motion_is_agreed() {
         let (own, now) = (mover.position(), moment(1));
         let _ = mover.table.put(other.news(1), own, now, |_| false);
         mover.body.velocity_mps.x = 1.0;
-        let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-        let room = GapLimit {
-            body: &mover.body,
-            own,
-            own_mps: Vec3::ZERO,
-            lag_s: 0.0,
-            now,
-            news: STEP,
-            inflation,
-            may_be_alone: false,
-            stands_after: STANDS_AFTER,
-            is_agreed,
-        };
+        let room = GapLimit { is_agreed, ..still(&mover.body, own, now) };
         room.limit(&mut mover.table, &[], Vec3::new(1.0, 0.0, 0.0)).unwrap().x
     };
     assert!(speed(true, 1.0) > 0.99);
@@ -258,19 +227,7 @@ fn a_body_with_a_lag_that_slides_past_a_silent_robot_takes_no_more_of_the_gap() 
         let mut mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);
         mover.body.max_speed_mps = 9.0;
         let _ = mover.table.put(other.news(0), Position::ORIGIN, moment(1), |_| false);
-        let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-        let room = GapLimit {
-            body: &mover.body,
-            own: Position::ORIGIN,
-            own_mps,
-            lag_s,
-            now: moment(11),
-            news: STEP,
-            inflation,
-            may_be_alone: false,
-            stands_after: STANDS_AFTER,
-            is_agreed: false,
-        };
+        let room = GapLimit { own_mps, lag_s, ..still(&mover.body, Position::ORIGIN, moment(11)) };
         room.limit(&mut mover.table, &[], Vec3::new(9.0, 0.0, 0.0)).unwrap().x
     };
     let without = speed_ahead(Vec3::ZERO, 0.0);
@@ -294,18 +251,7 @@ fn into_a_corner(lag_s: f64, [speed, most, room_m]: [f64; 3], angles: [f64; 2]) 
         let away_m = walls.map(|ahead| RADIUS_M + room_m - at_m.xy().dot(ahead));
         last_m = away_m[0].min(away_m[1]) - RADIUS_M;
         least_m = least_m.min(last_m);
-        let room = GapLimit {
-            body: &mover.body,
-            own: Position::ORIGIN,
-            own_mps,
-            lag_s,
-            now: moment(step),
-            news: STEP,
-            inflation: StalenessInflation { growth_mps: 1.0, max_m: 0.1 },
-            may_be_alone: false,
-            stands_after: STANDS_AFTER,
-            is_agreed: false,
-        };
+        let room = GapLimit { own_mps, lag_s, ..still(&mover.body, Position::ORIGIN, moment(step)) };
         let wall = |one: usize| [-99.0, 99.0].map(|along| walls[one] * away_m[one] + walls[one].perp() * along);
         let walls = [0, 1].map(|one| Obstacle::Wall(wall(one)));
         let command = mover.body.reach(room.limit(&mut mover.table, &walls, wish).unwrap());

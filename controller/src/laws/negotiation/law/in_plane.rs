@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 
 /// Time of a step, tenths of that for a cell at cruising speed; leaves speed to catch up.
 const SLACK: i32 = 12;
-/// Part of its distance from the point that a robot makes up for in a second.
-const PULL: i32 = 3;
+/// How often a robot makes up for its distance from the point in a step, tenths.
+const PULL: i32 = 18;
 /// Steps in a row that a robot is late, after which it chooses its cell again.
 const GIVES_UP: u8 = 4;
 /// If two robots are in one cell, the nearer one leaves with a probability of 1 / `YIELDS` a step.
@@ -273,7 +273,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
             let dir = robot.decide(Sensed::Nothing);
             self.by = if was_late { Dir::Stay } else { dir };
             self.said = if was_late {
-                robot.is_under_way();
+                robot.take_time();
                 robot.stay()
             } else {
                 robot.promise()
@@ -294,7 +294,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
         let [last, next] = [from - before, end - from];
         let way = from - last * (rest * rest * S::HALF) + next * (share * share * S::HALF);
         let rate = S::ONE.checked_div(length).unwrap_or(S::ZERO);
-        let wish = (last * rest + next * share) * rate + way * S::from_i32(PULL);
+        let wish = (last * rest + next * share + way * S::from_ratio(PULL, 10)) * rate;
         self.is_late = way.norm() > place.cell_m * S::HALF;
         let wish = wish.clamp_norm(speed);
         let is_there = self.from == goal && self.by == Dir::Stay;

@@ -122,18 +122,18 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let failed: Vec<RobotId, N> = failed(view, cell);
         for (neighbor, NegotiationPayload { said, by, busy }) in view.peers() {
             if neighbor.heard.since(self.decided) > Duration::ZERO {
-                robot.moves_in(said.cell - by.offset());
-                if failed.contains(&neighbor.id) {
-                    robot.hear_at(neighbor.id, &said, said.cell - by.offset());
+                let from = said.cell - by.offset();
+                if busy == STAYS {
+                    robot.hear_staying(neighbor.id, &said);
+                } else if failed.contains(&neighbor.id) {
+                    robot.hear_at(neighbor.id, &said, from);
                 } else {
+                    robot.free(from);
                     robot.hear(neighbor.id, &said);
                 }
             }
             if view.now.since(neighbor.heard) < view.tick.saturating_mul(busy.into()) {
                 robot.hold(neighbor.id);
-                if busy == STAYS {
-                    robot.hear_blocked(said.cell);
-                }
             }
         }
         let dir = robot.decide(Sensed::Nothing);
@@ -165,7 +165,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             Ok((cell, window)) if self.decided != now => {
                 self.crossed = now + busy;
                 stays = busy == Duration::ZERO;
-                robot.is_under_way();
+                robot.take_time();
                 robot.see(cell, &sight(cell, cell, &window))
             }
             _ => robot.promise(),

@@ -1,0 +1,101 @@
+"""Discs that negotiate in the mazes of DLSC-GC, read from a clone of github.com/qwerty35/dlsc_gc_planner.
+
+    STAYA=target/release/staya python tests/python/dlsc.py CLONE dense [--loss 0.3] [--seeds 11,12,13]
+
+Ten discs of 0.15 m at 1 m/s and 2 m/s^2 in cells of 0.5 m, radio range 3 m, at most 120 s. Prints each run that is not complete,
+and for all of them how many are complete, the mean and greatest time of the last arrival, and the least gap of two discs.
+"""
+
+import argparse
+import csv
+import json
+import math
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+CELL_M = 0.5
+RADIUS_M = 0.15
+SCENARIO = """name = "dlsc"
+ticks = 2400
+tick_s = 0.05
+law.name = "negotiation"
+terrain = {{ file = "maze.map", cell_m = {cell_m} }}
+radio = {{ range_m = 3, loss = {loss} }}
+robots.list = [{robots}]
+[plane]
+radius_m = {radius_m}
+max_speed_mps = 1
+max_acceleration_mps2 = 2
+tolerance_m = 0.1
+guidance = "route"
+orca = {{ horizon_s = 1, wall_horizon_s = 0.3, alone_mps = 1 }}
+"""
+
+
+def write(folder: Path, mission: Path, world: Path, loss: float) -> Path:
+    """Writes a mission as scenario and map. The cells whose centres blocks cover are walls."""
+    read = json.loads(mission.read_text())
+    west, south, _, east, north, _ = read["world"][0]["dimension"]
+    # Cells in which a disc keeps within the world.
+    first = [math.ceil((low + RADIUS_M) / CELL_M - 1e-9) for low in (west, south)]
+    last = [math.floor((high - RADIUS_M) / CELL_M + 1e-9) for high in (east, north)]
+
+    def cell(place: list[float]) -> tuple[int, ...]:
+        cells = [place[axis] / CELL_M for axis in range(2)]
+        assert all(abs(at - round(at)) < 1e-6 for at in cells), f"{mission}: {place} is between cells"
+        return tuple(round(at) - low for at, low in zip(cells, first, strict=True))
+
+    with world.open(newline="") as file:
+        blocks = [[float(number) for number in row] for row in csv.reader(file)]
+
+    def is_blocked(*cell: int) -> bool:
+        center = [(low + at) * CELL_M for low, at in zip(first, cell, strict=True)]
+        return any(all(2 * abs(center[axis] - block[axis]) < block[axis + 3] for axis in range(2)) for block in blocks)
+
+    width, height = (high - low + 1 for low, high in zip(first, last, strict=True))
+    rows = ["".join("@" if is_blocked(x, y) else "." for x in range(width)) for y in reversed(range(height))]
+    header = f"type octile\nheight {height}\nwidth {width}\nmap\n"
+    (folder / "maze.map").write_text(header + "\n".join(rows) + "\n")
+    ends = [[list(cell(agent[end])) for end in ("start", "goal")] for agent in read["agents"]]
+    robots = ", ".join(f"{{ start = {start}, goal = {goal} }}" for start, goal in ends)
+    scenario = folder / "dlsc.toml"
+    scenario.write_text(SCENARIO.format(cell_m=CELL_M, radius_m=RADIUS_M, loss=loss, robots=robots))
+    return scenario
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("clone", type=Path)
+    parser.add_argument("maze", choices=["dense", "sparse"])
+    parser.add_argument("--loss", type=float, default=0)
+    parser.add_argument("--seeds", default="11,12,13")
+    given = parser.parse_args()
+    staya = os.environ.get("STAYA", "target/release/staya")
+    lasts, gaps, runs = [], [], 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for number in range(1, 31):
+            mission = given.clone / f"missions/maze10_{given.maze}/maze10_{number}.json"
+            world = given.clone / f"world/maze_icra2023/{given.maze}/maze{number}.csv"
+            scenario = write(folder, mission, world, given.loss)
+            for seed in given.seeds.split(","):
+                command = [staya, "run", scenario, "--seed", seed, "--json", "-q", "--out", folder / "out"]
+                said = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
+                runs += 1
+                gaps.append(said["least_gap_m"])
+                if said["arrived"] == said["robots"] and said["collisions"] == 0:
+                    lasts.append(said["arrival_last_seconds"])
+                    if number == 1:
+                        print(f"mission 1, seed {seed}: {lasts[-1]:.1f} s")
+                else:
+                    print(f"mission {number}, seed {seed}: {said['arrived']} arrive, {said['collisions']} collisions")
+    print(
+        f"{len(lasts)} of {runs} complete, last arrival {sum(lasts) / len(lasts):.1f} s, at most {max(lasts):.1f} s, "
+        f"least gap {min(gaps) * 1000:.1f} mm"
+    )
+
+
+if __name__ == "__main__":
+    main()
