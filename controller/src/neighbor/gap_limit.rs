@@ -251,8 +251,8 @@ impl<S: Scalar> GapLimit<'_, S> {
         (limit, silent > 0 && grown >= distance)
     }
 
-    /// Turns a velocity aside so that a step with it ends before the obstacles; a body with a lag
-    /// can also brake along it before them.
+    /// Turns a velocity aside so that a step with it ends before the obstacles; a body with a
+    /// lag or inertia can also brake along it before them.
     #[inline(never)]
     fn before(&self, obstacles: &[Obstacle<S>], mut v: Vec3<S>) -> Vec3<S> {
         let (mut span_s, mut rolls_m) = (self.body.step_s, Vec3::ZERO);
@@ -271,7 +271,7 @@ impl<S: Scalar> GapLimit<'_, S> {
 
     /// Whether the body must be able to brake before obstacles after this step.
     fn brakes_for_walls(&self) -> bool {
-        self.lag_s > S::ZERO || self.is_agreed
+        self.lag_s > S::ZERO || self.is_agreed || self.body.has_inertia()
     }
 
     /// Time to brake to rest, seconds; 0 without inertia.

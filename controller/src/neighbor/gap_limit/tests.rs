@@ -274,8 +274,8 @@ fn a_body_with_a_lag_that_leaves_one_wall_does_not_drift_into_another() {
 
 proptest! {
     #[test]
-    fn a_body_with_a_lag_stops_before_walls(
-        lag_s in 0.02..2.0_f64, speed in 0.2..4.0_f64, most in 0.3..5.0_f64, room_m in 0.01..15.0_f64,
+    fn a_body_with_inertia_or_a_lag_stops_before_walls(
+        lag_s in prop_oneof![Just(0.0), 0.02..2.0_f64], speed in 0.2..4.0_f64, most in 0.3..5.0_f64, room_m in 0.01..15.0_f64,
         angle in -1.2..1.2_f64, corner in prop_oneof![Just(0.0), -1.4..1.4_f64],
     ) {
         let (least_m, last_m, own_mps) = into_a_corner(lag_s, [speed, most, room_m], [angle, corner]);
@@ -283,5 +283,28 @@ proptest! {
         // Along a single wall nothing holds it up.
         let along_mps = libm::sin(angle).abs() * speed;
         prop_assert!(corner != 0.0 || own_mps.x.abs() > 0.9 * along_mps, "{own_mps:?} of {along_mps}");
+    }
+
+    #[test]
+    fn a_body_with_inertia_does_not_touch_the_corners_of_a_block(
+        most in 0.3..5.0_f64, turn in 0.0..6.3_f64, wishes in proptest::collection::vec(-1.5..1.5_f64, 40),
+    ) {
+        use crate::geom::Vec2;
+        let corners = [[-0.25, -0.25], [0.25, -0.25], [0.25, 0.25], [-0.25, 0.25]].map(|[x, y]| Vec2::new(x, y));
+        let mut mover = Mover::<f64>::new(1, [0.0; 3], most);
+        let towards = |angle: f64| Vec2::new(libm::cos(angle), libm::sin(angle));
+        let mut at_m = towards(turn) * 2.0;
+        for step in 0..800 {
+            let walls = [0, 1, 2, 3].map(|one| Obstacle::Wall([one, (one + 1) % 4].map(|end| corners[end] - at_m)));
+            let least_m = walls.iter().filter_map(Obstacle::nearest_point).map(|(_, away_m)| away_m).fold(9.0, f64::min);
+            prop_assert!(least_m >= RADIUS_M, "{least_m} at {at_m:?}, step {step}");
+            // Wishes towards the block, and past it.
+            let to_block = libm::atan2(-at_m.y, -at_m.x);
+            let wish = towards(to_block + wishes[(step / 20) as usize]) * mover.body.max_speed_mps;
+            let room = still(&mover.body, Position::ORIGIN, moment(step + 1));
+            let command = room.limit(&mut mover.table, &walls, wish.extend(0.0)).unwrap();
+            mover.body.velocity_mps = mover.body.reach(command);
+            at_m += mover.body.velocity_mps.xy() * mover.body.step_s;
+        }
     }
 }
