@@ -167,7 +167,7 @@ impl<S: Scalar> GapLimit<'_, S> {
                 break;
             }
         }
-        // The safety layer has considered obstacles for the original velocity only, without a lag.
+        // The safety layer has considered obstacles for the original velocity, without braking.
         if brakes_for_walls || v != velocity_mps {
             v = self.before(obstacles, v);
         }

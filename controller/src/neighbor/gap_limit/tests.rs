@@ -275,14 +275,14 @@ fn a_body_with_a_lag_that_leaves_one_wall_does_not_drift_into_another() {
 proptest! {
     #[test]
     fn a_body_with_inertia_or_a_lag_stops_before_walls(
-        lag_s in prop_oneof![Just(0.0), 0.02..2.0_f64], speed in 0.2..4.0_f64, most in 0.3..5.0_f64, room_m in 0.01..15.0_f64,
-        angle in -1.2..1.2_f64, corner in prop_oneof![Just(0.0), -1.4..1.4_f64],
+        lag_s in prop_oneof![Just(0.0), 0.02..2.0_f64], speed in 0.2..4.0_f64, most in 0.3..5.0_f64,
+        room_m in 0.01..9.0_f64, angle in -1.2..1.2_f64, corner in prop_oneof![Just(0.0), -1.4..1.4_f64],
     ) {
         let (least_m, last_m, own_mps) = into_a_corner(lag_s, [speed, most, room_m], [angle, corner]);
         prop_assert!(least_m > 0.0 && last_m < 0.02, "{least_m} {last_m}");
         // Along a single wall nothing holds it up.
         let along_mps = libm::sin(angle).abs() * speed;
-        prop_assert!(corner != 0.0 || own_mps.x.abs() > 0.9 * along_mps, "{own_mps:?} of {along_mps}");
+        prop_assert!(corner != 0.0 || own_mps.x.abs() >= 0.9 * along_mps, "{own_mps:?} of {along_mps}");
     }
 
     #[test]
