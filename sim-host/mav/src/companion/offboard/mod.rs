@@ -125,8 +125,28 @@ pub struct Fix {
 struct Beat {
     at: Duration,
     custom_mode: u32,
-    is_controlled: bool,
+    control: Control,
     is_armed: bool,
+}
+
+/// The external control mode in heartbeats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Control {
+    /// Another mode.
+    Pilot,
+    /// The mode, as a permission.
+    Companion,
+    /// The mode since before a restart: the pilot must leave it first.
+    Withdrawn,
+}
+
+/// The last trusted position.
+#[derive(Clone, Copy, Debug)]
+enum Position {
+    Unknown,
+    /// Kept, because it is the best estimate for others.
+    BeforeRestart(Fix),
+    OfThisBoot(Fix),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +154,35 @@ enum Ask {
     Mode,
     Arm,
     Takeoff,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Request {
+    ask: Ask,
+    attempt: u8,
+    at: Duration,
+}
+
+/// Progress of [`Entry::Once`].
+#[derive(Clone, Copy, Debug)]
+enum Entering {
+    /// Not wanted, complete, or stopped by the pilot.
+    Over,
+    Open {
+        request: Option<Request>,
+        /// Command and result of the last acknowledgement, if it was a refusal.
+        refused: Option<(u16, u8)>,
+    },
+}
+
+/// The last check of the rates at which telemetry arrives.
+#[derive(Clone, Copy, Debug)]
+struct Check {
+    next: Duration,
+    positions: u64,
+    reports: u64,
+    /// Number of checks since the first request.
+    count: u8,
 }
 
 /// Counters of a companion.
@@ -163,28 +212,20 @@ pub struct OffboardStateMachine {
     rules: Rules,
     state: State,
     beat: Option<Beat>,
-    fix: Option<Fix>,
-    is_of_boot: bool,
+    position: Position,
     health: Health,
     boot_ms: Option<u32>,
     behind: Option<(u32, u8)>,
     /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
     velocity: Option<(Duration, [f64; 3])>,
     landed: Option<u8>,
-    may_enter: bool,
-    /// Whether the mode is not a permission until it was left.
-    must_be_left: bool,
+    entering: Entering,
     quiet_until: Duration,
     streaming_since: Option<Duration>,
-    asked: Option<(Ask, u8, Duration)>,
-    refused: Option<(u16, u8)>,
     command: Option<(Duration, [f64; 3])>,
     next_heartbeat: Duration,
     next_setpoint: Duration,
-    next_look: Option<Duration>,
-    positions_at_look: u64,
-    reports_at_look: u64,
-    looks: u8,
+    check: Option<Check>,
     events: VecDeque<Event>,
     tally: OffboardCounters,
 }
@@ -199,26 +240,22 @@ impl OffboardStateMachine {
             rules,
             state: State::Silent,
             beat: None,
-            fix: None,
-            is_of_boot: false,
+            position: Position::Unknown,
             health: Health::default(),
             boot_ms: None,
             behind: None,
             velocity: None,
             landed: None,
-            may_enter: rules.entry == Entry::Once,
-            must_be_left: false,
+            entering: match rules.entry {
+                Entry::Wait => Entering::Over,
+                Entry::Once => Entering::Open { request: None, refused: None },
+            },
             quiet_until: Duration::ZERO,
             streaming_since: None,
-            asked: None,
-            refused: None,
             command: None,
             next_heartbeat: Duration::ZERO,
             next_setpoint: Duration::ZERO,
-            next_look: None,
-            positions_at_look: 0,
-            reports_at_look: 0,
-            looks: 0,
+            check: None,
             events: VecDeque::new(),
             tally: OffboardCounters::default(),
         }
@@ -239,14 +276,18 @@ impl OffboardStateMachine {
     /// Last trusted position, of any age and any boot.
     #[must_use]
     pub const fn fix(&self) -> Option<Fix> {
-        self.fix
+        match self.position {
+            Position::Unknown => None,
+            Position::BeforeRestart(fix) | Position::OfThisBoot(fix) => Some(fix),
+        }
     }
 
     /// Last position, if it is fresh and trusted.
     #[must_use]
     pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
-        let fix = self.fix.filter(|_| self.is_of_boot && self.health.is_trusted(now));
-        fix.filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
+        let Position::OfThisBoot(fix) = self.position else { return None };
+        let is_fresh = now.saturating_sub(fix.at) <= self.rules.stale;
+        (is_fresh && self.health.is_trusted(now)).then_some(fix)
     }
 
     /// Takes the next event for the operator.
@@ -277,8 +318,7 @@ impl OffboardStateMachine {
                 if !self.health.is_trusted(now) {
                     return;
                 }
-                self.is_of_boot = true;
-                self.fix = Some(Fix {
+                self.position = Position::OfThisBoot(Fix {
                     at: now,
                     place: Global::from_e7(at.lat, at.lon, at.alt),
                     above_home_m: f64::from(at.relative_alt) / 1e3,
@@ -326,31 +366,36 @@ impl OffboardStateMachine {
     fn restarted(&mut self) {
         self.tally.restarts += 1;
         self.events.push_back(Event::Restarted);
-        self.must_be_left = self.beat.is_some_and(|beat| beat.is_controlled);
+        if let Some(Beat { control: control @ Control::Companion, .. }) = &mut self.beat {
+            *control = Control::Withdrawn;
+        }
         self.end_entry(None);
-        // The last position is kept: it is the best estimate for others.
-        self.is_of_boot = false;
+        self.position = self.fix().map_or(Position::Unknown, Position::BeforeRestart);
         self.health = Health::default();
-        (self.velocity, self.landed) = (None, None);
-        self.next_look = None;
+        (self.velocity, self.landed, self.check) = (None, None, None);
     }
 
     fn heartbeat(&mut self, custom_mode: u32, base_mode: u8, now: Duration) {
         const CUSTOM: u8 = 1;
         const ARMED: u8 = 128;
-        let is_controlled = base_mode & CUSTOM != 0 && self.kind.is_outside_control(custom_mode);
-        let beat = Beat { at: now, custom_mode, is_controlled, is_armed: base_mode & ARMED != 0 };
+        let is_withdrawn = self.beat.is_some_and(|last| last.control == Control::Withdrawn);
+        let control = match base_mode & CUSTOM != 0 && self.kind.is_outside_control(custom_mode) {
+            false => Control::Pilot,
+            true if is_withdrawn => Control::Withdrawn,
+            true => Control::Companion,
+        };
+        let beat = Beat { at: now, custom_mode, control, is_armed: base_mode & ARMED != 0 };
         self.tally.heartbeats += 1;
         if let Some(last) = self.beat {
             if now.saturating_sub(last.at) > self.rules.link_lost {
                 self.events.push_back(Event::Back(now.saturating_sub(last.at)));
-                self.next_look = None;
+                self.check = None;
             }
             let is_changed = last.custom_mode != custom_mode;
-            if is_changed && !is_controlled || last.is_armed && !beat.is_armed {
+            if is_changed && control == Control::Pilot || last.is_armed && !beat.is_armed {
                 self.end_entry(Some(Event::PilotActs));
             }
-            if last.is_controlled && !is_controlled {
+            if last.control != Control::Pilot && control == Control::Pilot {
                 self.quiet_until = now + QUIET;
                 self.streaming_since = None;
                 if self.state.has_control() {
@@ -359,33 +404,27 @@ impl OffboardStateMachine {
                 }
             }
         }
-        if !is_controlled {
-            self.must_be_left = false;
-        }
         self.beat = Some(beat);
         self.settle(now);
     }
 
     fn end_entry(&mut self, event: Option<Event>) {
-        if self.may_enter {
+        if let Entering::Open { .. } = std::mem::replace(&mut self.entering, Entering::Over) {
             self.events.extend(event);
         }
-        self.may_enter = false;
-        self.asked = None;
     }
 
     fn acknowledged(&mut self, command: u16, result: u8) {
         const IN_PROGRESS: u8 = 5;
-        let is_own = [out::DO_SET_MODE, out::ARM_DISARM, out::NAV_TAKEOFF].contains(&command);
-        let is_done = result == 0 || result == IN_PROGRESS;
-        if !is_own || self.asked.is_none() {
+        let Entering::Open { request: Some(_), refused: last } = &mut self.entering else { return };
+        if ![out::DO_SET_MODE, out::ARM_DISARM, out::NAV_TAKEOFF].contains(&command) {
             return;
         }
-        let refused = (!is_done).then_some((command, result));
-        if let Some((command, result)) = refused.filter(|_| refused != self.refused) {
+        let refused = (result != 0 && result != IN_PROGRESS).then_some((command, result));
+        if refused.is_some() && refused != *last {
             self.events.push_back(Event::Refused { command, result });
         }
-        self.refused = refused;
+        *last = refused;
     }
 
     /// A takeoff must be complete: takeoff and landing belong to the pilot or the entry.
@@ -395,7 +434,7 @@ impl OffboardStateMachine {
         }
         let has_begun = self.state.has_control();
         let [_, _, down_mps] = fix.velocity_ned_mps;
-        let asked_m = self.rules.altitude_m.filter(|_| self.may_enter && self.rules.takeoff);
+        let asked_m = self.rules.altitude_m.filter(|_| self.is_entering() && self.rules.takeoff);
         let is_up = match asked_m {
             Some(altitude_m) => fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5),
             None => has_begun || -down_mps < CLIMB_OVER_MPS,
@@ -407,11 +446,15 @@ impl OffboardStateMachine {
         }
     }
 
+    const fn is_entering(&self) -> bool {
+        matches!(self.entering, Entering::Open { .. })
+    }
+
     fn is_taking_off(&self) -> bool {
         match self.landed {
             Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
             Some(MAV_LANDED_STATE_ON_GROUND) => false,
-            _ => self.fix.is_some_and(|fix| self.is_of_boot && fix.above_home_m >= LOW_M),
+            _ => matches!(self.position, Position::OfThisBoot(fix) if fix.above_home_m >= LOW_M),
         }
     }
 
@@ -426,12 +469,11 @@ impl OffboardStateMachine {
         if self.rules.rehearses {
             return if fix.is_some() { State::Steering } else { State::NoPosition };
         }
-        let enters = self.may_enter && fix.is_some() && (beat.is_armed || self.rules.arm);
-        if !beat.is_controlled {
-            return if enters { State::Entering } else { State::Pilot };
-        }
-        if self.must_be_left {
-            return State::Restarted;
+        let enters = self.is_entering() && fix.is_some() && (beat.is_armed || self.rules.arm);
+        match beat.control {
+            Control::Pilot => return if enters { State::Entering } else { State::Pilot },
+            Control::Withdrawn => return State::Restarted,
+            Control::Companion => {}
         }
         if !beat.is_armed {
             return if enters { State::Entering } else { State::Disarmed };
