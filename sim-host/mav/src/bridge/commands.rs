@@ -109,7 +109,7 @@ impl Vehicle {
             }
             MAV_CMD_NAV_LAND if self.model.flies => {
                 self.needs_arms()?;
-                self.enter(FlightMode::Land, out);
+                self.enter(FlightMode::LAND, out);
                 Ok(())
             }
             MAV_CMD_NAV_RETURN_TO_LAUNCH => {
@@ -174,8 +174,8 @@ impl Vehicle {
             return Ok(());
         }
         self.is_armed = arms;
-        if !arms {
-            self.is_on_mission = false;
+        if let (false, FlightMode::Mission { .. }) = (arms, self.mode) {
+            self.mode = FlightMode::Auto;
         }
         self.begin(out);
         let text = if arms { "armed" } else { "disarmed" };
@@ -355,10 +355,7 @@ impl Vehicle {
         if self.mission.current() == 0 || self.mission.is_complete() {
             self.mission.set_current(1);
         }
-        self.enter(FlightMode::Auto, out);
-        self.is_on_mission = true;
-        out.actions.clear();
-        self.begin_item(out);
+        self.enter(FlightMode::Mission { there_since_us: None }, out);
         Ok(())
     }
 
@@ -366,7 +363,7 @@ impl Vehicle {
         if !self.mission.set_current(seq.max(1)) || seq >= self.mission.len() {
             return Err(MAV_RESULT_DENIED);
         }
-        if self.is_on_mission {
+        if let FlightMode::Mission { .. } = self.mode {
             self.begin_item(out);
         }
         Ok(())

@@ -36,7 +36,7 @@ impl Item {
 impl Vehicle {
     /// Starts the current item, and the next one if it finishes at once; at most once through all.
     pub(super) fn begin_item(&mut self, out: &mut Out) {
-        self.there_since_us = None;
+        self.mode = FlightMode::Mission { there_since_us: None };
         loop {
             let item = self.mission.item(self.mission.current()).copied();
             let Some(item) = item else {
@@ -47,11 +47,7 @@ impl Vehicle {
                     self.mission.complete();
                     return self.enter(FlightMode::Return, out);
                 }
-                MAV_CMD_NAV_LAND => {
-                    self.enter(FlightMode::Land, out);
-                    self.is_landing_item = true;
-                    return;
-                }
+                MAV_CMD_NAV_LAND => return self.enter(FlightMode::Land { is_item: true }, out),
                 NAV_DELAY => return out.actions.push(Action::Wish(Wish::Hold)),
                 MAV_CMD_DO_CHANGE_SPEED => self.limit_speed(item.params[1], out),
                 command if OF_CAMERAS.contains(&command) => {
@@ -77,7 +73,7 @@ impl Vehicle {
         let has_next = self.mission.set_current(seq + 1);
         if !has_next {
             self.mission.complete();
-            self.is_on_mission = false;
+            self.mode = FlightMode::Auto;
             out.actions.push(Action::Wish(Wish::Hold));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
         }
@@ -96,11 +92,10 @@ impl Vehicle {
     }
 
     pub(super) fn finish_landing(&mut self, out: &mut Out) {
-        if core::mem::take(&mut self.is_landing_item) {
-            self.mission.complete();
-            let seq = self.mission.current();
-            out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
-        }
+        self.mode = FlightMode::LAND;
+        self.mission.complete();
+        let seq = self.mission.current();
+        out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
     }
 
     pub(super) fn advance_mission(&mut self, out: &mut Out) {
@@ -118,7 +113,8 @@ impl Vehicle {
             return;
         }
         let now = self.sample.time_us;
-        let since = *self.there_since_us.get_or_insert(now);
+        let FlightMode::Mission { there_since_us } = &mut self.mode else { return };
+        let since = *there_since_us.get_or_insert(now);
         if ((now - since) as f64) < libm::round(f64::from(item.wait_s()) * 1e6) {
             return;
         }
@@ -128,7 +124,8 @@ impl Vehicle {
     }
 
     pub(super) fn stop_mission(&mut self, out: &mut Out) {
-        if core::mem::take(&mut self.is_on_mission) {
+        if let FlightMode::Mission { .. } = self.mode {
+            self.mode = FlightMode::Auto;
             out.actions.push(Action::Wish(Wish::Hold));
             self.text(out, Kind::News, MAV_SEVERITY_NOTICE, "mission ended: holding");
         }

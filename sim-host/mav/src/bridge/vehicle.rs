@@ -63,9 +63,6 @@ pub struct Vehicle {
     pub(super) mode: FlightMode,
     pub(super) is_armed: bool,
     starts_armed: bool,
-    pub(super) is_on_mission: bool,
-    pub(super) there_since_us: Option<u64>,
-    pub(super) is_landing_item: bool,
     pub(super) ordered: Ordered,
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
@@ -108,9 +105,6 @@ impl Vehicle {
             mode: if starts_armed { FlightMode::Auto } else { FlightMode::Hold },
             is_armed: starts_armed,
             starts_armed,
-            is_on_mission: false,
-            there_since_us: None,
-            is_landing_item: false,
             ordered: Ordered::default(),
             texts: [None; Kind::COUNT],
             now_us: 0,
@@ -305,7 +299,7 @@ impl Vehicle {
         let answer = match message {
             MavMessage::MISSION_COUNT(told) => {
                 // An upload would replace the items of the active mission.
-                if self.is_on_mission && told.mission_type == MAV_MISSION_TYPE_MISSION {
+                if told.mission_type == MAV_MISSION_TYPE_MISSION {
                     self.stop_mission(out);
                 }
                 self.mission.count(from, told, now_us)
@@ -371,12 +365,12 @@ impl Vehicle {
     }
 
     pub(super) fn enter(&mut self, mode: FlightMode, out: &mut Out) {
-        if mode != self.mode {
-            let text = format!("mode {}", mode.name(self.model.flies));
+        let flies = self.model.flies;
+        if mode.number(flies) != self.mode.number(flies) {
+            let text = format!("mode {}", mode.name(flies));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
         }
         self.mode = mode;
-        (self.is_on_mission, self.is_landing_item) = (false, false);
         self.begin(out);
     }
 
@@ -384,14 +378,14 @@ impl Vehicle {
         let [x, y, z] = self.sample.position_m;
         let wish = match self.mode {
             _ if !self.is_armed => Wish::Off,
-            FlightMode::Auto if self.is_on_mission => return self.begin_item(out),
+            FlightMode::Mission { .. } => return self.begin_item(out),
             FlightMode::Auto => Wish::Own,
             FlightMode::Guided | FlightMode::Hold => Wish::Hold,
             FlightMode::Return => {
                 let [home_x, home_y, _] = self.home_m;
                 self.goal([home_x, home_y, z]).unwrap_or(Wish::Hold)
             }
-            FlightMode::Land => self.goal([x, y, 0.0]).unwrap_or(Wish::Hold),
+            FlightMode::Land { .. } => self.goal([x, y, 0.0]).unwrap_or(Wish::Hold),
         };
         out.actions.push(Action::Wish(wish));
     }
@@ -426,19 +420,21 @@ impl Vehicle {
         }
         let [x, y, z] = self.sample.position_m;
         match self.mode {
-            FlightMode::Land if self.is_at([x, y, 0.0], 0.0) => {
+            FlightMode::Land { is_item } if self.is_at([x, y, 0.0], 0.0) => {
                 self.is_armed = false;
                 self.begin(out);
-                self.finish_landing(out);
+                if is_item {
+                    self.finish_landing(out);
+                }
                 self.text(out, Kind::News, MAV_SEVERITY_INFO, "landed, disarmed");
             }
             FlightMode::Return if self.model.flies => {
                 let [home_x, home_y, _] = self.home_m;
                 if self.is_at([home_x, home_y, z], 0.0) {
-                    self.enter(FlightMode::Land, out);
+                    self.enter(FlightMode::LAND, out);
                 }
             }
-            FlightMode::Auto if self.is_on_mission => self.advance_mission(out),
+            FlightMode::Mission { .. } => self.advance_mission(out),
             _ => {}
         }
     }
