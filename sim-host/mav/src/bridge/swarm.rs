@@ -10,7 +10,7 @@ use super::report::{BridgeReport, LineReport, Refused, name};
 use super::streams::Streams;
 use super::vehicle::{Action, Out, Vehicle};
 use crate::geo::Origin;
-use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog};
+use crate::{Endpoint, Lines, OpenError, Received, Tlog};
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::mavlink_core::Message as _;
@@ -390,9 +390,7 @@ impl Swarm {
             if let Some(log) = &mut self.log {
                 log.add(&frame)?;
             }
-            for line in 0..self.lines.len() {
-                self.lines.send(line, &frame);
-            }
+            self.lines.send_all(&frame);
         }
         Ok(answers)
     }
@@ -400,20 +398,10 @@ impl Swarm {
     fn report(mut self) -> BridgeReport {
         let wall_seconds = self.began.elapsed().as_secs_f64();
         self.lines.close();
-        let line = |at: usize| {
-            let Counts { frames_in, bytes_in, frames_out, bytes_out, junk_bytes, lost_in, lost_out } =
-                self.lines.counts(at);
-            LineReport {
-                endpoint: self.options.endpoints[at].to_string(),
-                frames_in,
-                bytes_in,
-                frames_out,
-                bytes_out,
-                lost_out,
-                lost_in,
-                junk_bytes,
-                bytes_out_per_s: bytes_out as f64 / wall_seconds.max(1e-9),
-            }
+        let line = |(at, endpoint): (usize, &Endpoint)| {
+            let counts = self.lines.counts(at);
+            let bytes_out_per_s = counts.bytes_out as f64 / wall_seconds.max(1e-9);
+            LineReport { endpoint: endpoint.to_string(), counts, bytes_out_per_s }
         };
         let outcome = self.engine.outcome();
         let gap = outcome.clearance.map(|clearance| clearance.bodies_m);
@@ -432,7 +420,7 @@ impl Swarm {
             frames_waiting: self.lines.waiting(),
             is_exhausted: self.is_exhausted(),
             commands: self.commands.clone(),
-            lines: (0..self.lines.len()).map(line).collect(),
+            lines: self.options.endpoints.iter().enumerate().map(line).collect(),
             collisions: outcome.collisions,
             least_gap_m: gap.filter(|gap| gap.is_finite()),
             trace_hash: format!("{:016x}", outcome.trace_hash),

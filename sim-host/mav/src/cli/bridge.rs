@@ -1,6 +1,6 @@
-use crate::Endpoint;
-use crate::bridge::{BridgeReport, Options, Refused, Swarm};
+use crate::bridge::{BridgeReport, LineReport, Options, Refused, Swarm};
 use crate::geo::{Global as Place, Origin};
+use crate::{Counts, Endpoint};
 use anyhow::Result;
 use clap::Args;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
@@ -223,17 +223,12 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
         "\n{:<32}{:>10}{:>10}{:>12}{:>8}{:>12}{:>8}",
         "line", "frames in", "out", "kB/s out", "lost", "junk bytes", "lost in"
     )?;
-    for line in &report.lines {
+    for LineReport { endpoint, counts, bytes_out_per_s } in &report.lines {
+        let Counts { frames_in, frames_out, lost_out, junk_bytes, lost_in, .. } = counts;
+        let kb_per_s = bytes_out_per_s / 1000.0;
         writeln!(
             text,
-            "{:<32}{:>10}{:>10}{:>12.1}{:>8}{:>12}{:>8}",
-            line.endpoint,
-            line.frames_in,
-            line.frames_out,
-            line.bytes_out_per_s / 1000.0,
-            line.lost_out,
-            line.junk_bytes,
-            line.lost_in
+            "{endpoint:<32}{frames_in:>10}{frames_out:>10}{kb_per_s:>12.1}{lost_out:>8}{junk_bytes:>12}{lost_in:>8}",
         )?;
     }
     Ok(text)
