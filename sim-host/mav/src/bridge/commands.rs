@@ -9,9 +9,11 @@
 //!
 //! Parameters that a command does not use may have any value, NaN included.
 
+use super::items::{fault_without_place, has_no_place};
+use super::mission::{Item, ack};
 use super::model::FlightMode;
 use super::params::Meaning;
-use super::vehicle::{Action, Out, Vehicle};
+use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::geo::Global;
 use staya_controller::parameters::SPEED;
 use staya_mavlink::constants::*;
@@ -26,11 +28,11 @@ const STANDING_MPS: f64 = 0.05;
 pub(super) type Refusal = u8;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
-    pub(super) frame: u8,
-    pub(super) x: i32,
-    pub(super) y: i32,
-    pub(super) z: f32,
+struct Spot {
+    frame: u8,
+    x: i32,
+    y: i32,
+    z: f32,
 }
 
 struct Command {
@@ -179,7 +181,7 @@ impl Vehicle {
         }
         self.begin(out);
         let text = if arms { "armed" } else { "disarmed" };
-        self.text(out, super::vehicle::Kind::News, MAV_SEVERITY_INFO, text);
+        self.text(out, Kind::News, MAV_SEVERITY_INFO, text);
         Ok(())
     }
 
@@ -206,7 +208,7 @@ impl Vehicle {
         };
         if result.is_err() {
             let text = "unknown mode";
-            self.text(out, super::vehicle::Kind::News, MAV_SEVERITY_WARNING, text);
+            self.text(out, Kind::News, MAV_SEVERITY_WARNING, text);
         }
     }
 
@@ -250,16 +252,9 @@ impl Vehicle {
         Ok(())
     }
 
-    pub(super) fn guided_item(
-        &mut self,
-        from: Sender,
-        current: u8,
-        item: &super::mission::Item,
-        out: &mut Out,
-    ) -> MavMessage {
-        let spot = Spot { frame: item.frame, x: item.x, y: item.y, z: item.z };
+    pub(super) fn guided_item(&mut self, from: Sender, current: u8, item: &Item, out: &mut Out) -> MavMessage {
         let is_goto = current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
-        let result = match self.item_place_of(spot) {
+        let result = match self.item_place(item) {
             Some(_) if !is_goto || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             Some(_) if !self.is_armed || self.mode != FlightMode::Guided => MAV_MISSION_ERROR,
             Some(place) => match self.goal(place) {
@@ -271,7 +266,7 @@ impl Vehicle {
             },
             None => MAV_MISSION_INVALID_PARAM5_X,
         };
-        super::mission::ack(from, MAV_MISSION_TYPE_MISSION, result)
+        ack(from, MAV_MISSION_TYPE_MISSION, result)
     }
 
     pub(super) fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
@@ -307,24 +302,21 @@ impl Vehicle {
         if is_low && is_above_ground { Ok(place_m) } else { Err(MAV_RESULT_DENIED) }
     }
 
-    pub(super) fn item_place(&self, item: &super::mission::Item) -> Option<[f64; 3]> {
-        self.item_place_of(Spot { frame: item.frame, x: item.x, y: item.y, z: item.z })
-    }
-
-    fn item_place_of(&self, spot: Spot) -> Option<[f64; 3]> {
-        if spot.frame == MAV_FRAME_LOCAL_NED {
-            let [north, east] = [spot.x, spot.y].map(|x| f64::from(x) / 1e4);
-            let up = if self.model.flies { -f64::from(spot.z) } else { 0.0 };
+    pub(super) fn item_place(&self, item: &Item) -> Option<[f64; 3]> {
+        let Item { frame, x, y, z, .. } = *item;
+        if frame == MAV_FRAME_LOCAL_NED {
+            let [north, east] = [x, y].map(|x| f64::from(x) / 1e4);
+            let up = if self.model.flies { -f64::from(z) } else { 0.0 };
             return (0.0..=f64::from(HIGHEST_M)).contains(&up).then_some([east, north, up]);
         }
-        self.global_place(spot).ok()
+        self.global_place(Spot { frame, x, y, z }).ok()
     }
 
-    pub(super) fn item_fault(&self, item: &super::mission::Item) -> u8 {
+    pub(super) fn item_fault(&self, item: &Item) -> u8 {
         let is_known = match item.command {
             MAV_CMD_NAV_WAYPOINT => true,
             MAV_CMD_NAV_RETURN_TO_LAUNCH => return MAV_MISSION_ACCEPTED,
-            _ if item.has_no_place() && !self.model.in_formation => return item.fault(),
+            _ if has_no_place(item) && !self.model.in_formation => return fault_without_place(item),
             MAV_CMD_NAV_LAND if self.model.flies => return MAV_MISSION_ACCEPTED,
             MAV_CMD_NAV_TAKEOFF => self.model.flies,
             _ => false,
@@ -337,7 +329,7 @@ impl Vehicle {
                 | MAV_FRAME_GLOBAL_INT
                 | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
         );
-        let [hold_s, ..] = item.params;
+        let hold_s = item.param1;
         match self.item_place(item) {
             _ if !is_known || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             _ if !is_frame => MAV_MISSION_UNSUPPORTED_FRAME,

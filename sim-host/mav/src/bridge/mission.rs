@@ -10,98 +10,45 @@ pub(super) const MAV_MISSION_INVALID_PARAM2: u8 = 7;
 const PATIENCE_US: u64 = 700_000;
 const TRIES: u8 = 6;
 
-/// A mission item as in MISSION_ITEM_INT: 1e-7 degrees, or 1e-4 metres in local frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Item {
-    pub command: u16,
-    pub frame: u8,
-    pub autocontinue: u8,
-    pub params: [f32; 4],
-    pub x: i32,
-    pub y: i32,
-    pub z: f32,
+/// A mission item: 1e-7 degrees, or 1e-4 metres in local frames.
+pub type Item = MISSION_ITEM_INT_DATA;
+
+const fn scale(frame: u8) -> f64 {
+    match frame {
+        MAV_FRAME_LOCAL_NED | MAV_FRAME_LOCAL_OFFSET_NED => 1e4,
+        _ => 1e7,
+    }
 }
 
-impl Item {
-    const fn scale(frame: u8) -> f64 {
-        match frame {
-            MAV_FRAME_LOCAL_NED | MAV_FRAME_LOCAL_OFFSET_NED => 1e4,
-            _ => 1e7,
-        }
-    }
+/// A position that is not finite becomes one that fails validation.
+#[must_use]
+pub fn from_float(item: &MISSION_ITEM_DATA) -> Item {
+    let int = |x: f32| match x.is_finite() {
+        true => libm::round(f64::from(x) * scale(item.frame)) as i32,
+        false => i32::MAX,
+    };
+    let MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, command, frame, autocontinue, .. } = *item;
+    Item { param1, param2, param3, param4, x: int(x), y: int(y), z, command, frame, autocontinue, ..Item::DEFAULT }
+}
 
-    #[must_use]
-    pub const fn from_int(item: &MISSION_ITEM_INT_DATA) -> Self {
-        Self {
-            command: item.command,
-            frame: item.frame,
-            autocontinue: item.autocontinue,
-            params: [item.param1, item.param2, item.param3, item.param4],
-            x: item.x,
-            y: item.y,
-            z: item.z,
-        }
-    }
-
-    /// A position that is not finite becomes one that fails validation.
-    #[must_use]
-    pub fn from_float(item: &MISSION_ITEM_DATA) -> Self {
-        let int = |x: f32| match x.is_finite() {
-            true => libm::round(f64::from(x) * Self::scale(item.frame)) as i32,
-            false => i32::MAX,
-        };
-        Self {
-            command: item.command,
-            frame: item.frame,
-            autocontinue: item.autocontinue,
-            params: [item.param1, item.param2, item.param3, item.param4],
-            x: int(item.x),
-            y: int(item.y),
-            z: item.z,
-        }
-    }
-
-    const fn to_int(self, seq: u16, current: bool, to: Sender) -> MISSION_ITEM_INT_DATA {
-        let [param1, param2, param3, param4] = self.params;
-        MISSION_ITEM_INT_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            x: self.x,
-            y: self.y,
-            z: self.z,
-            seq,
-            command: self.command,
-            target_system: to.system,
-            target_component: to.component,
-            frame: self.frame,
-            current: current as u8,
-            autocontinue: self.autocontinue,
-            mission_type: MAV_MISSION_TYPE_MISSION,
-        }
-    }
-
-    fn to_float(self, seq: u16, current: bool, to: Sender) -> MISSION_ITEM_DATA {
-        let [param1, param2, param3, param4] = self.params;
-        let float = |x: i32| (f64::from(x) / Self::scale(self.frame)) as f32;
-        MISSION_ITEM_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            x: float(self.x),
-            y: float(self.y),
-            z: self.z,
-            seq,
-            command: self.command,
-            target_system: to.system,
-            target_component: to.component,
-            frame: self.frame,
-            current: u8::from(current),
-            autocontinue: self.autocontinue,
-            mission_type: MAV_MISSION_TYPE_MISSION,
-        }
+fn to_float(item: Item) -> MISSION_ITEM_DATA {
+    let float = |x: i32| (f64::from(x) / scale(item.frame)) as f32;
+    MISSION_ITEM_DATA {
+        param1: item.param1,
+        param2: item.param2,
+        param3: item.param3,
+        param4: item.param4,
+        x: float(item.x),
+        y: float(item.y),
+        z: item.z,
+        seq: item.seq,
+        command: item.command,
+        target_system: item.target_system,
+        target_component: item.target_component,
+        frame: item.frame,
+        current: item.current,
+        autocontinue: item.autocontinue,
+        mission_type: item.mission_type,
     }
 }
 
@@ -249,12 +196,15 @@ impl Mission {
         let Some(item) = item.filter(|_| mission_type == MAV_MISSION_TYPE_MISSION) else {
             return ack(from, mission_type, MAV_MISSION_INVALID_SEQUENCE);
         };
-        let is_current = seq == self.current;
-        if as_int {
-            MavMessage::MISSION_ITEM_INT(item.to_int(seq, is_current, from))
-        } else {
-            MavMessage::MISSION_ITEM(item.to_float(seq, is_current, from))
-        }
+        let item = Item {
+            seq,
+            current: u8::from(seq == self.current),
+            target_system: from.system,
+            target_component: from.component,
+            mission_type: MAV_MISSION_TYPE_MISSION,
+            ..item.clone()
+        };
+        if as_int { MavMessage::MISSION_ITEM_INT(item) } else { MavMessage::MISSION_ITEM(to_float(item)) }
     }
 
     pub fn clear(&mut self, from: Sender, mission_type: u8) -> MavMessage {
@@ -300,7 +250,7 @@ mod tests {
     }
 
     fn item(x: i32) -> Item {
-        Item { command: MAV_CMD_NAV_WAYPOINT, x, ..Item::default() }
+        Item { command: MAV_CMD_NAV_WAYPOINT, x, ..Item::DEFAULT }
     }
 
     /// The requested item, or the negative result if the transfer ended.
@@ -384,12 +334,12 @@ mod tests {
     fn both_item_messages_describe_the_same_item() {
         for (frame, x) in [(MAV_FRAME_GLOBAL, 12.5), (MAV_FRAME_LOCAL_NED, -3.25)] {
             let float = MISSION_ITEM_DATA { frame, x, y: 7.0, z: 1.5, seq: 4, ..MISSION_ITEM_DATA::DEFAULT };
-            let kept = Item::from_float(&float);
-            assert_eq!(kept.y, (7.0 * Item::scale(frame)) as i32);
-            let back = kept.to_float(4, false, Sender::default());
+            let kept = from_float(&float);
+            assert_eq!(kept.y, (7.0 * scale(frame)) as i32);
+            let back = to_float(Item { seq: 4, ..kept });
             assert_eq!((back.x, back.y, back.z, back.seq), (x, 7.0, 1.5, 4));
         }
         let nonsense = MISSION_ITEM_DATA { x: f32::NAN, ..MISSION_ITEM_DATA::DEFAULT };
-        assert_eq!(Item::from_float(&nonsense).x, i32::MAX);
+        assert_eq!(from_float(&nonsense).x, i32::MAX);
     }
 }

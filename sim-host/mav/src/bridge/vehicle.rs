@@ -4,7 +4,7 @@
 //! answered, setpoints never, as the protocol demands; a STATUSTEXT says why one was refused.
 
 use super::files;
-use super::mission::{Item, Mission};
+use super::mission::{Mission, from_float};
 use super::model::{FlightMode, Sample, VehicleModel};
 use super::ordered::Ordered;
 use super::params::{Meaning, Parameters};
@@ -304,14 +304,10 @@ impl Vehicle {
                 }
                 self.mission.count(from, told, now_us)
             }
-            MavMessage::MISSION_ITEM_INT(item) if item.current < 2 => {
-                self.take_item(from, item.seq, Item::from_int(item), out)
-            }
-            MavMessage::MISSION_ITEM(item) if item.current < 2 => {
-                self.take_item(from, item.seq, Item::from_float(item), out)
-            }
-            MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, &Item::from_int(item), out),
-            MavMessage::MISSION_ITEM(item) => self.guided_item(from, item.current, &Item::from_float(item), out),
+            MavMessage::MISSION_ITEM_INT(item) if item.current < 2 => self.take_item(from, item.seq, item.clone(), out),
+            MavMessage::MISSION_ITEM(item) if item.current < 2 => self.take_item(from, item.seq, from_float(item), out),
+            MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, item, out),
+            MavMessage::MISSION_ITEM(item) => self.guided_item(from, item.current, &from_float(item), out),
             MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
             MavMessage::MISSION_REQUEST_INT(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, true),
             MavMessage::MISSION_REQUEST(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, false),
