@@ -252,8 +252,8 @@ impl Vehicle {
         Ok(())
     }
 
-    pub(super) fn guided_item(&mut self, from: Sender, current: u8, item: &Item, out: &mut Out) -> MavMessage {
-        let is_goto = current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
+    pub(super) fn guided_item(&mut self, from: Sender, item: &Item, out: &mut Out) -> MavMessage {
+        let is_goto = item.current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
         let result = match self.item_place(item) {
             Some(_) if !is_goto || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             Some(_) if !self.is_armed || self.mode != FlightMode::Guided => MAV_MISSION_ERROR,

@@ -115,18 +115,21 @@ impl Vehicle {
         }
     }
 
-    pub(super) fn take_item(&mut self, from: Sender, seq: u16, item: Item, out: &mut Out) -> MavMessage {
+    pub(super) fn take_item(&mut self, from: Sender, item: Item, out: &mut Out) -> MavMessage {
+        if item.current >= 2 {
+            return self.guided_item(from, &item, out);
+        }
         let mut mission = core::mem::take(&mut self.mission);
         let now_us = self.now_us;
         let mut fault = MAV_MISSION_ACCEPTED;
-        let answer = mission.take(from, seq, item.clone(), now_us, |item| {
+        let answer = mission.take(from, item.clone(), now_us, |item| {
             fault = self.item_fault(item);
             fault
         });
         self.mission = mission;
         if fault != MAV_MISSION_ACCEPTED {
             // MISSION_ACK cannot say which item was invalid.
-            let text = format!("mission item {seq}: {}", self.fault_in_words(&item, fault));
+            let text = format!("mission item {}: {}", item.seq, self.fault_in_words(&item, fault));
             self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
         }
         answer

@@ -27,8 +27,10 @@ pub fn from_float(item: &MISSION_ITEM_DATA) -> Item {
         true => libm::round(f64::from(x) * scale(item.frame)) as i32,
         false => i32::MAX,
     };
-    let MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, command, frame, autocontinue, .. } = *item;
-    Item { param1, param2, param3, param4, x: int(x), y: int(y), z, command, frame, autocontinue, ..Item::DEFAULT }
+    let MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, seq, command, frame, .. } = *item;
+    let MISSION_ITEM_DATA { current, autocontinue, .. } = *item;
+    let (x, y) = (int(x), int(y));
+    Item { param1, param2, param3, param4, x, y, z, seq, command, frame, current, autocontinue, ..Item::DEFAULT }
 }
 
 fn to_float(item: Item) -> MISSION_ITEM_DATA {
@@ -128,22 +130,15 @@ impl Mission {
     }
 
     /// Returns the answer to an uploaded item; `fault` returns a MAV_MISSION_RESULT, 0 if valid.
-    pub fn take(
-        &mut self,
-        from: Sender,
-        seq: u16,
-        item: Item,
-        now_us: u64,
-        fault: impl FnOnce(&Item) -> u8,
-    ) -> MavMessage {
+    pub fn take(&mut self, from: Sender, item: Item, now_us: u64, fault: impl FnOnce(&Item) -> u8) -> MavMessage {
         let upload = self.upload.as_mut();
         let Some(upload) = upload.filter(|upload| same(upload.from, from)) else {
             return ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_INVALID_SEQUENCE);
         };
         let next = upload.items.len() as u16;
-        if seq == next {
+        if item.seq == next {
             // Home is never flown to, so it needs no validation.
-            let fault = if seq == 0 { 0 } else { fault(&item) };
+            let fault = if item.seq == 0 { 0 } else { fault(&item) };
             if fault != 0 {
                 self.upload = None;
                 return ack(from, MAV_MISSION_TYPE_MISSION, fault);
@@ -267,7 +262,7 @@ mod tests {
     }
 
     fn give(mission: &mut Mission, seq: u16) -> i32 {
-        wanted(&mission.take(GCS, seq, item(seq.into()), 0, |_| 0))
+        wanted(&mission.take(GCS, Item { seq, ..item(seq.into()) }, 0, |_| 0))
     }
 
     #[test]
@@ -320,12 +315,12 @@ mod tests {
         let other = Sender { system: 254, ..GCS };
         let refused = ended(MAV_MISSION_DENIED);
         assert_eq!(wanted(&mission.count(other, &count(2), 0)), refused);
-        let taken = mission.take(other, 0, item(0), 0, |_| 0);
+        let taken = mission.take(other, item(0), 0, |_| 0);
         assert_eq!(wanted(&taken), ended(MAV_MISSION_INVALID_SEQUENCE));
         assert_eq!(wanted(&mission.count(GCS, &count(2), 0)), 0);
-        let home = mission.take(GCS, 0, item(0), 0, |_| MAV_MISSION_UNSUPPORTED);
+        let home = mission.take(GCS, item(0), 0, |_| MAV_MISSION_UNSUPPORTED);
         assert_eq!(wanted(&home), 1, "home may be anything");
-        let bad = mission.take(GCS, 1, item(1), 0, |_| MAV_MISSION_UNSUPPORTED);
+        let bad = mission.take(GCS, Item { seq: 1, ..item(1) }, 0, |_| MAV_MISSION_UNSUPPORTED);
         assert_eq!(wanted(&bad), ended(MAV_MISSION_UNSUPPORTED));
         assert_eq!(mission, Mission::default());
     }
@@ -336,7 +331,7 @@ mod tests {
             let float = MISSION_ITEM_DATA { frame, x, y: 7.0, z: 1.5, seq: 4, ..MISSION_ITEM_DATA::DEFAULT };
             let kept = from_float(&float);
             assert_eq!(kept.y, (7.0 * scale(frame)) as i32);
-            let back = to_float(Item { seq: 4, ..kept });
+            let back = to_float(kept);
             assert_eq!((back.x, back.y, back.z, back.seq), (x, 7.0, 1.5, 4));
         }
         let nonsense = MISSION_ITEM_DATA { x: f32::NAN, ..MISSION_ITEM_DATA::DEFAULT };

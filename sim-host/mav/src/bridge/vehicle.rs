@@ -304,10 +304,8 @@ impl Vehicle {
                 }
                 self.mission.count(from, told, now_us)
             }
-            MavMessage::MISSION_ITEM_INT(item) if item.current < 2 => self.take_item(from, item.seq, item.clone(), out),
-            MavMessage::MISSION_ITEM(item) if item.current < 2 => self.take_item(from, item.seq, from_float(item), out),
-            MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, item, out),
-            MavMessage::MISSION_ITEM(item) => self.guided_item(from, item.current, &from_float(item), out),
+            MavMessage::MISSION_ITEM_INT(item) => self.take_item(from, item.clone(), out),
+            MavMessage::MISSION_ITEM(item) => self.take_item(from, from_float(item), out),
             MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
             MavMessage::MISSION_REQUEST_INT(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, true),
             MavMessage::MISSION_REQUEST(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, false),
