@@ -3,6 +3,7 @@
 use super::model::FlightMode;
 use super::params::Meaning;
 use super::vehicle::{Action, Kind, Out, Vehicle};
+use crate::framed::framed;
 use crate::geo::{Global, enu};
 use staya_controller::agent::{Grid, GridOrder, Protocol as _, Waypoint, Wish};
 use staya_controller::geom::Vec3;
@@ -10,7 +11,7 @@ use staya_controller::time::Duration;
 use staya_controller::wire::{Addressed, Content as _, Frame, Header, Message};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
-use staya_mavlink::frame::{MAX_FRAME_LEN, Sender, encode_message};
+use staya_mavlink::frame::Sender;
 use staya_mavlink::wire::decode;
 
 /// Kind of an order in `STAYA_MESSAGE`.
@@ -175,7 +176,7 @@ impl Vehicle {
 }
 
 /// An order as robots receive it; `None` for any other message.
-fn order(from: Sender, message: &MavMessage) -> Option<Frame> {
+fn order(mut from: Sender, message: &MavMessage) -> Option<Frame> {
     let is_order = match message {
         MavMessage::STAYA_GOAL(_) | MavMessage::STAYA_PLACE(_) | MavMessage::STAYA_TEMPLATE(_) => true,
         MavMessage::STAYA_MESSAGE(message) => message.kind == ORDER,
@@ -184,7 +185,5 @@ fn order(from: Sender, message: &MavMessage) -> Option<Frame> {
     if !is_order {
         return None;
     }
-    let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-    encode_message(from, message, &mut frame).ok()?;
-    decode(&frame).ok()
+    decode(&framed(&mut from, message, None)?).ok()
 }

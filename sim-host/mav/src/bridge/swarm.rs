@@ -9,10 +9,12 @@ use super::params::Parameters;
 use super::report::{BridgeReport, LineReport, Refused, name};
 use super::streams::Streams;
 use super::vehicle::{Action, Out, Vehicle};
+use crate::framed::framed;
 use crate::geo::Origin;
 use crate::{Endpoint, Lines, OpenError, Received, Tlog};
+use staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1;
 use staya_mavlink::dialect::MavMessage;
-use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
+use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::{Signing, Verdict};
 use staya_sim::engine::{Moment, Operated, operated};
@@ -82,7 +84,7 @@ pub struct Swarm {
     engine: Box<dyn Operated>,
     vehicles: Vec<Vehicle>,
     boots: Vec<u8>,
-    sequences: Vec<u8>,
+    senders: Vec<Sender>,
     model: Arc<VehicleModel>,
     lines: Lines,
     options: Options,
@@ -116,6 +118,8 @@ impl Swarm {
         let model = Arc::new(VehicleModel::new(scenario, options.origin));
         let count = numbers.len();
         let mut vehicles = Vec::with_capacity(count);
+        let sender = |system: &u32| Sender { system: *system as u8, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 };
+        let senders = numbers.iter().map(sender).collect();
         for (index, number) in numbers.into_iter().enumerate() {
             let sample = Sample::new(0, &engine.observation(index));
             let vehicle = Vehicle::new(
@@ -139,7 +143,7 @@ impl Swarm {
         let listing = Budget::per_second(parameters_per_s(&options.endpoints));
         Ok(Self {
             boots: vec![0; count],
-            sequences: vec![0; count],
+            senders,
             engine,
             vehicles,
             model,
@@ -370,23 +374,8 @@ impl Swarm {
         }
         let answers = self.out.messages.len();
         for message in self.out.messages.drain(..) {
-            let sequence = &mut self.sequences[index];
-            let sender = Sender {
-                system: self.vehicles[index].system(),
-                component: staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1,
-                sequence: *sequence,
-            };
-            *sequence = sequence.wrapping_add(1);
-            let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-            if encode_message(sender, &message, &mut frame).is_err() {
-                continue;
-            }
-            if let Some(signing) = &mut self.options.signing {
-                match signing.sign(&mut frame) {
-                    Ok(signature) => drop(frame.extend_from_slice(&signature)),
-                    Err(_) => continue,
-                }
-            }
+            let signing = self.options.signing.as_mut();
+            let Some(frame) = framed(&mut self.senders[index], &message, signing) else { continue };
             if let Some(log) = &mut self.log {
                 log.add(&frame)?;
             }

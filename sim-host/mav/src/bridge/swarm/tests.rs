@@ -48,13 +48,8 @@ impl Client {
     }
 
     fn framed(&mut self, message: &MavMessage) -> Vec<u8> {
-        let sender = Sender { system: 255, component: 190, sequence: 0 };
-        let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        encode_message(sender, message, &mut frame).expect("room");
-        if let Some(signing) = &mut self.signing {
-            let signature = signing.sign(&mut frame).expect("a timestamp");
-            frame.extend_from_slice(&signature).expect("room");
-        }
+        let mut sender = Sender { system: 255, component: 190, sequence: 0 };
+        let frame = framed(&mut sender, message, self.signing.as_mut()).expect("a timestamp");
         frame.to_vec()
     }
 

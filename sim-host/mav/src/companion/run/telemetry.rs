@@ -1,4 +1,4 @@
-use super::{Companions, FEW_TIMESTAMPS, LOOK, Vehicle, shown, status_text};
+use super::{Companions, FEW_TIMESTAMPS, LOOK, Link, Vehicle, shown, status_text};
 use crate::companion::config::Config;
 use crate::companion::offboard::{AUTOPILOT, State};
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
@@ -6,7 +6,6 @@ use staya_controller::agent::Event as AgentEvent;
 use staya_controller::robot::Mode;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::Sender;
-use staya_mavlink::signing::Signing;
 use std::time::Duration;
 
 const SHOWN: Duration = Duration::from_secs(1);
@@ -59,7 +58,7 @@ impl Companions<'_> {
 
     pub(super) fn look_at_timestamps(&mut self) {
         for line in 0..self.links.len() {
-            let is_ending = self.signing_of(line).is_some_and(|signing| signing.left() < FEW_TIMESTAMPS);
+            let is_ending = self.links[line].signing.as_ref().is_some_and(|signing| signing.left() < FEW_TIMESTAMPS);
             if !is_ending || std::mem::replace(&mut self.links[line].is_end_told, true) {
                 continue;
             }
@@ -118,10 +117,6 @@ impl Companions<'_> {
         }
     }
 
-    fn signing_at(&self, line: usize) -> Option<&Signing> {
-        self.signing.as_ref()?.get(line)
-    }
-
     pub(super) fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
         let vehicles = self.vehicles.iter().map(|vehicle| VehicleReport {
             robot: vehicle.setup.robot.0,
@@ -136,14 +131,13 @@ impl Companions<'_> {
             packets_refused: vehicle.refused,
             neighbors: vehicle.controller.neighbors(),
         });
-        let lines = if self.options.demo { &[][..] } else { &config.lines[..] };
-        let links = lines.iter().enumerate();
-        let links = links.map(|(line, endpoint)| LineReport {
-            link: endpoint.to_string(),
+        let links = self.links.iter().enumerate().filter(|_| !self.options.demo);
+        let links = links.map(|(line, Link { name, signing, .. })| LineReport {
+            link: name.clone(),
             counts: self.machine.counts(line),
             trouble: self.machine.trouble(line),
-            refused: self.signing_at(line).map_or(0, |signing| signing.counts().refused()),
-            is_exhausted: self.signing_at(line).is_some_and(|signing| signing.left() == 0),
+            refused: signing.as_ref().map_or(0, |signing| signing.counts().refused()),
+            is_exhausted: signing.as_ref().is_some_and(|signing| signing.left() == 0),
         });
         CompanionReport {
             scenario: config.scenario.name.clone(),
