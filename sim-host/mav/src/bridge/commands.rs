@@ -79,7 +79,6 @@ impl Vehicle {
             target_system: from.system,
             target_component: from.component,
         }));
-        out.results.push(result);
         out.messages.append(&mut after.messages);
         out.actions.append(&mut after.actions);
     }

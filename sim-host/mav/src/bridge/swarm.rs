@@ -173,19 +173,11 @@ impl Swarm {
     }
 
     /// Runs until the ticks are used up or `is_over` returns true. `is_over` receives the number of
-    /// finished ticks and is called every few milliseconds.
+    /// finished ticks and is called every few milliseconds, `onlooker` after each tick.
     ///
     /// # Errors
     /// [`BridgeError::Log`] if the log cannot be written.
-    pub fn run(self, is_over: impl FnMut(u32) -> bool) -> Result<BridgeReport, BridgeError> {
-        self.run_watched(is_over, &mut |_, _| {})
-    }
-
-    /// Runs like [`Swarm::run`], and calls `onlooker` after each tick.
-    ///
-    /// # Errors
-    /// [`BridgeError::Log`] if the log cannot be written.
-    pub fn run_watched(
+    pub fn run(
         mut self,
         mut is_over: impl FnMut(u32) -> bool,
         onlooker: &mut Onlooker<'_>,
@@ -369,11 +361,11 @@ impl Swarm {
             let value = self.engine.parameter(index, name);
             self.vehicles[index].set_back(name, value, &mut self.out);
         }
-        for result in self.out.results.drain(..) {
-            *self.commands.entry(name(result)).or_default() += 1;
-        }
         let answers = self.out.messages.len();
         for message in self.out.messages.drain(..) {
+            if let MavMessage::COMMAND_ACK(ack) = &message {
+                *self.commands.entry(name(ack.result)).or_default() += 1;
+            }
             let signing = self.options.signing.as_mut();
             let Some(frame) = framed(&mut self.senders[index], &message, signing) else { continue };
             if let Some(log) = &mut self.log {

@@ -43,8 +43,6 @@ pub struct Out {
     pub messages: Vec<MavMessage>,
     /// Actions to perform in this order before the next tick.
     pub actions: Vec<Action>,
-    /// Results of the commands answered in this call.
-    pub results: Vec<u8>,
 }
 
 /// The vehicle that clients see for one robot.

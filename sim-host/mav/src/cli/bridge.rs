@@ -128,7 +128,7 @@ impl BridgeArgs {
             }
             stop.is_requested()
         };
-        let report = swarm.run_watched(is_over, &mut |moment, robots| {
+        let report = swarm.run(is_over, &mut |moment, robots| {
             if let Some(page) = &mut page {
                 page.tick(moment, robots);
             }

@@ -2,13 +2,14 @@ use super::{number, signing};
 use crate::Endpoint;
 use crate::formation::station::{Given, Members, Places, give, numbers};
 use crate::formation::{Graph, Order, Shape};
+use crate::tlog::micros_since_1970;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, print, print_json};
 use staya_controller::grid::{Cell, Dir};
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// Send a new shape or goal to a formation over MAVLink.
 ///
@@ -125,9 +126,8 @@ impl FormationArgs {
             Wanted::Graph(graph) => Ok(graph),
         };
         let mut signing = signing(self.key.as_deref(), 2)?;
-        let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         // Every call gets a new boot counter, so robots accept its version 1.
-        let order = Order { goal: self.goal, to_all: true, boot: (since.as_millis() / 100) as u8, version: 1 };
+        let order = Order { goal: self.goal, to_all: true, boot: (micros_since_1970() / 100_000) as u8, version: 1 };
         let members = Members { robots: self.robots.clone(), places: self.places, heading: self.heading };
         let wait = Duration::from_secs_f64(self.wait);
         let given =
@@ -137,12 +137,7 @@ impl FormationArgs {
         } else {
             print(&self.table(&given))?;
         }
-        let robots = given.robots.iter().copied();
-        let silent: BTreeSet<u8> = robots
-            .filter(|robot| {
-                !given.placed.contains(robot) || (self.goal.is_some() && !given.heading_for_goal.contains(robot))
-            })
-            .collect();
+        let silent = given.silent(self.goal.is_some());
         if let Some((robot, objection)) = given.objections.first() {
             bail!("robot {robot}: {objection}; add [robots.formation] to the scenario");
         }

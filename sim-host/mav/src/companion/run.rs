@@ -14,12 +14,13 @@ pub use sight::{Seen, Sight};
 use super::config::{Config, VehicleSetup};
 use super::controller::Controller;
 use super::medium::{Medium, MediumSetup, tunnel, tunnelled};
-use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, Rules, State, status_text};
+use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
 use crate::framed::framed;
 use crate::geo::{Origin, ned};
+use crate::tlog::micros_since_1970;
 use crate::{Endpoint, Lines, Received};
 use demo::Demo;
 use machine::{Host, Machine};
@@ -29,6 +30,7 @@ use staya_mavlink::any::AnyWire;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::signing::Signing;
+use staya_mavlink::wire::COMPONENT;
 use staya_sim::engine::PlaneGround;
 use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
@@ -127,11 +129,6 @@ fn rules(setup: &VehicleSetup, options: &Options) -> Rules {
     let Rules { stale, .. } = setup.rules;
     let stale = if options.dry_run { stale.max(SELDOM) } else { stale };
     Rules { rehearses: options.dry_run, stale, ..setup.rules }
-}
-
-fn micros_since_1970() -> u128 {
-    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
-    now.map_or(0, |time| time.as_micros())
 }
 
 impl<'a> Companions<'a> {
@@ -375,7 +372,7 @@ impl<'a> Companions<'a> {
         if steers {
             let velocity = ned(vehicle.controller.velocity_mps());
             vehicle.offboard.steer(velocity, now);
-            let is_there = vehicle.controller.mode() == Mode::Arrived;
+            let is_there = vehicle.controller.agent().mode() == Mode::Arrived;
             if is_there && !vehicle.has_arrived {
                 self.tell(index, "arrived");
             }

@@ -35,6 +35,15 @@ pub struct Given {
     pub frames: usize,
 }
 
+impl Given {
+    /// Robots that have not confirmed their places, or the goal if they got one.
+    #[must_use]
+    pub fn silent(&self, has_goal: bool) -> BTreeSet<u8> {
+        let confirms = |robot: &u8| self.placed.contains(robot) && (!has_goal || self.heading_for_goal.contains(robot));
+        self.robots.iter().copied().filter(|robot| !confirms(robot)).collect()
+    }
+}
+
 /// Why no orders were sent.
 #[derive(Debug, thiserror::Error)]
 pub enum StationError {
@@ -260,9 +269,7 @@ pub fn give(
         let again = Instant::now() + EVERY;
         while Instant::now() < again {
             station.listen();
-            let Given { robots, placed, heading_for_goal, objections, .. } = &station.given;
-            let has_all = placed.is_superset(robots) && (order.goal.is_none() || heading_for_goal.is_superset(robots));
-            if has_all || !objections.is_empty() {
+            if station.given.silent(order.goal.is_some()).is_empty() || !station.given.objections.is_empty() {
                 return Ok(station.given);
             }
         }

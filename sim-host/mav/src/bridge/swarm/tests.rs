@@ -97,7 +97,7 @@ fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
         }
     }
     std::thread::scope(|scope| {
-        let run = scope.spawn(|| swarm.run(|_| is_over.load(Ordering::Relaxed)));
+        let run = scope.spawn(|| swarm.run(|_| is_over.load(Ordering::Relaxed), &mut |_, _| {}));
         let ends = Ends(&is_over);
         test();
         drop(ends);

@@ -15,23 +15,22 @@ mod poll;
 
 pub use event::Event;
 pub use health::Doubt;
-pub use out::{ARM_DISARM, DO_SET_MODE, NAV_TAKEOFF, SET_MESSAGE_INTERVAL, status_text};
+pub use out::status_text;
 
 use super::kind::Kind;
 use crate::geo::Global;
 use health::Health;
 use serde::{Deserialize, Serialize};
 use staya_mavlink::constants::{
+    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_COMP_ID_AUTOPILOT1,
     MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_LANDING, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
 };
 use staya_mavlink::dialect::MavMessage;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Component id of the companion, `MAV_COMP_ID_ONBOARD_COMPUTER`.
-pub const COMPONENT: u8 = 191;
 /// Component id of the autopilot.
-pub const AUTOPILOT: u8 = 1;
+pub const AUTOPILOT: u8 = MAV_COMP_ID_AUTOPILOT1;
 
 const HEARTBEAT: Duration = Duration::from_secs(1);
 const QUIET: Duration = Duration::from_secs(5);
@@ -417,7 +416,7 @@ impl OffboardStateMachine {
     fn acknowledged(&mut self, command: u16, result: u8) {
         const IN_PROGRESS: u8 = 5;
         let Entering::Open { request: Some(_), refused: last } = &mut self.entering else { return };
-        if ![out::DO_SET_MODE, out::ARM_DISARM, out::NAV_TAKEOFF].contains(&command) {
+        if ![MAV_CMD_DO_SET_MODE, MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_NAV_TAKEOFF].contains(&command) {
             return;
         }
         let refused = (result != 0 && result != IN_PROGRESS).then_some((command, result));

@@ -2,11 +2,14 @@
 
 use super::machine::Machine;
 use crate::companion::config::{Config, VehicleSetup};
-use crate::companion::offboard::{ARM_DISARM, AUTOPILOT, DO_SET_MODE, Entry, NAV_TAKEOFF, SET_MESSAGE_INTERVAL};
+use crate::companion::offboard::{AUTOPILOT, Entry};
 use crate::framed::framed;
 use crate::geo::{Origin, enu, ned};
 use crate::{Counts, Peer, Received, Tlog};
-use staya_mavlink::constants::{MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF};
+use staya_mavlink::constants::{
+    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
+    MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
+};
 use staya_mavlink::dialect::{
     COMMAND_ACK_DATA, COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
     GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavMessage,
@@ -201,10 +204,10 @@ impl Autopilot {
 
     fn obey(&mut self, command: &COMMAND_LONG_DATA) {
         match command.command {
-            DO_SET_MODE => self.is_controlled = command.param2 == self.setup.kind.outside_control() as f32,
-            ARM_DISARM => self.is_armed = command.param1 != 0.0,
-            NAV_TAKEOFF if !self.is_flying() => self.climb_to_m = Some(command.param7.into()),
-            SET_MESSAGE_INTERVAL if command.param1 == GLOBAL_POSITION_INT_DATA::ID as f32 => {
+            MAV_CMD_DO_SET_MODE => self.is_controlled = command.param2 == self.setup.kind.outside_control() as f32,
+            MAV_CMD_COMPONENT_ARM_DISARM => self.is_armed = command.param1 != 0.0,
+            MAV_CMD_NAV_TAKEOFF if !self.is_flying() => self.climb_to_m = Some(command.param7.into()),
+            MAV_CMD_SET_MESSAGE_INTERVAL if command.param1 == GLOBAL_POSITION_INT_DATA::ID as f32 => {
                 self.position_every = Duration::from_micros(command.param2.max(0.0) as u64);
             }
             _ => {}

@@ -123,13 +123,13 @@ impl Companions<'_> {
             system: vehicle.setup.system,
             autopilot: vehicle.setup.kind,
             state: vehicle.offboard.state(),
-            agent: vehicle.controller.mode(),
+            agent: vehicle.controller.agent().mode(),
             has_arrived: vehicle.has_arrived,
             position_m: vehicle.offboard.fix().and_then(|fix| self.origin.to_enu_m(&fix.place)),
             tally: vehicle.offboard.tally(),
             packets_heard: vehicle.heard,
             packets_refused: vehicle.refused,
-            neighbors: vehicle.controller.neighbors(),
+            neighbors: vehicle.controller.agent().neighbors().len(),
         });
         let links = self.links.iter().enumerate().filter(|_| !self.options.demo);
         let links = links.map(|(line, Link { name, signing, .. })| LineReport {
