@@ -182,10 +182,11 @@ macro_rules! messages {
                 fn deser(_: MavlinkVersion, payload: &[u8]) -> Result<Self, ParserError> {
                     // A sender omits zeros at the end.
                     let mut padded = [0; Self::ENCODED_LEN];
-                    for (byte, sent) in padded.iter_mut().zip(payload) {
-                        *byte = *sent;
-                    }
-                    let mut rest = padded.as_slice();
+                    let whole = payload.first_chunk().unwrap_or_else(|| {
+                        padded.iter_mut().zip(payload).for_each(|(byte, sent)| *byte = *sent);
+                        &padded
+                    });
+                    let mut rest = whole.as_slice();
                     Ok(Self {
                         $($field: Field::take(&mut rest),)*
                         $($($extension: Field::take(&mut rest),)*)?

@@ -164,36 +164,22 @@ impl Vehicle {
     }
 
     fn report(&mut self, event: &Event, out: &mut Out) {
-        use MAV_SEVERITY_INFO as INFO;
-        match *event {
-            Event::ModeChanged { to: Mode::Fault, .. } => {
-                self.text(out, Kind::News, MAV_SEVERITY_ERROR, "fault: standing");
-            }
-            Event::ModeChanged { to: Mode::Arrived, .. } => self.text(out, Kind::News, INFO, "arrived"),
-            Event::NeighborLost(id) => {
-                let text = format!("robot {id} is lost");
-                self.text(out, Kind::Neighbor, INFO, &text);
-            }
-            Event::NeighborRebooted(id) => {
-                let text = format!("robot {id} has restarted");
-                self.text(out, Kind::Neighbor, INFO, &text);
-            }
-            Event::DuplicateId(id) => {
-                let text = format!("two robots use number {id}");
-                self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
-            }
+        use MAV_SEVERITY_WARNING as WARNING;
+        let (kind, severity, text) = match *event {
+            Event::ModeChanged { to: Mode::Fault, .. } => (Kind::News, MAV_SEVERITY_ERROR, "fault: standing".into()),
+            Event::ModeChanged { to: Mode::Arrived, .. } => (Kind::News, MAV_SEVERITY_INFO, "arrived".into()),
+            Event::NeighborLost(id) => (Kind::Neighbor, MAV_SEVERITY_INFO, format!("robot {id} is lost")),
+            Event::NeighborRebooted(id) => (Kind::Neighbor, MAV_SEVERITY_INFO, format!("robot {id} has restarted")),
+            Event::DuplicateId(id) => (Kind::News, WARNING, format!("two robots use number {id}")),
             Event::Implausible { id, claim } => {
-                let text = format!("robot {id} reports implausible {claim}");
-                self.text(out, Kind::Neighbor, MAV_SEVERITY_WARNING, &text);
+                (Kind::Neighbor, WARNING, format!("robot {id} reports implausible {claim}"))
             }
-            Event::ContactLost => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "contact to all robots lost"),
-            Event::Muted => {
-                let text = "robot cannot send: give it a new key";
-                self.text(out, Kind::Neighbor, MAV_SEVERITY_ERROR, text);
-            }
-            Event::NoRoute => self.text(out, Kind::Route, MAV_SEVERITY_WARNING, "no open route to the goal"),
-            _ => {}
-        }
+            Event::ContactLost => (Kind::News, WARNING, "contact to all robots lost".into()),
+            Event::Muted => (Kind::Neighbor, MAV_SEVERITY_ERROR, "robot cannot send: give it a new key".into()),
+            Event::NoRoute => (Kind::Route, WARNING, "no open route to the goal".into()),
+            _ => return,
+        };
+        self.text(out, kind, severity, &text);
     }
 
     /// All kinds but `News` are limited in rate.

@@ -148,6 +148,19 @@ enum Position {
     OfThisBoot(Fix),
 }
 
+/// What the autopilot said since its last restart.
+#[derive(Clone, Debug, Default)]
+struct Boot {
+    health: Health,
+    /// Largest time since boot.
+    time_ms: Option<u32>,
+    /// The last message behind that time, and how many in a row rose.
+    behind: Option<(u32, u8)>,
+    /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
+    velocity: Option<(Duration, [f64; 3])>,
+    landed: Option<u8>,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ask {
     Mode,
@@ -212,12 +225,7 @@ pub struct OffboardStateMachine {
     state: State,
     beat: Option<Beat>,
     position: Position,
-    health: Health,
-    boot_ms: Option<u32>,
-    behind: Option<(u32, u8)>,
-    /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
-    velocity: Option<(Duration, [f64; 3])>,
-    landed: Option<u8>,
+    boot: Boot,
     entering: Entering,
     quiet_until: Duration,
     streaming_since: Option<Duration>,
@@ -240,11 +248,7 @@ impl OffboardStateMachine {
             state: State::Silent,
             beat: None,
             position: Position::Unknown,
-            health: Health::default(),
-            boot_ms: None,
-            behind: None,
-            velocity: None,
-            landed: None,
+            boot: Boot::default(),
             entering: match rules.entry {
                 Entry::Wait => Entering::Over,
                 Entry::Once => Entering::Open { request: None, refused: None },
@@ -286,7 +290,7 @@ impl OffboardStateMachine {
     pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
         let Position::OfThisBoot(fix) = self.position else { return None };
         let is_fresh = now.saturating_sub(fix.at) <= self.rules.stale;
-        (is_fresh && self.health.is_trusted(now)).then_some(fix)
+        (is_fresh && self.boot.health.is_trusted(now)).then_some(fix)
     }
 
     /// Takes the next event for the operator.
@@ -310,11 +314,12 @@ impl OffboardStateMachine {
                     return;
                 }
                 let fine = self
+                    .boot
                     .velocity
                     .filter(|(heard, _)| now.saturating_sub(*heard).as_secs_f64() * self.rules.position_hz <= 2.0);
                 let coarse = [at.vx, at.vy, at.vz].map(|v| f64::from(v) / 100.0);
                 self.tally.positions += 1;
-                if !self.health.is_trusted(now) {
+                if !self.boot.health.is_trusted(now) {
                     return;
                 }
                 self.position = Position::OfThisBoot(Fix {
@@ -327,13 +332,13 @@ impl OffboardStateMachine {
             MavMessage::LOCAL_POSITION_NED(at) if self.is_in_order(at.time_boot_ms) => {
                 let velocity = [at.vx, at.vy, at.vz];
                 if velocity.iter().all(|v| v.is_finite()) {
-                    self.velocity = Some((now, velocity.map(f64::from)));
+                    self.boot.velocity = Some((now, velocity.map(f64::from)));
                 }
             }
-            MavMessage::EXTENDED_SYS_STATE(state) => self.landed = Some(state.landed_state),
+            MavMessage::EXTENDED_SYS_STATE(state) => self.boot.landed = Some(state.landed_state),
             MavMessage::COMMAND_ACK(ack) => self.acknowledged(ack.command, ack.result),
             _ => {
-                if let Some(doubt) = self.health.hear(message, now) {
+                if let Some(doubt) = self.boot.health.hear(message, now) {
                     self.tally.doubts += 1;
                     self.events.push_back(Event::Doubts(doubt));
                     self.settle(now);
@@ -344,12 +349,12 @@ impl OffboardStateMachine {
 
     /// Returns false for a reordered message.
     fn is_in_order(&mut self, boot_ms: u32) -> bool {
-        let since = self.boot_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
+        let since = self.boot.time_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
         match since {
             Some(ms) if (-OVERTAKEN_MS..0).contains(&ms) => {
-                let rising = self.behind.filter(|(last, _)| boot_ms > *last);
+                let rising = self.boot.behind.filter(|(last, _)| boot_ms > *last);
                 let count = rising.map_or(1, |(_, count)| count.saturating_add(1));
-                self.behind = Some((boot_ms, count));
+                self.boot.behind = Some((boot_ms, count));
                 if count < BEHIND {
                     return false;
                 }
@@ -358,7 +363,7 @@ impl OffboardStateMachine {
             Some(ms) if !(0..=DAY_MS).contains(&ms) => self.restarted(),
             _ => {}
         }
-        (self.boot_ms, self.behind) = (Some(boot_ms), None);
+        (self.boot.time_ms, self.boot.behind) = (Some(boot_ms), None);
         true
     }
 
@@ -370,8 +375,8 @@ impl OffboardStateMachine {
         }
         self.end_entry(None);
         self.position = self.fix().map_or(Position::Unknown, Position::BeforeRestart);
-        self.health = Health::default();
-        (self.velocity, self.landed, self.check) = (None, None, None);
+        self.boot = Boot::default();
+        self.check = None;
     }
 
     fn heartbeat(&mut self, custom_mode: u32, base_mode: u8, now: Duration) {
@@ -438,7 +443,7 @@ impl OffboardStateMachine {
             Some(altitude_m) => fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5),
             None => has_begun || -down_mps < CLIMB_OVER_MPS,
         };
-        match self.landed {
+        match self.boot.landed {
             Some(MAV_LANDED_STATE_ON_GROUND | MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_LANDING) => false,
             Some(MAV_LANDED_STATE_IN_AIR) => is_up,
             _ => fix.above_home_m >= LOW_M && is_up,
@@ -450,7 +455,7 @@ impl OffboardStateMachine {
     }
 
     fn is_taking_off(&self) -> bool {
-        match self.landed {
+        match self.boot.landed {
             Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
             Some(MAV_LANDED_STATE_ON_GROUND) => false,
             _ => matches!(self.position, Position::OfThisBoot(fix) if fix.above_home_m >= LOW_M),
@@ -479,7 +484,7 @@ impl OffboardStateMachine {
         }
         let Some(fix) = fix else {
             return match self.state {
-                State::Steering | State::Stopped | State::Distrusted if !self.health.is_trusted(now) => {
+                State::Steering | State::Stopped | State::Distrusted if !self.boot.health.is_trusted(now) => {
                     State::Distrusted
                 }
                 State::Distrusted => State::Distrusted,

@@ -24,34 +24,29 @@ pub fn heartbeat() -> MavMessage {
     })
 }
 
-fn command(system: u8, command: u16, params: [f64; 7]) -> MavMessage {
-    let [param1, param2, param3, param4, param5, param6, param7] = params.map(|p| p as f32);
+fn command(system: u8, command: u16, params: [f64; 2], height_m: f64) -> MavMessage {
+    let [param1, param2] = params.map(|p| p as f32);
     MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
         param1,
         param2,
-        param3,
-        param4,
-        param5,
-        param6,
-        param7,
+        param7: height_m as f32,
         command,
         target_system: system,
         target_component: AUTOPILOT,
-        confirmation: 0,
+        ..COMMAND_LONG_DATA::DEFAULT
     })
 }
 
 pub fn set_mode(system: u8, kind: Kind) -> MavMessage {
-    let mode = f64::from(kind.outside_control());
-    command(system, MAV_CMD_DO_SET_MODE, [1.0, mode, 0.0, 0.0, 0.0, 0.0, 0.0])
+    command(system, MAV_CMD_DO_SET_MODE, [1.0, f64::from(kind.outside_control())], 0.0)
 }
 
 pub fn arm(system: u8) -> MavMessage {
-    command(system, MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    command(system, MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0], 0.0)
 }
 
 pub fn takeoff(system: u8, altitude_m: f64) -> MavMessage {
-    command(system, MAV_CMD_NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, altitude_m])
+    command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)
 }
 
 /// Positions, and from flying vehicles the landed state at 2 Hz.
@@ -71,7 +66,7 @@ pub fn health_intervals(system: u8, kind: Kind) -> impl Iterator<Item = MavMessa
 }
 
 fn interval(system: u8, id: u32, hz: f64) -> MavMessage {
-    command(system, MAV_CMD_SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0])
+    command(system, MAV_CMD_SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz], 0.0)
 }
 
 /// Below 0.05 m/s an ArduPilot rover also gets a yaw rate of 0: it derives its heading from the

@@ -1,6 +1,5 @@
 use super::{
-    Ask, Check, Control, Entering, Event, HEARTBEAT, Health, OffboardCounters, OffboardStateMachine, Request, Rules,
-    State, out,
+    Ask, Check, Control, Entering, Event, HEARTBEAT, OffboardCounters, OffboardStateMachine, Request, Rules, State, out,
 };
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
@@ -90,8 +89,8 @@ impl OffboardStateMachine {
         if self.check.is_some_and(|last| now < last.next || self.rules.rehearses) {
             return;
         }
-        let Self { system, kind, tally: OffboardCounters { positions, .. }, health: Health { reports, .. }, .. } =
-            *self;
+        let Self { system, kind, tally: OffboardCounters { positions, .. }, .. } = *self;
+        let reports = self.boot.health.reports;
         let wanted = self.rules.position_hz * LOOK.as_secs_f64();
         if self.check.is_none_or(|last| ((positions - last.positions) as f64) < wanted / 2.0) {
             out.extend(out::intervals(system, kind, self.rules.position_hz));

@@ -93,28 +93,25 @@ impl Companions<'_> {
     }
 
     pub(super) fn tell_of(&mut self, index: usize, event: AgentEvent) {
-        match event {
-            AgentEvent::NeighborFound(id) => self.tell(index, &format!("found robot {}", id.0)),
-            AgentEvent::NeighborLost(id) => self.tell(index, &format!("lost robot {id}")),
-            AgentEvent::DuplicateId(id) => {
-                self.tell(index, &format!("two robots use number {id}; give one of them another number"))
-            }
-            AgentEvent::Implausible { id, claim } => {
-                self.tell(index, &format!("ignores robot {id}: implausible {claim}"));
-            }
-            AgentEvent::ContactLost => self.tell(index, "lost contact to all robots"),
+        let text = match event {
+            AgentEvent::NeighborFound(id) => format!("found robot {id}"),
+            AgentEvent::NeighborLost(id) => format!("lost robot {id}"),
+            AgentEvent::DuplicateId(id) => format!("two robots use number {id}; give one of them another number"),
+            AgentEvent::Implausible { id, claim } => format!("ignores robot {id}: implausible {claim}"),
+            AgentEvent::ContactLost => "lost contact to all robots".into(),
             AgentEvent::Muted => {
                 self.tell(index, "cannot send: packet counters or timestamps are used up; give a new key (air.key)");
-                self.send(index, &status_text("staya: cannot send, new swarm key needed", true));
+                return self.send(index, &status_text("staya: cannot send, new swarm key needed", true));
             }
-            AgentEvent::NoRoute => self.tell(index, "no open route to the goal"),
+            AgentEvent::NoRoute => "no open route to the goal".into(),
             AgentEvent::ModeChanged { to: Mode::Fault, .. }
                 if self.vehicles[index].offboard.state() == State::Steering =>
             {
-                self.tell(index, "stopped: off the scenario's map, or without a goal");
+                "stopped: off the scenario's map, or without a goal".into()
             }
-            _ => {}
-        }
+            _ => return,
+        };
+        self.tell(index, &text);
     }
 
     pub(super) fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
