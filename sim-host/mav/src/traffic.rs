@@ -4,6 +4,7 @@ use std::io;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 pub(super) const GLANCE: Duration = Duration::from_millis(50);
@@ -92,6 +93,13 @@ impl Shared {
             counts.lost_in += u64::from(!self.inbox.put(received, is_known));
         }
     }
+}
+
+/// The sending side of an open link, and its threads.
+pub(super) type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
+
+pub(super) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
+    thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
 pub(super) trait Outgoing: Send + Sync {

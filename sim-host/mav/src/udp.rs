@@ -1,11 +1,11 @@
 use super::inbox::Peer;
-use super::traffic::{GLANCE, Outgoing, Shared};
+use super::traffic::{GLANCE, Opened, Outgoing, Shared, start};
 use socket2::SockRef;
 use std::collections::HashMap;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{self, JoinHandle};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Ground stations send at 1 Hz.
@@ -14,8 +14,6 @@ pub(super) const PEERS: usize = 16;
 const YIELD: Duration = Duration::from_secs(5);
 /// The system may give less.
 const KEPT: usize = 4 << 20;
-
-type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
 
 #[derive(Clone, Default)]
 struct Believed(Arc<Mutex<HashMap<SocketAddr, Instant>>>);
@@ -92,7 +90,7 @@ fn read(
     socket.set_read_timeout(Some(GLANCE))?;
     let _ = SockRef::from(&socket).set_recv_buffer_size(KEPT);
     let shared = shared.clone();
-    thread::Builder::new().name(String::from("udp")).spawn(move || {
+    start("udp", move || {
         let mut buffer = vec![0; 65_536];
         while !shared.is_closed() {
             // Errors report a timeout or an earlier datagram that was rejected; both are harmless.

@@ -12,7 +12,7 @@
 use super::items::{fault_without_place, has_no_place};
 use super::mission::{Item, ack};
 use super::model::FlightMode;
-use super::params::Meaning;
+use super::params::NotSet;
 use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::geo::Global;
 use staya_controller::parameters::SPEED;
@@ -269,12 +269,11 @@ impl Vehicle {
     }
 
     pub(super) fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
-        let speed = Meaning::Controller(SPEED.name);
-        if self.parameters.get(speed).is_none() {
-            return Err(MAV_RESULT_UNSUPPORTED);
+        match self.parameters.set_setting(SPEED.name, speed_mps) {
+            Ok(_) => {}
+            Err(NotSet::Unknown) => return Err(MAV_RESULT_UNSUPPORTED),
+            Err(NotSet::OutOf(_)) => return Err(MAV_RESULT_DENIED),
         }
-        let set = self.parameters.set_meaning(speed, speed_mps);
-        set.map_err(|_| MAV_RESULT_DENIED)?;
         out.actions.push(Action::Set(SPEED.name, speed_mps));
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Setpoints, and the dialect's orders to a formation. The protocol defines no answers to them.
 
 use super::model::FlightMode;
-use super::params::Meaning;
+use super::params::SETPOINT_TIMEOUT;
 use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::framed::framed;
 use crate::geo::{Global, enu};
@@ -132,7 +132,7 @@ impl Vehicle {
         if self.model.grid.is_some() && velocity_mps.is_some() {
             return Err("setpoint: no velocities on a grid");
         }
-        let timeout_s = self.parameters.get(Meaning::SetpointTimeout).unwrap_or(0.0);
+        let timeout_s = self.parameters.get(SETPOINT_TIMEOUT).unwrap_or(0.0);
         let valid = Duration::from_micros((timeout_s * 1e6) as i32);
         let velocity_mps = velocity_mps.map(|v| {
             let [x, y, z] = v.map(|v| v as f32);

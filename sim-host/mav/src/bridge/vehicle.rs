@@ -7,7 +7,7 @@ use super::files;
 use super::mission::{Mission, from_float};
 use super::model::{FlightMode, Sample, VehicleModel};
 use super::ordered::Ordered;
-use super::params::{Meaning, Parameters};
+use super::params::Parameters;
 use super::streams::Streams;
 use crate::geo::FAR_M;
 use staya_controller::agent::{Event, Waypoint, Wish};
@@ -338,8 +338,7 @@ impl Vehicle {
     }
 
     pub(super) fn tolerance_m(&self) -> f32 {
-        let tolerance = Meaning::Controller(TOLERANCE.name);
-        self.parameters.get(tolerance).unwrap_or(0.0)
+        self.parameters.get(TOLERANCE.name).unwrap_or(0.0)
     }
 
     pub(super) fn enter(&mut self, mode: FlightMode, out: &mut Out) {

@@ -22,7 +22,7 @@ const RADIUS: u8 = 16;
 #[serde(deny_unknown_fields)]
 struct ConfigFile {
     scenario: PathBuf,
-    origin: OriginTable,
+    origin: Global,
     #[serde(default)]
     air: AirTable,
     link_key: Option<PathBuf>,
@@ -30,15 +30,6 @@ struct ConfigFile {
     rules: RulesTable,
     #[serde(default)]
     vehicle: Vec<VehicleTable>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OriginTable {
-    latitude_deg: f64,
-    longitude_deg: f64,
-    #[serde(default)]
-    altitude_m: f64,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -159,12 +150,7 @@ impl Config {
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
         let file: ConfigFile = source.read(LIST)?;
-        let origin = Origin::new(Global {
-            latitude_deg: file.origin.latitude_deg,
-            longitude_deg: file.origin.longitude_deg,
-            altitude_m: file.origin.altitude_m,
-        });
-        let origin = origin.ok_or_else(|| {
+        let origin = Origin::new(file.origin).ok_or_else(|| {
             let remedy = "give latitude_deg from -90 to 90 and longitude_deg from -180 to 180";
             source.error("origin", "not a position on the Earth", remedy)
         })?;
