@@ -240,7 +240,7 @@ messages! {
         payload_type: u16, target_system: u8, target_component: u8, payload_length: u8,
         payload: [u8; 128],
     }
-    /// Position, velocity and state of a robot, and what its law says. Sent once per period.
+    /// Position, velocity and state of a robot, with the payload of its law. Sent once per period.
     9_500_000 STAYA_BEACON(STAYA_BEACON_DATA) {
         x_mm: i32, y_mm: i32, z_mm: i32, vx_mmps: i16, vy_mmps: i16, vz_mmps: i16, radius_mm: u16,
         sequence: u16, boot: u8, mode: u8, flock: u8, protocol: u8, count: u8, bytes: [u8; 16],

@@ -1,4 +1,4 @@
-//! The macro [`messages`], and what it needs to know about the types of fields.
+//! The macro [`messages`], and the trait of the types of fields.
 
 use crc::{CRC_16_MCRF4XX, Crc, Table};
 use mavlink_core::types::CharArray;
@@ -199,7 +199,7 @@ macro_rules! messages {
                     let mut rest = &mut *bytes;
                     $(self.$field.put(&mut rest);)*
                     if let MavlinkVersion::V1 = version {
-                        return encoded_len(Self::FIELDS);
+                        return const { encoded_len(Self::FIELDS) };
                     }
                     $($(self.$extension.put(&mut rest);)*)?
                     remove_trailing_zeroes(bytes.get(..Self::ENCODED_LEN).unwrap_or_default())
@@ -305,7 +305,7 @@ macro_rules! messages {
     };
 }
 
-/// The name of a field in its XML file, if that is no name in Rust.
+/// The name of a field in its XML file; given separately if it is a keyword in Rust.
 macro_rules! wire_name {
     ($field:ident) => {
         stringify!($field)

@@ -148,7 +148,7 @@ enum Position {
     OfThisBoot(Fix),
 }
 
-/// What the autopilot said since its last restart.
+/// Telemetry since the last restart of the autopilot.
 #[derive(Clone, Debug, Default)]
 struct Boot {
     health: Health,
