@@ -3,8 +3,7 @@
 //! Unlike `mavlink-core`, which reads streams into its own buffers, this module keeps the bytes
 //! unchanged (for signatures and logs) and distinguishes foreign messages from damage.
 
-use crate::dialect::MavMessage;
-use crc::{CRC_16_MCRF4XX, Crc, Table};
+use crate::dialect::{CRC, MavMessage};
 use heapless::Vec;
 use mavlink_core::{MavlinkVersion, Message, MessageData};
 
@@ -16,8 +15,6 @@ pub const SIGNATURE_LEN: usize = 13;
 const START_V1: u8 = 0xFE;
 const START_V2: u8 = 0xFD;
 const SIGNED: u8 = 1;
-
-pub(crate) static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
 
 /// The sender of a frame and the frame's sequence number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,9 +1,7 @@
 //! MAVLink for swarms: the messages of robots and ground stations, without `std` or an allocator.
 //!
 //! [`wire`] is the wire format of a robot that uses MAVLink; [`any`] selects between all wire
-//! formats. [`frame`] finds and encodes frames in bytes. `mavlink-bindgen` generates [`dialect`]
-//! from `messages/staya.xml` (Staya's own messages) and `messages/common.xml` (the public ones that
-//! Staya uses); a test in `tests/peers` compares them.
+//! formats. [`frame`] finds and encodes frames in bytes. [`dialect`] is the table of messages.
 
 #![no_std]
 // Code that may panic is not permitted on a robot, except in tests.
@@ -41,19 +39,10 @@ pub mod wire;
 pub mod constants;
 #[allow(
     missing_docs,
-    unused_mut,
-    unused_variables,
     non_camel_case_types,
-    clippy::all,
-    clippy::disallowed_methods,
-    clippy::indexing_slicing,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::integer_division_remainder_used,
-    reason = "generated"
+    reason = "names as `mavlink-bindgen` gives them; XML files document fields"
 )]
-#[rustfmt::skip]
+#[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod dialect;
 
 pub use mavlink_core;

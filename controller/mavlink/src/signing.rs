@@ -4,7 +4,8 @@
 //! timestamp; 13 bytes including the last two. A guess is right once in 2^48 tries. See "Message
 //! Signing" in MAVLink's guide; pymavlink and MAVProxy work the same way.
 
-use crate::frame::{CRC, RawFrame, SIGNATURE_LEN};
+use crate::dialect::CRC;
+use crate::frame::{RawFrame, SIGNATURE_LEN};
 use serde::{Deserialize, Serialize};
 use staya_controller::auth::{Freshness, Key, ReplayGuard, Sha256, is_same};
 

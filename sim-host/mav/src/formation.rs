@@ -7,13 +7,13 @@
 mod nearest;
 pub mod station;
 
+use crate::framed::Frame;
 use serde::Deserialize;
 use staya_controller::agent::{Grid, GridOrder, Protocol as _, TEMPLATE, TemplatePart};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateError, rotated};
 use staya_controller::wire::{Header, Message};
-use staya_mavlink::frame::MAX_FRAME_LEN;
 use staya_mavlink::wire::{MAX_ROBOT, encode};
 use std::collections::BTreeSet;
 
@@ -245,7 +245,7 @@ pub struct Order {
 ///
 /// # Errors
 /// [`GraphError`] if the robots and places differ in number, or a robot has too many neighbours.
-pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>>, GraphError> {
+pub(crate) fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Frame>, GraphError> {
     if robots.len() != graph.robots() {
         return Err(GraphError::Count(robots.len()));
     }
@@ -268,8 +268,8 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
     }));
     let frame = |(sequence, message): (u16, &Message)| {
         let header = Header { boot: order.boot, sender: RobotId(STATION.into()), sequence };
-        let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        encode(header, message, &mut frame).ok().map(|_| frame.to_vec())
+        let mut frame = Frame::new();
+        encode(header, message, &mut frame).ok().map(|_| frame)
     };
     Ok((0..).zip(&messages).filter_map(frame).collect())
 }

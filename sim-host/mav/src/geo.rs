@@ -17,13 +17,15 @@ const E2: f64 = FLATTENING * (2.0 - FLATTENING);
 pub const FAR_M: f64 = 1_000_000.0;
 
 /// A geographic position (WGS 84).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Global {
     /// Latitude, degrees north, -90 to 90.
     pub latitude_deg: f64,
     /// Longitude, degrees east, -180 to 180.
     pub longitude_deg: f64,
     /// Altitude, metres. All positions of a swarm use the same reference, such as sea level.
+    #[serde(default)]
     pub altitude_m: f64,
 }
 

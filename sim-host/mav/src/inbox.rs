@@ -4,8 +4,10 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 pub(super) const QUEUE: usize = 512;
-const ANSWERS_PER_S: u32 = 1000;
-const ANSWERS_AT_ONCE: u32 = 1000;
+/// Time that an answer costs its source: 1000 per second.
+const ANSWER: Duration = Duration::from_millis(1);
+/// Cost at once: 1000 answers.
+const BURST: Duration = Duration::from_secs(1);
 
 /// The other end of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -74,7 +76,7 @@ impl Inbox {
             if let Some(received) = waiting.next(now) {
                 return Some(received);
             }
-            let next = waiting.paid_at.values().copied().filter_map(|at| at.checked_sub(burst()));
+            let next = waiting.paid_at.values().copied().filter_map(|at| at.checked_sub(BURST));
             let wake = next.filter(|at| *at > now).fold(until, Instant::min);
             if now >= until {
                 return None;
@@ -91,7 +93,7 @@ impl Inbox {
     /// A source above its limit is not served for a while.
     pub(super) fn charge(&self, answers: usize) {
         let mut waiting = self.lock();
-        let cost = one() * u32::try_from(answers).unwrap_or(u32::MAX).min(1 << 20);
+        let cost = ANSWER * u32::try_from(answers).unwrap_or(u32::MAX).min(1 << 20);
         if let Some(source) = waiting.served.filter(|_| !cost.is_zero()) {
             let now = Instant::now();
             waiting.paid_at.retain(|_, at| *at > now);
@@ -101,19 +103,11 @@ impl Inbox {
     }
 }
 
-fn one() -> Duration {
-    Duration::from_secs(1) / ANSWERS_PER_S
-}
-
-fn burst() -> Duration {
-    one() * ANSWERS_AT_ONCE
-}
-
 impl Waiting {
     fn next(&mut self, now: Instant) -> Option<Received> {
         for _ in 0..self.turn.len() {
             let source = self.turn.pop_front()?;
-            if self.paid_at.get(&source).is_some_and(|at| at.saturating_duration_since(now) > burst()) {
+            if self.paid_at.get(&source).is_some_and(|at| at.saturating_duration_since(now) > BURST) {
                 self.turn.push_back(source);
                 continue;
             }
@@ -179,7 +173,7 @@ mod tests {
             }
         }
         assert_eq!(next(&inbox), Some((1, 0)));
-        inbox.charge(100 * ANSWERS_AT_ONCE as usize);
+        inbox.charge(100_000);
         let order: Vec<_> = std::iter::from_fn(|| next(&inbox)).collect();
         assert_eq!(order, [(2, 0), (2, 1), (2, 2)]);
         let later = Instant::now() + Duration::from_secs(120);

@@ -12,6 +12,7 @@ pub mod cli;
 pub mod companion;
 mod endpoint;
 pub mod formation;
+mod framed;
 pub mod geo;
 mod inbox;
 mod lines;

@@ -20,7 +20,6 @@ pub struct OpenError {
 }
 
 struct Line {
-    endpoint: Endpoint,
     outgoing: Box<dyn Outgoing>,
     shared: Shared,
     threads: Vec<JoinHandle<()>>,
@@ -53,38 +52,21 @@ impl Lines {
                 Endpoint::TcpIn(address) => stream::listen(*address, &shared),
                 Endpoint::Serial(port) => stream::serial(port, &shared),
             };
-            let endpoint = endpoint.clone();
-            let (outgoing, threads) = match opened {
-                Ok(opened) => opened,
-                Err(source) => return Err(OpenError { endpoint, source }),
-            };
-            lines.lines.push(Line { endpoint, outgoing, shared, threads });
+            let (outgoing, threads) = opened.map_err(|source| OpenError { endpoint: endpoint.clone(), source })?;
+            lines.lines.push(Line { outgoing, shared, threads });
         }
         Ok(lines)
-    }
-
-    /// Number of links.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.lines.len()
-    }
-
-    /// Whether there are no links.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.lines.is_empty()
-    }
-
-    /// The endpoint of link `line`.
-    #[must_use]
-    pub fn endpoint(&self, line: usize) -> Option<&Endpoint> {
-        self.lines.get(line).map(|line| &line.endpoint)
     }
 
     /// Local address of link `line`; `None` for a serial port.
     #[must_use]
     pub fn local(&self, line: usize) -> Option<SocketAddr> {
         self.lines.get(line)?.outgoing.local()
+    }
+
+    /// Sends a frame to all peers of all links.
+    pub fn send_all(&self, frame: &[u8]) {
+        self.lines.iter().for_each(|line| line.outgoing.send(frame));
     }
 
     /// Sends a frame to all peers of a link. An unknown index does nothing.
@@ -126,17 +108,13 @@ impl Lines {
         let line = self.lines.get(line);
         line.map_or_else(Counts::default, |line| line.shared.tally.counts())
     }
-}
 
-impl Lines {
     /// Why the last connection attempt of link `line` failed; `None` without a failure.
     #[must_use]
     pub fn trouble(&self, line: usize) -> Option<String> {
         self.lines.get(line).and_then(|line| line.shared.tally.trouble())
     }
-}
 
-impl Lines {
     /// Closes all links. Frames already received remain available.
     pub fn close(&mut self) {
         for line in &self.lines {

@@ -1,5 +1,5 @@
 use super::inbox::Peer;
-use super::traffic::{GLANCE, Outgoing, Shared};
+use super::traffic::{GLANCE, Opened, Outgoing, Shared, start};
 use staya_serial::SerialPort;
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Write};
@@ -16,9 +16,6 @@ const QUEUE: usize = 1024;
 const RETRY: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_millis(500);
-
-type Threads = Vec<JoinHandle<()>>;
-type Opened = io::Result<(Box<dyn Outgoing>, Threads)>;
 
 #[derive(Clone, Default)]
 struct Peers(Arc<Mutex<HashMap<Peer, Connected>>>);
@@ -138,7 +135,7 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
     let stream = Stream { peers: peers.clone(), local: listener.local_addr().ok(), shared: shared.clone() };
     let shared = shared.clone();
     let work = move || {
-        let mut threads = Threads::new();
+        let mut threads = Vec::<JoinHandle<()>>::new();
         while !shared.is_closed() {
             threads.retain(|thread| !thread.is_finished());
             let now = Instant::now();
@@ -167,10 +164,6 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
         }
     };
     Ok((Box::new(stream), vec![start("tcpin", work)?]))
-}
-
-fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
-    thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
 pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {

@@ -39,9 +39,7 @@ impl Tlog {
     /// # Errors
     /// The file cannot be written.
     pub fn add(&mut self, frame: &[u8]) -> Result<(), Error> {
-        let now = SystemTime::now().duration_since(UNIX_EPOCH);
-        let micros = now.map_or(0, |time| time.as_micros());
-        self.add_at(u64::try_from(micros).unwrap_or(u64::MAX), frame)
+        self.add_at(micros_since_1970(), frame)
     }
 
     /// Appends a frame with a time in microseconds since 1970.
@@ -49,7 +47,7 @@ impl Tlog {
     /// # Errors
     /// The file cannot be written.
     pub fn add_at(&mut self, micros: u64, frame: &[u8]) -> Result<(), Error> {
-        self.write(micros, frame).map_err(|source| self.error(source))
+        self.write(micros, frame).map_err(Error::new("write", &self.path))
     }
 
     fn write(&mut self, micros: u64, frame: &[u8]) -> io::Result<()> {
@@ -76,12 +74,13 @@ impl Tlog {
     /// # Errors
     /// The file cannot be written.
     pub fn finish(mut self) -> Result<(), Error> {
-        self.file.flush().map_err(|source| self.error(source))
+        self.file.flush().map_err(Error::new("write", &self.path))
     }
+}
 
-    fn error(&self, source: io::Error) -> Error {
-        Error::new("write", &self.path)(source)
-    }
+pub(crate) fn micros_since_1970() -> u64 {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    now.map_or(0, |time| u64::try_from(time.as_micros()).unwrap_or(u64::MAX))
 }
 
 /// Path of the log before.

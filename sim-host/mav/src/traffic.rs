@@ -2,8 +2,9 @@ use super::inbox::{Inbox, Peer, Received};
 use staya_mavlink::frame::{Scan, scan};
 use std::io;
 use std::net::SocketAddr;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 pub(super) const GLANCE: Duration = Duration::from_millis(50);
@@ -27,51 +28,36 @@ pub struct Counts {
     pub lost_out: u64,
 }
 
+/// Counters and state of a link, shared by its threads.
 #[derive(Debug, Default)]
-pub(super) struct SharedCounts {
-    frames_in: AtomicU64,
-    bytes_in: AtomicU64,
-    frames_out: AtomicU64,
-    bytes_out: AtomicU64,
-    junk_bytes: AtomicU64,
-    lost_in: AtomicU64,
-    lost_out: AtomicU64,
-    trouble: Mutex<Option<String>>,
-}
+pub(super) struct Tally(Mutex<(Counts, Option<String>)>);
 
-fn add(counter: &AtomicU64, n: usize) {
-    counter.fetch_add(n as u64, Ordering::Relaxed);
-}
-
-impl SharedCounts {
-    pub(super) fn counts(&self) -> Counts {
-        let get = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
-        Counts {
-            frames_in: get(&self.frames_in),
-            bytes_in: get(&self.bytes_in),
-            frames_out: get(&self.frames_out),
-            bytes_out: get(&self.bytes_out),
-            junk_bytes: get(&self.junk_bytes),
-            lost_in: get(&self.lost_in),
-            lost_out: get(&self.lost_out),
-        }
+impl Tally {
+    fn lock(&self) -> MutexGuard<'_, (Counts, Option<String>)> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    pub(super) fn counts(&self) -> Counts {
+        self.lock().0
+    }
+
+    /// Keeps the error of an attempt to connect, or forgets the last one.
     pub(super) fn noting<T>(&self, tried: io::Result<T>) -> io::Result<T> {
-        *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = tried.as_ref().err().map(ToString::to_string);
+        self.lock().1 = tried.as_ref().err().map(ToString::to_string);
         tried
     }
 
     pub(super) fn trouble(&self) -> Option<String> {
-        self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.lock().1.clone()
     }
 
     pub(super) fn sent(&self, frame: &[u8], is_sent: bool) {
+        let counts = &mut self.lock().0;
         if is_sent {
-            add(&self.frames_out, 1);
-            add(&self.bytes_out, frame.len());
+            counts.frames_out += 1;
+            counts.bytes_out += frame.len() as u64;
         } else {
-            add(&self.lost_out, 1);
+            counts.lost_out += 1;
         }
     }
 }
@@ -80,7 +66,7 @@ impl SharedCounts {
 pub(super) struct Shared {
     pub(super) line: usize,
     pub(super) inbox: Arc<Inbox>,
-    pub(super) tally: Arc<SharedCounts>,
+    pub(super) tally: Arc<Tally>,
     pub(super) closed: Arc<AtomicBool>,
 }
 
@@ -93,28 +79,27 @@ impl Shared {
     pub(super) fn take(&self, peer: Peer, bytes: &[u8], is_whole: bool, is_known: bool) -> usize {
         let mut used = 0;
         loop {
-            match scan(&bytes[used..], is_whole) {
-                Scan::Frame { junk, frame } => {
-                    add(&self.tally.junk_bytes, junk);
-                    used += junk + frame.bytes().len();
-                    self.hand_on(peer, frame.bytes(), is_known);
-                }
-                Scan::Nothing { junk } => {
-                    add(&self.tally.junk_bytes, junk);
-                    return used + junk;
-                }
-            }
+            let (junk, frame) = match scan(&bytes[used..], is_whole) {
+                Scan::Frame { junk, frame } => (junk, Some(frame.bytes())),
+                Scan::Nothing { junk } => (junk, None),
+            };
+            used += junk + frame.map_or(0, <[u8]>::len);
+            let counts = &mut self.tally.lock().0;
+            counts.junk_bytes += junk as u64;
+            let Some(frame) = frame else { return used };
+            counts.frames_in += 1;
+            counts.bytes_in += frame.len() as u64;
+            let received = Received { line: self.line, peer, frame: frame.to_vec() };
+            counts.lost_in += u64::from(!self.inbox.put(received, is_known));
         }
     }
+}
 
-    fn hand_on(&self, peer: Peer, frame: &[u8], is_known: bool) {
-        add(&self.tally.frames_in, 1);
-        add(&self.tally.bytes_in, frame.len());
-        let received = Received { line: self.line, peer, frame: frame.to_vec() };
-        if !self.inbox.put(received, is_known) {
-            add(&self.tally.lost_in, 1);
-        }
-    }
+/// The sending side of an open link, and its threads.
+pub(super) type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
+
+pub(super) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
+    thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
 pub(super) trait Outgoing: Send + Sync {

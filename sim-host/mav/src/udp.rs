@@ -1,11 +1,11 @@
 use super::inbox::Peer;
-use super::traffic::{GLANCE, Outgoing, Shared};
+use super::traffic::{GLANCE, Opened, Outgoing, Shared, start};
 use socket2::SockRef;
 use std::collections::HashMap;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{self, JoinHandle};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Ground stations send at 1 Hz.
@@ -15,20 +15,18 @@ const YIELD: Duration = Duration::from_secs(5);
 /// The system may give less.
 const KEPT: usize = 4 << 20;
 
-type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
-
 #[derive(Clone, Default)]
 struct Believed(Arc<Mutex<HashMap<SocketAddr, Instant>>>);
 
-struct Out {
-    socket: UdpSocket,
-    to: SocketAddr,
-    shared: Shared,
+enum To {
+    /// Fixed when the link opens.
+    One(SocketAddr),
+    Believed(Believed),
 }
 
-struct In {
+struct Udp {
     socket: UdpSocket,
-    believed: Believed,
+    to: To,
     shared: Shared,
 }
 
@@ -71,7 +69,7 @@ pub(super) fn open_out(to: SocketAddr, shared: &Shared) -> Opened {
     let socket = UdpSocket::bind(local)?;
     let reader = read(socket.try_clone()?, shared, move |from| (from.ip() == to.ip()).then_some(from == to))?;
     let shared = shared.clone();
-    Ok((Box::new(Out { socket, to, shared }), vec![reader]))
+    Ok((Box::new(Udp { socket, to: To::One(to), shared }), vec![reader]))
 }
 
 pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
@@ -80,7 +78,7 @@ pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
     let known = believed.clone();
     let reader = read(socket.try_clone()?, shared, move |from| Some(known.has(from)))?;
     let shared = shared.clone();
-    Ok((Box::new(In { socket, believed, shared }), vec![reader]))
+    Ok((Box::new(Udp { socket, to: To::Believed(believed), shared }), vec![reader]))
 }
 
 /// `knows` returns whether a sender is known, or `None` to ignore it.
@@ -92,7 +90,7 @@ fn read(
     socket.set_read_timeout(Some(GLANCE))?;
     let _ = SockRef::from(&socket).set_recv_buffer_size(KEPT);
     let shared = shared.clone();
-    thread::Builder::new().name(String::from("udp")).spawn(move || {
+    start("udp", move || {
         let mut buffer = vec![0; 65_536];
         while !shared.is_closed() {
             // Errors report a timeout or an earlier datagram that was rejected; both are harmless.
@@ -105,57 +103,33 @@ fn read(
     })
 }
 
-impl Out {
-    fn to(&self, to: SocketAddr, frame: &[u8]) {
+impl Udp {
+    fn send_one(&self, to: SocketAddr, frame: &[u8]) {
         let is_sent = self.socket.send_to(frame, to).is_ok();
         self.shared.tally.sent(frame, is_sent);
     }
 }
 
-impl Outgoing for Out {
+impl Outgoing for Udp {
     fn send(&self, frame: &[u8]) {
-        self.to(self.to, frame);
-    }
-
-    fn send_to(&self, peer: Peer, frame: &[u8]) {
-        if let Peer::Address(to) = peer {
-            self.to(to, frame);
-        }
-    }
-
-    /// The peer is fixed when the link opens.
-    fn believe(&self, _: Peer) {}
-
-    fn local(&self) -> Option<SocketAddr> {
-        self.socket.local_addr().ok()
-    }
-}
-
-impl In {
-    fn to(&self, to: SocketAddr, frame: &[u8]) {
-        let is_sent = self.socket.send_to(frame, to).is_ok();
-        self.shared.tally.sent(frame, is_sent);
-    }
-}
-
-impl Outgoing for In {
-    fn send(&self, frame: &[u8]) {
-        for peer in self.believed.all(Instant::now()) {
-            self.to(peer, frame);
+        match &self.to {
+            To::One(to) => self.send_one(*to, frame),
+            To::Believed(peers) => peers.all(Instant::now()).into_iter().for_each(|peer| self.send_one(peer, frame)),
         }
     }
 
     fn send_to(&self, peer: Peer, frame: &[u8]) {
-        match peer {
-            Peer::Address(to) if self.believed.has(to) => self.to(to, frame),
+        match (peer, &self.to) {
+            (Peer::Address(to), To::One(_)) => self.send_one(to, frame),
+            (Peer::Address(to), To::Believed(peers)) if peers.has(to) => self.send_one(to, frame),
             // An unknown peer may be a spoofed address.
             _ => self.shared.tally.sent(frame, false),
         }
     }
 
     fn believe(&self, peer: Peer) {
-        if let Peer::Address(from) = peer {
-            self.believed.note(from, Instant::now());
+        if let (Peer::Address(from), To::Believed(peers)) = (peer, &self.to) {
+            peers.note(from, Instant::now());
         }
     }
 

@@ -9,9 +9,11 @@
 //!
 //! Parameters that a command does not use may have any value, NaN included.
 
+use super::items::{fault_without_place, has_no_place};
+use super::mission::{Item, ack};
 use super::model::FlightMode;
-use super::params::Meaning;
-use super::vehicle::{Action, Out, Vehicle};
+use super::params::NotSet;
+use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::geo::Global;
 use staya_controller::parameters::SPEED;
 use staya_mavlink::constants::*;
@@ -26,11 +28,11 @@ const STANDING_MPS: f64 = 0.05;
 pub(super) type Refusal = u8;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
-    pub(super) frame: u8,
-    pub(super) x: i32,
-    pub(super) y: i32,
-    pub(super) z: f32,
+struct Spot {
+    frame: u8,
+    x: i32,
+    y: i32,
+    z: f32,
 }
 
 struct Command {
@@ -77,7 +79,6 @@ impl Vehicle {
             target_system: from.system,
             target_component: from.component,
         }));
-        out.results.push(result);
         out.messages.append(&mut after.messages);
         out.actions.append(&mut after.actions);
     }
@@ -109,7 +110,7 @@ impl Vehicle {
             }
             MAV_CMD_NAV_LAND if self.model.flies => {
                 self.needs_arms()?;
-                self.enter(FlightMode::Land, out);
+                self.enter(FlightMode::LAND, out);
                 Ok(())
             }
             MAV_CMD_NAV_RETURN_TO_LAUNCH => {
@@ -174,12 +175,12 @@ impl Vehicle {
             return Ok(());
         }
         self.is_armed = arms;
-        if !arms {
-            self.is_on_mission = false;
+        if let (false, FlightMode::Mission { .. }) = (arms, self.mode) {
+            self.mode = FlightMode::Auto;
         }
         self.begin(out);
         let text = if arms { "armed" } else { "disarmed" };
-        self.text(out, super::vehicle::Kind::News, MAV_SEVERITY_INFO, text);
+        self.text(out, Kind::News, MAV_SEVERITY_INFO, text);
         Ok(())
     }
 
@@ -206,7 +207,7 @@ impl Vehicle {
         };
         if result.is_err() {
             let text = "unknown mode";
-            self.text(out, super::vehicle::Kind::News, MAV_SEVERITY_WARNING, text);
+            self.text(out, Kind::News, MAV_SEVERITY_WARNING, text);
         }
     }
 
@@ -250,16 +251,9 @@ impl Vehicle {
         Ok(())
     }
 
-    pub(super) fn guided_item(
-        &mut self,
-        from: Sender,
-        current: u8,
-        item: &super::mission::Item,
-        out: &mut Out,
-    ) -> MavMessage {
-        let spot = Spot { frame: item.frame, x: item.x, y: item.y, z: item.z };
-        let is_goto = current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
-        let result = match self.item_place_of(spot) {
+    pub(super) fn guided_item(&mut self, from: Sender, item: &Item, out: &mut Out) -> MavMessage {
+        let is_goto = item.current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
+        let result = match self.item_place(item) {
             Some(_) if !is_goto || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             Some(_) if !self.is_armed || self.mode != FlightMode::Guided => MAV_MISSION_ERROR,
             Some(place) => match self.goal(place) {
@@ -271,16 +265,15 @@ impl Vehicle {
             },
             None => MAV_MISSION_INVALID_PARAM5_X,
         };
-        super::mission::ack(from, MAV_MISSION_TYPE_MISSION, result)
+        ack(from, MAV_MISSION_TYPE_MISSION, result)
     }
 
     pub(super) fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
-        let speed = Meaning::Controller(SPEED.name);
-        if self.parameters.get(speed).is_none() {
-            return Err(MAV_RESULT_UNSUPPORTED);
+        match self.parameters.set_setting(SPEED.name, speed_mps) {
+            Ok(_) => {}
+            Err(NotSet::Unknown) => return Err(MAV_RESULT_UNSUPPORTED),
+            Err(NotSet::OutOf(_)) => return Err(MAV_RESULT_DENIED),
         }
-        let set = self.parameters.set_meaning(speed, speed_mps);
-        set.map_err(|_| MAV_RESULT_DENIED)?;
         out.actions.push(Action::Set(SPEED.name, speed_mps));
         Ok(())
     }
@@ -307,24 +300,21 @@ impl Vehicle {
         if is_low && is_above_ground { Ok(place_m) } else { Err(MAV_RESULT_DENIED) }
     }
 
-    pub(super) fn item_place(&self, item: &super::mission::Item) -> Option<[f64; 3]> {
-        self.item_place_of(Spot { frame: item.frame, x: item.x, y: item.y, z: item.z })
-    }
-
-    fn item_place_of(&self, spot: Spot) -> Option<[f64; 3]> {
-        if spot.frame == MAV_FRAME_LOCAL_NED {
-            let [north, east] = [spot.x, spot.y].map(|x| f64::from(x) / 1e4);
-            let up = if self.model.flies { -f64::from(spot.z) } else { 0.0 };
+    pub(super) fn item_place(&self, item: &Item) -> Option<[f64; 3]> {
+        let Item { frame, x, y, z, .. } = *item;
+        if frame == MAV_FRAME_LOCAL_NED {
+            let [north, east] = [x, y].map(|x| f64::from(x) / 1e4);
+            let up = if self.model.flies { -f64::from(z) } else { 0.0 };
             return (0.0..=f64::from(HIGHEST_M)).contains(&up).then_some([east, north, up]);
         }
-        self.global_place(spot).ok()
+        self.global_place(Spot { frame, x, y, z }).ok()
     }
 
-    pub(super) fn item_fault(&self, item: &super::mission::Item) -> u8 {
+    pub(super) fn item_fault(&self, item: &Item) -> u8 {
         let is_known = match item.command {
             MAV_CMD_NAV_WAYPOINT => true,
             MAV_CMD_NAV_RETURN_TO_LAUNCH => return MAV_MISSION_ACCEPTED,
-            _ if item.has_no_place() && !self.model.in_formation => return item.fault(),
+            _ if has_no_place(item) && !self.model.in_formation => return fault_without_place(item),
             MAV_CMD_NAV_LAND if self.model.flies => return MAV_MISSION_ACCEPTED,
             MAV_CMD_NAV_TAKEOFF => self.model.flies,
             _ => false,
@@ -337,7 +327,7 @@ impl Vehicle {
                 | MAV_FRAME_GLOBAL_INT
                 | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
         );
-        let [hold_s, ..] = item.params;
+        let hold_s = item.param1;
         match self.item_place(item) {
             _ if !is_known || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             _ if !is_frame => MAV_MISSION_UNSUPPORTED_FRAME,
@@ -355,10 +345,7 @@ impl Vehicle {
         if self.mission.current() == 0 || self.mission.is_complete() {
             self.mission.set_current(1);
         }
-        self.enter(FlightMode::Auto, out);
-        self.is_on_mission = true;
-        out.actions.clear();
-        self.begin_item(out);
+        self.enter(FlightMode::Mission { there_since_us: None }, out);
         Ok(())
     }
 
@@ -366,7 +353,7 @@ impl Vehicle {
         if !self.mission.set_current(seq.max(1)) || seq >= self.mission.len() {
             return Err(MAV_RESULT_DENIED);
         }
-        if self.is_on_mission {
+        if let FlightMode::Mission { .. } = self.mode {
             self.begin_item(out);
         }
         Ok(())

@@ -1,8 +1,9 @@
 //! Setpoints, and the dialect's orders to a formation. The protocol defines no answers to them.
 
 use super::model::FlightMode;
-use super::params::Meaning;
+use super::params::SETPOINT_TIMEOUT;
 use super::vehicle::{Action, Kind, Out, Vehicle};
+use crate::framed::framed;
 use crate::geo::{Global, enu};
 use staya_controller::agent::{Grid, GridOrder, Protocol as _, Waypoint, Wish};
 use staya_controller::geom::Vec3;
@@ -10,17 +11,14 @@ use staya_controller::time::Duration;
 use staya_controller::wire::{Addressed, Content as _, Frame, Header, Message};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
-use staya_mavlink::frame::{MAX_FRAME_LEN, Sender, encode_message};
+use staya_mavlink::frame::Sender;
 use staya_mavlink::wire::decode;
 
 /// Kind of an order in `STAYA_MESSAGE`.
 const ORDER: u8 = 2;
 
-#[derive(Clone, Copy, Debug)]
-struct Setpoint {
-    place_m: Option<[f64; 3]>,
-    velocity_mps: Option<[f64; 3]>,
-}
+/// Place and velocity, each if it is given.
+type Setpoint = (Option<[f64; 3]>, Option<[f64; 3]>);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Used {
@@ -52,20 +50,40 @@ impl Used {
         };
         if used.place || used.velocity { Ok(used) } else { Err("setpoint: no position and no velocity") }
     }
+
+    fn velocity(self, [east, north, up]: [f64; 3]) -> Option<[f64; 3]> {
+        self.velocity.then_some([east, north, if self.velocity_z { up } else { 0.0 }])
+    }
 }
 
 impl Vehicle {
     pub(super) fn target_local(&mut self, target: &SET_POSITION_TARGET_LOCAL_NED_DATA, out: &mut Out) {
+        self.follow(self.local_setpoint(target), out);
+    }
+
+    pub(super) fn target_global(&mut self, target: &SET_POSITION_TARGET_GLOBAL_INT_DATA, out: &mut Out) {
+        self.follow(self.global_setpoint(target), out);
+    }
+
+    fn follow(&mut self, setpoint: Result<Setpoint, &str>, out: &mut Out) {
+        match setpoint.and_then(|setpoint| self.wish_of(setpoint)) {
+            Ok(wish) => out.actions.push(Action::Wish(wish)),
+            Err(text) => self.refuse(text, out),
+        }
+    }
+
+    fn refuse(&mut self, text: &str, out: &mut Out) {
+        self.text(out, Kind::Setpoint, MAV_SEVERITY_WARNING, text);
+    }
+
+    fn local_setpoint(&self, target: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> Result<Setpoint, &'static str> {
         let (is_offset, is_turned) = match target.coordinate_frame {
             MAV_FRAME_LOCAL_NED => (false, false),
             MAV_FRAME_LOCAL_OFFSET_NED => (true, false),
             MAV_FRAME_BODY_NED | MAV_FRAME_BODY_OFFSET_NED => (true, true),
-            _ => return self.refuse("setpoint: unsupported frame", out),
+            _ => return Err("setpoint: unsupported frame"),
         };
-        let used = match Used::new(target.type_mask, self.model.flies) {
-            Ok(used) => used,
-            Err(text) => return self.refuse(text, out),
-        };
+        let used = Used::new(target.type_mask, self.model.flies)?;
         let turned = |xyz: [f32; 3]| {
             let [x, y, z] = xyz.map(f64::from);
             let yaw = f64::from(if is_turned { self.yaw } else { 0.0 });
@@ -79,69 +97,48 @@ impl Vehicle {
             let up = if used.place_z { z + up } else { here[2] };
             [x + east, y + north, up]
         });
-        let velocity_mps = used.velocity.then(|| {
-            let [east, north, up] = turned([target.vx, target.vy, target.vz]);
-            [east, north, if used.velocity_z { up } else { 0.0 }]
-        });
-        let setpoint = Setpoint { place_m, velocity_mps };
-        self.follow(setpoint, out);
+        Ok((place_m, used.velocity(turned([target.vx, target.vy, target.vz]))))
     }
 
-    pub(super) fn target_global(&mut self, target: &SET_POSITION_TARGET_GLOBAL_INT_DATA, out: &mut Out) {
+    fn global_setpoint(&self, target: &SET_POSITION_TARGET_GLOBAL_INT_DATA) -> Result<Setpoint, &'static str> {
         let origin = self.model.origin;
         let ground_m = match target.coordinate_frame {
             MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
             MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => origin.place().altitude_m,
-            _ => return self.refuse("setpoint: unsupported frame", out),
+            _ => return Err("setpoint: unsupported frame"),
         };
-        let used = match Used::new(target.type_mask, self.model.flies) {
-            Ok(used) => used,
-            Err(text) => return self.refuse(text, out),
-        };
-        let here = self.sample.position_m;
+        let used = Used::new(target.type_mask, self.model.flies)?;
         let mut place_m = None;
         if used.place {
             let mut place = Global::from_e7(target.lat_int, target.lon_int, 0);
             place.altitude_m = origin.place().altitude_m;
-            let Some([x, y, _]) = origin.to_enu_m(&place) else {
-                return self.refuse("setpoint: invalid position", out);
-            };
+            let [x, y, _] = origin.to_enu_m(&place).ok_or("setpoint: invalid position")?;
             let up = f64::from(target.alt) + ground_m - origin.place().altitude_m;
-            place_m = Some([x, y, if used.place_z { up } else { here[2] }]);
+            place_m = Some([x, y, if used.place_z { up } else { self.sample.position_m[2] }]);
         }
-        let velocity_mps = used.velocity.then(|| {
-            let [east, north, up] = enu([target.vx, target.vy, target.vz].map(f64::from));
-            [east, north, if used.velocity_z { up } else { 0.0 }]
-        });
-        let setpoint = Setpoint { place_m, velocity_mps };
-        self.follow(setpoint, out);
+        Ok((place_m, used.velocity(enu([target.vx, target.vy, target.vz].map(f64::from)))))
     }
 
-    fn refuse(&mut self, text: &str, out: &mut Out) {
-        self.text(out, Kind::Setpoint, MAV_SEVERITY_WARNING, text);
-    }
-
-    fn follow(&mut self, setpoint: Setpoint, out: &mut Out) {
+    fn wish_of(&self, (place_m, velocity_mps): Setpoint) -> Result<Wish<f32>, &'static str> {
         if self.mode != FlightMode::Guided || !self.is_armed {
-            return self.refuse("setpoint: arm and select GUIDED first", out);
+            return Err("setpoint: arm and select GUIDED first");
         }
-        let is_number = |v: Option<[f64; 3]>| v.is_none_or(|v| v.iter().all(|x| x.is_finite()));
-        if !is_number(setpoint.place_m) || !is_number(setpoint.velocity_mps) {
-            return self.refuse("setpoint: a value is NaN", out);
+        if [place_m, velocity_mps].into_iter().flatten().flatten().any(|x| !x.is_finite()) {
+            return Err("setpoint: a value is NaN");
         }
         if self.model.in_formation {
-            return self.refuse("setpoint: in formation; use STAYA_GOAL", out);
+            return Err("setpoint: in formation; use STAYA_GOAL");
         }
-        if self.model.grid.is_some() && setpoint.velocity_mps.is_some() {
-            return self.refuse("setpoint: no velocities on a grid", out);
+        if self.model.grid.is_some() && velocity_mps.is_some() {
+            return Err("setpoint: no velocities on a grid");
         }
-        let timeout_s = self.parameters.get(Meaning::SetpointTimeout).unwrap_or(0.0);
+        let timeout_s = self.parameters.get(SETPOINT_TIMEOUT).unwrap_or(0.0);
         let valid = Duration::from_micros((timeout_s * 1e6) as i32);
-        let velocity_mps = setpoint.velocity_mps.map(|v| {
+        let velocity_mps = velocity_mps.map(|v| {
             let [x, y, z] = v.map(|v| v as f32);
             Vec3::new(x, y, z)
         });
-        let wish = match (setpoint.place_m, velocity_mps) {
+        let wish = match (place_m, velocity_mps) {
             (None, None) => None,
             (None, Some(velocity_mps)) => Some(Wish::Velocity { velocity_mps, valid }),
             (Some(place_m), velocity) => self.goal(place_m).map(|wish| match (wish, velocity) {
@@ -151,10 +148,7 @@ impl Vehicle {
                 _ => wish,
             }),
         };
-        match wish {
-            Some(wish) => out.actions.push(Action::Wish(wish)),
-            None => self.refuse("setpoint: obstacle or out of range", out),
-        }
+        wish.ok_or("setpoint: obstacle or out of range")
     }
 
     pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
@@ -182,7 +176,7 @@ impl Vehicle {
 }
 
 /// An order as robots receive it; `None` for any other message.
-fn order(from: Sender, message: &MavMessage) -> Option<Frame> {
+fn order(mut from: Sender, message: &MavMessage) -> Option<Frame> {
     let is_order = match message {
         MavMessage::STAYA_GOAL(_) | MavMessage::STAYA_PLACE(_) | MavMessage::STAYA_TEMPLATE(_) => true,
         MavMessage::STAYA_MESSAGE(message) => message.kind == ORDER,
@@ -191,7 +185,5 @@ fn order(from: Sender, message: &MavMessage) -> Option<Frame> {
     if !is_order {
         return None;
     }
-    let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-    encode_message(from, message, &mut frame).ok()?;
-    decode(&frame).ok()
+    decode(&framed(&mut from, message, None)?).ok()
 }

@@ -12,34 +12,25 @@ const NAV_DELAY: u16 = 93;
 /// Commands to cameras and gimbals, which these vehicles do not have; a mission skips them.
 const OF_CAMERAS: [u16; 9] = [204, 205, 206, 1000, 1001, 2000, 2001, 2500, 2501];
 
-impl Item {
-    fn wait_s(&self) -> f32 {
-        let [wait_s, ..] = self.params;
-        if wait_s.is_finite() { wait_s } else { 0.0 }
-    }
+pub(super) fn has_no_place(item: &Item) -> bool {
+    matches!(item.command, NAV_DELAY | MAV_CMD_DO_CHANGE_SPEED) || OF_CAMERAS.contains(&item.command)
+}
 
-    pub(super) fn has_no_place(&self) -> bool {
-        matches!(self.command, NAV_DELAY | MAV_CMD_DO_CHANGE_SPEED) || OF_CAMERAS.contains(&self.command)
-    }
-
-    /// Why an item without a place is invalid, as a MAV_MISSION_RESULT; 0 if it is valid.
-    pub(super) fn fault(&self) -> u8 {
-        let [first, second, ..] = self.params;
-        match self.command {
-            NAV_DELAY if !(0.0..f32::INFINITY).contains(&first) => MAV_MISSION_INVALID_PARAM1,
-            MAV_CMD_DO_CHANGE_SPEED if !second.is_finite() || second == 0.0 => MAV_MISSION_INVALID_PARAM2,
-            _ => MAV_MISSION_ACCEPTED,
-        }
+/// Why an item without a place is invalid, as a MAV_MISSION_RESULT; 0 if it is valid.
+pub(super) fn fault_without_place(item: &Item) -> u8 {
+    match item.command {
+        NAV_DELAY if !(0.0..f32::INFINITY).contains(&item.param1) => MAV_MISSION_INVALID_PARAM1,
+        MAV_CMD_DO_CHANGE_SPEED if !item.param2.is_finite() || item.param2 == 0.0 => MAV_MISSION_INVALID_PARAM2,
+        _ => MAV_MISSION_ACCEPTED,
     }
 }
 
 impl Vehicle {
     /// Starts the current item, and the next one if it finishes at once; at most once through all.
     pub(super) fn begin_item(&mut self, out: &mut Out) {
-        self.there_since_us = None;
+        self.mode = FlightMode::Mission { there_since_us: None };
         loop {
-            let item = self.mission.item(self.mission.current()).copied();
-            let Some(item) = item else {
+            let Some(item) = self.mission.item(self.mission.current()).cloned() else {
                 return self.stop_mission(out);
             };
             match item.command {
@@ -47,13 +38,9 @@ impl Vehicle {
                     self.mission.complete();
                     return self.enter(FlightMode::Return, out);
                 }
-                MAV_CMD_NAV_LAND => {
-                    self.enter(FlightMode::Land, out);
-                    self.is_landing_item = true;
-                    return;
-                }
+                MAV_CMD_NAV_LAND => return self.enter(FlightMode::Land { is_item: true }, out),
                 NAV_DELAY => return out.actions.push(Action::Wish(Wish::Hold)),
-                MAV_CMD_DO_CHANGE_SPEED => self.limit_speed(item.params[1], out),
+                MAV_CMD_DO_CHANGE_SPEED => self.limit_speed(item.param2, out),
                 command if OF_CAMERAS.contains(&command) => {
                     self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, "no camera or gimbal: item skipped");
                 }
@@ -77,7 +64,7 @@ impl Vehicle {
         let has_next = self.mission.set_current(seq + 1);
         if !has_next {
             self.mission.complete();
-            self.is_on_mission = false;
+            self.mode = FlightMode::Auto;
             out.actions.push(Action::Wish(Wish::Hold));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
         }
@@ -96,30 +83,23 @@ impl Vehicle {
     }
 
     pub(super) fn finish_landing(&mut self, out: &mut Out) {
-        if core::mem::take(&mut self.is_landing_item) {
-            self.mission.complete();
-            let seq = self.mission.current();
-            out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
-        }
+        self.mode = FlightMode::LAND;
+        self.mission.complete();
+        let seq = self.mission.current();
+        out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
     }
 
     pub(super) fn advance_mission(&mut self, out: &mut Out) {
-        let Some(item) = self.mission.item(self.mission.current()).copied() else {
-            return;
-        };
-        let is_there = if item.has_no_place() {
-            true
-        } else {
-            let [_, near_m, ..] = item.params;
-            let near_m = if near_m.is_finite() { near_m } else { 0.0 };
-            self.item_place(&item).is_some_and(|place| self.is_at(place, near_m.into()))
-        };
-        if !is_there {
+        let Some(item) = self.mission.item(self.mission.current()) else { return };
+        let finite = |x: f32| f64::from(if x.is_finite() { x } else { 0.0 });
+        let (wait_us, near_m) = (libm::round(finite(item.param1) * 1e6), finite(item.param2));
+        if !has_no_place(item) && !self.item_place(item).is_some_and(|place| self.is_at(place, near_m)) {
             return;
         }
         let now = self.sample.time_us;
-        let since = *self.there_since_us.get_or_insert(now);
-        if ((now - since) as f64) < libm::round(f64::from(item.wait_s()) * 1e6) {
+        let FlightMode::Mission { there_since_us } = &mut self.mode else { return };
+        let since = *there_since_us.get_or_insert(now);
+        if ((now - since) as f64) < wait_us {
             return;
         }
         if self.finish_item(out) {
@@ -128,24 +108,28 @@ impl Vehicle {
     }
 
     pub(super) fn stop_mission(&mut self, out: &mut Out) {
-        if core::mem::take(&mut self.is_on_mission) {
+        if let FlightMode::Mission { .. } = self.mode {
+            self.mode = FlightMode::Auto;
             out.actions.push(Action::Wish(Wish::Hold));
             self.text(out, Kind::News, MAV_SEVERITY_NOTICE, "mission ended: holding");
         }
     }
 
-    pub(super) fn take_item(&mut self, from: Sender, seq: u16, item: Item, out: &mut Out) -> MavMessage {
+    pub(super) fn take_item(&mut self, from: Sender, item: Item, out: &mut Out) -> MavMessage {
+        if item.current >= 2 {
+            return self.guided_item(from, &item, out);
+        }
         let mut mission = core::mem::take(&mut self.mission);
         let now_us = self.now_us;
         let mut fault = MAV_MISSION_ACCEPTED;
-        let answer = mission.take(from, seq, item, now_us, |item| {
+        let answer = mission.take(from, item.clone(), now_us, |item| {
             fault = self.item_fault(item);
             fault
         });
         self.mission = mission;
         if fault != MAV_MISSION_ACCEPTED {
             // MISSION_ACK cannot say which item was invalid.
-            let text = format!("mission item {seq}: {}", self.fault_in_words(&item, fault));
+            let text = format!("mission item {}: {}", item.seq, self.fault_in_words(&item, fault));
             self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
         }
         answer

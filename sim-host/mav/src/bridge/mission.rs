@@ -10,98 +10,47 @@ pub(super) const MAV_MISSION_INVALID_PARAM2: u8 = 7;
 const PATIENCE_US: u64 = 700_000;
 const TRIES: u8 = 6;
 
-/// A mission item as in MISSION_ITEM_INT: 1e-7 degrees, or 1e-4 metres in local frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Item {
-    pub command: u16,
-    pub frame: u8,
-    pub autocontinue: u8,
-    pub params: [f32; 4],
-    pub x: i32,
-    pub y: i32,
-    pub z: f32,
+/// A mission item: 1e-7 degrees, or 1e-4 metres in local frames.
+pub type Item = MISSION_ITEM_INT_DATA;
+
+const fn scale(frame: u8) -> f64 {
+    match frame {
+        MAV_FRAME_LOCAL_NED | MAV_FRAME_LOCAL_OFFSET_NED => 1e4,
+        _ => 1e7,
+    }
 }
 
-impl Item {
-    const fn scale(frame: u8) -> f64 {
-        match frame {
-            MAV_FRAME_LOCAL_NED | MAV_FRAME_LOCAL_OFFSET_NED => 1e4,
-            _ => 1e7,
-        }
-    }
+/// A position that is not finite becomes one that fails validation.
+#[must_use]
+pub fn from_float(item: &MISSION_ITEM_DATA) -> Item {
+    let int = |x: f32| match x.is_finite() {
+        true => libm::round(f64::from(x) * scale(item.frame)) as i32,
+        false => i32::MAX,
+    };
+    let MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, seq, command, frame, .. } = *item;
+    let MISSION_ITEM_DATA { current, autocontinue, .. } = *item;
+    let (x, y) = (int(x), int(y));
+    Item { param1, param2, param3, param4, x, y, z, seq, command, frame, current, autocontinue, ..Item::DEFAULT }
+}
 
-    #[must_use]
-    pub const fn from_int(item: &MISSION_ITEM_INT_DATA) -> Self {
-        Self {
-            command: item.command,
-            frame: item.frame,
-            autocontinue: item.autocontinue,
-            params: [item.param1, item.param2, item.param3, item.param4],
-            x: item.x,
-            y: item.y,
-            z: item.z,
-        }
-    }
-
-    /// A position that is not finite becomes one that fails validation.
-    #[must_use]
-    pub fn from_float(item: &MISSION_ITEM_DATA) -> Self {
-        let int = |x: f32| match x.is_finite() {
-            true => libm::round(f64::from(x) * Self::scale(item.frame)) as i32,
-            false => i32::MAX,
-        };
-        Self {
-            command: item.command,
-            frame: item.frame,
-            autocontinue: item.autocontinue,
-            params: [item.param1, item.param2, item.param3, item.param4],
-            x: int(item.x),
-            y: int(item.y),
-            z: item.z,
-        }
-    }
-
-    const fn to_int(self, seq: u16, current: bool, to: Sender) -> MISSION_ITEM_INT_DATA {
-        let [param1, param2, param3, param4] = self.params;
-        MISSION_ITEM_INT_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            x: self.x,
-            y: self.y,
-            z: self.z,
-            seq,
-            command: self.command,
-            target_system: to.system,
-            target_component: to.component,
-            frame: self.frame,
-            current: current as u8,
-            autocontinue: self.autocontinue,
-            mission_type: MAV_MISSION_TYPE_MISSION,
-        }
-    }
-
-    fn to_float(self, seq: u16, current: bool, to: Sender) -> MISSION_ITEM_DATA {
-        let [param1, param2, param3, param4] = self.params;
-        let float = |x: i32| (f64::from(x) / Self::scale(self.frame)) as f32;
-        MISSION_ITEM_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            x: float(self.x),
-            y: float(self.y),
-            z: self.z,
-            seq,
-            command: self.command,
-            target_system: to.system,
-            target_component: to.component,
-            frame: self.frame,
-            current: u8::from(current),
-            autocontinue: self.autocontinue,
-            mission_type: MAV_MISSION_TYPE_MISSION,
-        }
+fn to_float(item: Item) -> MISSION_ITEM_DATA {
+    let float = |x: i32| (f64::from(x) / scale(item.frame)) as f32;
+    MISSION_ITEM_DATA {
+        param1: item.param1,
+        param2: item.param2,
+        param3: item.param3,
+        param4: item.param4,
+        x: float(item.x),
+        y: float(item.y),
+        z: item.z,
+        seq: item.seq,
+        command: item.command,
+        target_system: item.target_system,
+        target_component: item.target_component,
+        frame: item.frame,
+        current: item.current,
+        autocontinue: item.autocontinue,
+        mission_type: item.mission_type,
     }
 }
 
@@ -181,22 +130,15 @@ impl Mission {
     }
 
     /// Returns the answer to an uploaded item; `fault` returns a MAV_MISSION_RESULT, 0 if valid.
-    pub fn take(
-        &mut self,
-        from: Sender,
-        seq: u16,
-        item: Item,
-        now_us: u64,
-        fault: impl FnOnce(&Item) -> u8,
-    ) -> MavMessage {
+    pub fn take(&mut self, from: Sender, item: Item, now_us: u64, fault: impl FnOnce(&Item) -> u8) -> MavMessage {
         let upload = self.upload.as_mut();
         let Some(upload) = upload.filter(|upload| same(upload.from, from)) else {
             return ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_INVALID_SEQUENCE);
         };
         let next = upload.items.len() as u16;
-        if seq == next {
+        if item.seq == next {
             // Home is never flown to, so it needs no validation.
-            let fault = if seq == 0 { 0 } else { fault(&item) };
+            let fault = if item.seq == 0 { 0 } else { fault(&item) };
             if fault != 0 {
                 self.upload = None;
                 return ack(from, MAV_MISSION_TYPE_MISSION, fault);
@@ -249,12 +191,15 @@ impl Mission {
         let Some(item) = item.filter(|_| mission_type == MAV_MISSION_TYPE_MISSION) else {
             return ack(from, mission_type, MAV_MISSION_INVALID_SEQUENCE);
         };
-        let is_current = seq == self.current;
-        if as_int {
-            MavMessage::MISSION_ITEM_INT(item.to_int(seq, is_current, from))
-        } else {
-            MavMessage::MISSION_ITEM(item.to_float(seq, is_current, from))
-        }
+        let item = Item {
+            seq,
+            current: u8::from(seq == self.current),
+            target_system: from.system,
+            target_component: from.component,
+            mission_type: MAV_MISSION_TYPE_MISSION,
+            ..item.clone()
+        };
+        if as_int { MavMessage::MISSION_ITEM_INT(item) } else { MavMessage::MISSION_ITEM(to_float(item)) }
     }
 
     pub fn clear(&mut self, from: Sender, mission_type: u8) -> MavMessage {
@@ -300,7 +245,7 @@ mod tests {
     }
 
     fn item(x: i32) -> Item {
-        Item { command: MAV_CMD_NAV_WAYPOINT, x, ..Item::default() }
+        Item { command: MAV_CMD_NAV_WAYPOINT, x, ..Item::DEFAULT }
     }
 
     /// The requested item, or the negative result if the transfer ended.
@@ -317,7 +262,7 @@ mod tests {
     }
 
     fn give(mission: &mut Mission, seq: u16) -> i32 {
-        wanted(&mission.take(GCS, seq, item(seq.into()), 0, |_| 0))
+        wanted(&mission.take(GCS, Item { seq, ..item(seq.into()) }, 0, |_| 0))
     }
 
     #[test]
@@ -370,12 +315,12 @@ mod tests {
         let other = Sender { system: 254, ..GCS };
         let refused = ended(MAV_MISSION_DENIED);
         assert_eq!(wanted(&mission.count(other, &count(2), 0)), refused);
-        let taken = mission.take(other, 0, item(0), 0, |_| 0);
+        let taken = mission.take(other, item(0), 0, |_| 0);
         assert_eq!(wanted(&taken), ended(MAV_MISSION_INVALID_SEQUENCE));
         assert_eq!(wanted(&mission.count(GCS, &count(2), 0)), 0);
-        let home = mission.take(GCS, 0, item(0), 0, |_| MAV_MISSION_UNSUPPORTED);
+        let home = mission.take(GCS, item(0), 0, |_| MAV_MISSION_UNSUPPORTED);
         assert_eq!(wanted(&home), 1, "home may be anything");
-        let bad = mission.take(GCS, 1, item(1), 0, |_| MAV_MISSION_UNSUPPORTED);
+        let bad = mission.take(GCS, Item { seq: 1, ..item(1) }, 0, |_| MAV_MISSION_UNSUPPORTED);
         assert_eq!(wanted(&bad), ended(MAV_MISSION_UNSUPPORTED));
         assert_eq!(mission, Mission::default());
     }
@@ -384,12 +329,12 @@ mod tests {
     fn both_item_messages_describe_the_same_item() {
         for (frame, x) in [(MAV_FRAME_GLOBAL, 12.5), (MAV_FRAME_LOCAL_NED, -3.25)] {
             let float = MISSION_ITEM_DATA { frame, x, y: 7.0, z: 1.5, seq: 4, ..MISSION_ITEM_DATA::DEFAULT };
-            let kept = Item::from_float(&float);
-            assert_eq!(kept.y, (7.0 * Item::scale(frame)) as i32);
-            let back = kept.to_float(4, false, Sender::default());
+            let kept = from_float(&float);
+            assert_eq!(kept.y, (7.0 * scale(frame)) as i32);
+            let back = to_float(kept);
             assert_eq!((back.x, back.y, back.z, back.seq), (x, 7.0, 1.5, 4));
         }
         let nonsense = MISSION_ITEM_DATA { x: f32::NAN, ..MISSION_ITEM_DATA::DEFAULT };
-        assert_eq!(Item::from_float(&nonsense).x, i32::MAX);
+        assert_eq!(from_float(&nonsense).x, i32::MAX);
     }
 }

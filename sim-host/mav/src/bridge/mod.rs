@@ -23,7 +23,7 @@ mod testing;
 mod vehicle;
 
 pub use model::{FlightMode, Sample, VehicleModel};
-pub use params::{Meaning, NotSet, Parameters};
+pub use params::{NotSet, Parameters, SETPOINT_TIMEOUT};
 pub use report::{BridgeReport, LineReport, Refused};
 pub use streams::Streams;
 pub use swarm::{BridgeError, Options, Swarm};

@@ -75,8 +75,13 @@ impl VehicleModel {
 /// The source of a vehicle's goals, named and numbered as in ArduPilot's Copter or Rover.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlightMode {
-    /// The behaviour of the scenario, or the mission once it is started.
+    /// The behaviour of the scenario.
     Auto,
+    /// The mission; clients see AUTO.
+    Mission {
+        /// Arrival at the current item, simulated microseconds.
+        there_since_us: Option<u64>,
+    },
     /// The operator.
     Guided,
     /// No goal: the vehicle stays where it is.
@@ -84,22 +89,27 @@ pub enum FlightMode {
     /// Home; a flying vehicle lands there.
     Return,
     /// Lands here, then disarms.
-    Land,
+    Land {
+        /// Whether that is an item of the mission.
+        is_item: bool,
+    },
 }
 
 impl FlightMode {
-    const ALL: [Self; 5] = [Self::Auto, Self::Guided, Self::Hold, Self::Return, Self::Land];
+    const ALL: [Self; 5] = [Self::Auto, Self::Guided, Self::Hold, Self::Return, Self::LAND];
+    /// A landing on command.
+    pub const LAND: Self = Self::Land { is_item: false };
 
     /// The custom mode number in MAVLink.
     #[must_use]
     pub const fn number(self, flies: bool) -> u32 {
         match (self, flies) {
-            (Self::Auto, false) => 10,
+            (Self::Auto | Self::Mission { .. }, false) => 10,
             (Self::Guided, false) => 15,
             (Self::Hold, false) => 4,
             (Self::Return, false) => 11,
-            (Self::Land, _) => 9,
-            (Self::Auto, true) => 3,
+            (Self::Land { .. }, _) => 9,
+            (Self::Auto | Self::Mission { .. }, true) => 3,
             (Self::Guided, true) => 4,
             (Self::Hold, true) => 5,
             (Self::Return, true) => 6,
@@ -110,19 +120,19 @@ impl FlightMode {
     #[must_use]
     pub fn from_number(number: u32, flies: bool) -> Option<Self> {
         let mut modes = Self::ALL.into_iter();
-        modes.find(|mode| mode.number(flies) == number && (flies || *mode != Self::Land))
+        modes.find(|mode| mode.number(flies) == number && (flies || *mode != Self::LAND))
     }
 
     /// The name that ArduPilot uses.
     #[must_use]
     pub const fn name(self, flies: bool) -> &'static str {
         match self {
-            Self::Auto => "AUTO",
+            Self::Auto | Self::Mission { .. } => "AUTO",
             Self::Guided => "GUIDED",
             Self::Hold if flies => "LOITER",
             Self::Hold => "HOLD",
             Self::Return => "RTL",
-            Self::Land => "LAND",
+            Self::Land { .. } => "LAND",
         }
     }
 }
@@ -171,7 +181,7 @@ mod tests {
         for flies in [false, true] {
             for mode in FlightMode::ALL {
                 let found = FlightMode::from_number(mode.number(flies), flies);
-                let has = flies || mode != FlightMode::Land;
+                let has = flies || mode != FlightMode::LAND;
                 assert_eq!(found, has.then_some(mode));
             }
             for number in [1, 2, 99, u32::MAX] {

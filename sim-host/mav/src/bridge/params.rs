@@ -3,22 +3,17 @@ use staya_controller::parameters::{Parameter, RADIUS, SPEED, TOLERANCE};
 use staya_mavlink::constants::MAV_PARAM_TYPE_REAL32;
 use staya_mavlink::dialect::PARAM_VALUE_DATA;
 
-/// ArduPilot Rover's default, simulated seconds.
+/// The setting of the bridge itself: timeout of velocity setpoints, simulated seconds.
+pub const SETPOINT_TIMEOUT: &str = "setpoint_timeout_s";
+/// ArduPilot Rover's default.
 const SETPOINT_TIMEOUT_S: f32 = 3.0;
-
-/// The setting behind a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Meaning {
-    /// The parameter of the controller with this name.
-    Controller(&'static str),
-    /// Timeout of velocity setpoints, simulated seconds.
-    SetpointTimeout,
-}
 
 #[derive(Clone, Debug, PartialEq)]
 struct Entry {
+    /// As clients know it.
     name: &'static str,
-    meaning: Meaning,
+    /// The name of the controller's parameter, or [`SETPOINT_TIMEOUT`].
+    setting: &'static str,
     value: f32,
     range: [f32; 2],
 }
@@ -53,11 +48,11 @@ impl Parameters {
             } else if name == SPEED.name {
                 greatest = model.max_speed_mps;
             }
-            Entry { name: mavlink, meaning: Meaning::Controller(name), value, range: [least, greatest] }
+            Entry { name: mavlink, setting: name, value, range: [least, greatest] }
         });
         let timeout = model.grid.is_none().then_some(Entry {
             name: "SETPOINT_S",
-            meaning: Meaning::SetpointTimeout,
+            setting: SETPOINT_TIMEOUT,
             value: SETPOINT_TIMEOUT_S,
             range: [0.05, 600.0],
         });
@@ -101,38 +96,39 @@ impl Parameters {
 
     /// Value of a setting; `None` if the vehicle lacks it.
     #[must_use]
-    pub fn get(&self, meaning: Meaning) -> Option<f32> {
-        let mut entries = self.entries.iter();
-        Some(entries.find(|entry| entry.meaning == meaning)?.value)
+    pub fn get(&self, setting: &str) -> Option<f32> {
+        Some(self.entries[self.index_of(setting)?].value)
+    }
+
+    fn index_of(&self, setting: &str) -> Option<usize> {
+        self.entries.iter().position(|entry| entry.setting == setting)
     }
 
     /// Sets a parameter by index. Returns the setting that changed.
     ///
     /// # Errors
     /// [`NotSet`]; the value is unchanged.
-    pub fn set(&mut self, index: usize, value: f32) -> Result<Meaning, NotSet> {
+    pub fn set(&mut self, index: usize, value: f32) -> Result<&'static str, NotSet> {
         let entry = self.entries.get_mut(index).ok_or(NotSet::Unknown)?;
         let [least, greatest] = entry.range;
         if !(least..=greatest).contains(&value) {
             return Err(NotSet::OutOf(entry.range));
         }
         entry.value = value;
-        Ok(entry.meaning)
+        Ok(entry.setting)
     }
 
     /// Sets a parameter by its setting. Returns the setting that changed.
     ///
     /// # Errors
     /// [`NotSet`]; the value is unchanged.
-    pub fn set_meaning(&mut self, meaning: Meaning, value: f32) -> Result<Meaning, NotSet> {
-        let mut entries = self.entries.iter();
-        let index = entries.position(|entry| entry.meaning == meaning);
-        self.set(index.ok_or(NotSet::Unknown)?, value)
+    pub fn set_setting(&mut self, setting: &str, value: f32) -> Result<&'static str, NotSet> {
+        self.set(self.index_of(setting).ok_or(NotSet::Unknown)?, value)
     }
 
     /// Overwrites a value with the one that the controller uses. Returns its index.
-    pub fn set_back(&mut self, meaning: Meaning, value: f32) -> Option<usize> {
-        let index = self.entries.iter().position(|entry| entry.meaning == meaning)?;
+    pub fn set_back(&mut self, setting: &str, value: f32) -> Option<usize> {
+        let index = self.index_of(setting)?;
         self.entries[index].value = value;
         Some(index)
     }
@@ -209,11 +205,9 @@ mod tests {
             assert_eq!(parameters.set(speed, bad), Err(NotSet::OutOf([0.0, limit])));
             assert_eq!(parameters, before);
         }
-        let meaning = Meaning::Controller(SPEED.name);
-        assert_eq!(parameters.set(speed, limit), Ok(meaning));
-        assert_eq!(parameters.get(meaning), Some(limit));
-        let radius = Meaning::Controller(RADIUS.name);
-        assert!(parameters.set_meaning(radius, model().radius_m * 0.9).is_err());
+        assert_eq!(parameters.set(speed, limit), Ok(SPEED.name));
+        assert_eq!(parameters.get(SPEED.name), Some(limit));
+        assert!(parameters.set_setting(RADIUS.name, model().radius_m * 0.9).is_err());
         assert_eq!(parameters.set(99, 1.0), Err(NotSet::Unknown));
     }
 

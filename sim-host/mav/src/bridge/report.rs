@@ -1,3 +1,4 @@
+use crate::Counts;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -6,20 +7,9 @@ use std::collections::BTreeMap;
 pub struct LineReport {
     /// The endpoint, as opened.
     pub endpoint: String,
-    /// Frames received.
-    pub frames_in: u64,
-    /// Bytes received.
-    pub bytes_in: u64,
-    /// Frames sent, counted once for each peer.
-    pub frames_out: u64,
-    /// Bytes sent.
-    pub bytes_out: u64,
-    /// Frames that could not be sent.
-    pub lost_out: u64,
-    /// Received frames that were dropped because the queue was full.
-    pub lost_in: u64,
-    /// Bytes that belong to no frame.
-    pub junk_bytes: u64,
+    /// Traffic.
+    #[serde(flatten)]
+    pub counts: Counts,
     /// Average send rate, bytes per second.
     pub bytes_out_per_s: f64,
 }

@@ -9,10 +9,12 @@ use super::params::Parameters;
 use super::report::{BridgeReport, LineReport, Refused, name};
 use super::streams::Streams;
 use super::vehicle::{Action, Out, Vehicle};
+use crate::framed::framed;
 use crate::geo::Origin;
-use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog};
+use crate::{Endpoint, Lines, OpenError, Received, Tlog};
+use staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1;
 use staya_mavlink::dialect::MavMessage;
-use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
+use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::{Signing, Verdict};
 use staya_sim::engine::{Moment, Operated, operated};
@@ -82,7 +84,7 @@ pub struct Swarm {
     engine: Box<dyn Operated>,
     vehicles: Vec<Vehicle>,
     boots: Vec<u8>,
-    sequences: Vec<u8>,
+    senders: Vec<Sender>,
     model: Arc<VehicleModel>,
     lines: Lines,
     options: Options,
@@ -116,6 +118,8 @@ impl Swarm {
         let model = Arc::new(VehicleModel::new(scenario, options.origin));
         let count = numbers.len();
         let mut vehicles = Vec::with_capacity(count);
+        let sender = |system: &u32| Sender { system: *system as u8, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 };
+        let senders = numbers.iter().map(sender).collect();
         for (index, number) in numbers.into_iter().enumerate() {
             let sample = Sample::new(0, &engine.observation(index));
             let vehicle = Vehicle::new(
@@ -139,7 +143,7 @@ impl Swarm {
         let listing = Budget::per_second(parameters_per_s(&options.endpoints));
         Ok(Self {
             boots: vec![0; count],
-            sequences: vec![0; count],
+            senders,
             engine,
             vehicles,
             model,
@@ -169,19 +173,11 @@ impl Swarm {
     }
 
     /// Runs until the ticks are used up or `is_over` returns true. `is_over` receives the number of
-    /// finished ticks and is called every few milliseconds.
+    /// finished ticks and is called every few milliseconds, `onlooker` after each tick.
     ///
     /// # Errors
     /// [`BridgeError::Log`] if the log cannot be written.
-    pub fn run(self, is_over: impl FnMut(u32) -> bool) -> Result<BridgeReport, BridgeError> {
-        self.run_watched(is_over, &mut |_, _| {})
-    }
-
-    /// Runs like [`Swarm::run`], and calls `onlooker` after each tick.
-    ///
-    /// # Errors
-    /// [`BridgeError::Log`] if the log cannot be written.
-    pub fn run_watched(
+    pub fn run(
         mut self,
         mut is_over: impl FnMut(u32) -> bool,
         onlooker: &mut Onlooker<'_>,
@@ -365,34 +361,17 @@ impl Swarm {
             let value = self.engine.parameter(index, name);
             self.vehicles[index].set_back(name, value, &mut self.out);
         }
-        for result in self.out.results.drain(..) {
-            *self.commands.entry(name(result)).or_default() += 1;
-        }
         let answers = self.out.messages.len();
         for message in self.out.messages.drain(..) {
-            let sequence = &mut self.sequences[index];
-            let sender = Sender {
-                system: self.vehicles[index].system(),
-                component: staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1,
-                sequence: *sequence,
-            };
-            *sequence = sequence.wrapping_add(1);
-            let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-            if encode_message(sender, &message, &mut frame).is_err() {
-                continue;
+            if let MavMessage::COMMAND_ACK(ack) = &message {
+                *self.commands.entry(name(ack.result)).or_default() += 1;
             }
-            if let Some(signing) = &mut self.options.signing {
-                match signing.sign(&mut frame) {
-                    Ok(signature) => drop(frame.extend_from_slice(&signature)),
-                    Err(_) => continue,
-                }
-            }
+            let signing = self.options.signing.as_mut();
+            let Some(frame) = framed(&mut self.senders[index], &message, signing) else { continue };
             if let Some(log) = &mut self.log {
                 log.add(&frame)?;
             }
-            for line in 0..self.lines.len() {
-                self.lines.send(line, &frame);
-            }
+            self.lines.send_all(&frame);
         }
         Ok(answers)
     }
@@ -400,20 +379,10 @@ impl Swarm {
     fn report(mut self) -> BridgeReport {
         let wall_seconds = self.began.elapsed().as_secs_f64();
         self.lines.close();
-        let line = |at: usize| {
-            let Counts { frames_in, bytes_in, frames_out, bytes_out, junk_bytes, lost_in, lost_out } =
-                self.lines.counts(at);
-            LineReport {
-                endpoint: self.options.endpoints[at].to_string(),
-                frames_in,
-                bytes_in,
-                frames_out,
-                bytes_out,
-                lost_out,
-                lost_in,
-                junk_bytes,
-                bytes_out_per_s: bytes_out as f64 / wall_seconds.max(1e-9),
-            }
+        let line = |(at, endpoint): (usize, &Endpoint)| {
+            let counts = self.lines.counts(at);
+            let bytes_out_per_s = counts.bytes_out as f64 / wall_seconds.max(1e-9);
+            LineReport { endpoint: endpoint.to_string(), counts, bytes_out_per_s }
         };
         let outcome = self.engine.outcome();
         let gap = outcome.clearance.map(|clearance| clearance.bodies_m);
@@ -432,7 +401,7 @@ impl Swarm {
             frames_waiting: self.lines.waiting(),
             is_exhausted: self.is_exhausted(),
             commands: self.commands.clone(),
-            lines: (0..self.lines.len()).map(line).collect(),
+            lines: self.options.endpoints.iter().enumerate().map(line).collect(),
             collisions: outcome.collisions,
             least_gap_m: gap.filter(|gap| gap.is_finite()),
             trace_hash: format!("{:016x}", outcome.trace_hash),

@@ -75,13 +75,13 @@ impl Vehicle {
                 seq: self.mission.current(),
                 total: self.mission.len().saturating_sub(1),
                 // MISSION_STATE: 1 none, 2 not started, 3 active, 5 complete.
-                mission_state: match () {
-                    () if self.mission.is_empty() => 1,
-                    () if self.is_on_mission || self.is_landing_item => 3,
-                    () if self.mission.is_complete() => 5,
-                    () => 2,
+                mission_state: match self.mode {
+                    _ if self.mission.is_empty() => 1,
+                    FlightMode::Mission { .. } | FlightMode::Land { is_item: true } => 3,
+                    _ if self.mission.is_complete() => 5,
+                    _ => 2,
                 },
-                mission_mode: if self.is_on_mission { 1 } else { 2 },
+                mission_mode: if let FlightMode::Mission { .. } = self.mode { 1 } else { 2 },
             }),
             GPS_GLOBAL_ORIGIN_DATA::ID => {
                 let [latitude, longitude, altitude] = place([0.0; 3])?;
@@ -128,7 +128,7 @@ impl Vehicle {
             EXTENDED_SYS_STATE_DATA::ID => {
                 let landed_state = match (self.is_in_air(), self.mode) {
                     (false, _) => MAV_LANDED_STATE_ON_GROUND,
-                    (true, FlightMode::Land) => MAV_LANDED_STATE_LANDING,
+                    (true, FlightMode::Land { .. }) => MAV_LANDED_STATE_LANDING,
                     (true, _) => MAV_LANDED_STATE_IN_AIR,
                 };
                 MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
@@ -142,19 +142,17 @@ impl Vehicle {
 
     fn heartbeat(&self) -> MavMessage {
         let flies = self.model.flies;
-        let mut base_mode = MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
-        for (flag, holds) in [
-            (MAV_MODE_FLAG_SAFETY_ARMED, self.is_armed),
-            (MAV_MODE_FLAG_AUTO_ENABLED, self.mode == FlightMode::Auto),
-            (MAV_MODE_FLAG_GUIDED_ENABLED, matches!(self.mode, FlightMode::Guided | FlightMode::Auto)),
-        ] {
-            base_mode |= if holds { flag } else { 0 };
-        }
+        let armed = if self.is_armed { MAV_MODE_FLAG_SAFETY_ARMED } else { 0 };
+        let source = match self.mode {
+            FlightMode::Auto | FlightMode::Mission { .. } => MAV_MODE_FLAG_AUTO_ENABLED | MAV_MODE_FLAG_GUIDED_ENABLED,
+            FlightMode::Guided => MAV_MODE_FLAG_GUIDED_ENABLED,
+            _ => 0,
+        };
         MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: self.mode.number(flies),
             mavtype: if flies { MAV_TYPE_QUADROTOR } else { MAV_TYPE_GROUND_ROVER },
             autopilot: MAV_AUTOPILOT_ARDUPILOTMEGA,
-            base_mode,
+            base_mode: MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | armed | source,
             system_status: match (self.is_armed, self.sample.mode) {
                 (false, _) => MAV_STATE_STANDBY,
                 (true, Mode::Fault) => MAV_STATE_CRITICAL,

@@ -117,7 +117,7 @@ impl Bench {
             _ => None,
         });
         let acks: Vec<u8> = acks.collect();
-        assert_eq!(acks, self.out.results, "each command is answered once");
+        assert_eq!(acks.len(), 1, "each command is answered once");
         assert!(matches!(self.out.messages[0], MavMessage::COMMAND_ACK(_)));
         acks[0]
     }

@@ -4,10 +4,10 @@
 //! answered, setpoints never, as the protocol demands; a STATUSTEXT says why one was refused.
 
 use super::files;
-use super::mission::{Item, Mission};
+use super::mission::{Mission, from_float};
 use super::model::{FlightMode, Sample, VehicleModel};
 use super::ordered::Ordered;
-use super::params::{Meaning, Parameters};
+use super::params::Parameters;
 use super::streams::Streams;
 use crate::geo::FAR_M;
 use staya_controller::agent::{Event, Waypoint, Wish};
@@ -43,8 +43,6 @@ pub struct Out {
     pub messages: Vec<MavMessage>,
     /// Actions to perform in this order before the next tick.
     pub actions: Vec<Action>,
-    /// Results of the commands answered in this call.
-    pub results: Vec<u8>,
 }
 
 /// The vehicle that clients see for one robot.
@@ -63,9 +61,6 @@ pub struct Vehicle {
     pub(super) mode: FlightMode,
     pub(super) is_armed: bool,
     starts_armed: bool,
-    pub(super) is_on_mission: bool,
-    pub(super) there_since_us: Option<u64>,
-    pub(super) is_landing_item: bool,
     pub(super) ordered: Ordered,
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
@@ -108,9 +103,6 @@ impl Vehicle {
             mode: if starts_armed { FlightMode::Auto } else { FlightMode::Hold },
             is_armed: starts_armed,
             starts_armed,
-            is_on_mission: false,
-            there_since_us: None,
-            is_landing_item: false,
             ordered: Ordered::default(),
             texts: [None; Kind::COUNT],
             now_us: 0,
@@ -172,36 +164,22 @@ impl Vehicle {
     }
 
     fn report(&mut self, event: &Event, out: &mut Out) {
-        use MAV_SEVERITY_INFO as INFO;
-        match *event {
-            Event::ModeChanged { to: Mode::Fault, .. } => {
-                self.text(out, Kind::News, MAV_SEVERITY_ERROR, "fault: standing");
-            }
-            Event::ModeChanged { to: Mode::Arrived, .. } => self.text(out, Kind::News, INFO, "arrived"),
-            Event::NeighborLost(id) => {
-                let text = format!("robot {id} is lost");
-                self.text(out, Kind::Neighbor, INFO, &text);
-            }
-            Event::NeighborRebooted(id) => {
-                let text = format!("robot {id} has restarted");
-                self.text(out, Kind::Neighbor, INFO, &text);
-            }
-            Event::DuplicateId(id) => {
-                let text = format!("two robots use number {id}");
-                self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
-            }
+        use MAV_SEVERITY_WARNING as WARNING;
+        let (kind, severity, text) = match *event {
+            Event::ModeChanged { to: Mode::Fault, .. } => (Kind::News, MAV_SEVERITY_ERROR, "fault: standing".into()),
+            Event::ModeChanged { to: Mode::Arrived, .. } => (Kind::News, MAV_SEVERITY_INFO, "arrived".into()),
+            Event::NeighborLost(id) => (Kind::Neighbor, MAV_SEVERITY_INFO, format!("robot {id} is lost")),
+            Event::NeighborRebooted(id) => (Kind::Neighbor, MAV_SEVERITY_INFO, format!("robot {id} has restarted")),
+            Event::DuplicateId(id) => (Kind::News, WARNING, format!("two robots use number {id}")),
             Event::Implausible { id, claim } => {
-                let text = format!("robot {id} reports implausible {claim}");
-                self.text(out, Kind::Neighbor, MAV_SEVERITY_WARNING, &text);
+                (Kind::Neighbor, WARNING, format!("robot {id} reports implausible {claim}"))
             }
-            Event::ContactLost => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "contact to all robots lost"),
-            Event::Muted => {
-                let text = "robot cannot send: give it a new key";
-                self.text(out, Kind::Neighbor, MAV_SEVERITY_ERROR, text);
-            }
-            Event::NoRoute => self.text(out, Kind::Route, MAV_SEVERITY_WARNING, "no open route to the goal"),
-            _ => {}
-        }
+            Event::ContactLost => (Kind::News, WARNING, "contact to all robots lost".into()),
+            Event::Muted => (Kind::Neighbor, MAV_SEVERITY_ERROR, "robot cannot send: give it a new key".into()),
+            Event::NoRoute => (Kind::Route, WARNING, "no open route to the goal".into()),
+            _ => return,
+        };
+        self.text(out, kind, severity, &text);
     }
 
     /// All kinds but `News` are limited in rate.
@@ -305,19 +283,13 @@ impl Vehicle {
         let answer = match message {
             MavMessage::MISSION_COUNT(told) => {
                 // An upload would replace the items of the active mission.
-                if self.is_on_mission && told.mission_type == MAV_MISSION_TYPE_MISSION {
+                if told.mission_type == MAV_MISSION_TYPE_MISSION {
                     self.stop_mission(out);
                 }
                 self.mission.count(from, told, now_us)
             }
-            MavMessage::MISSION_ITEM_INT(item) if item.current < 2 => {
-                self.take_item(from, item.seq, Item::from_int(item), out)
-            }
-            MavMessage::MISSION_ITEM(item) if item.current < 2 => {
-                self.take_item(from, item.seq, Item::from_float(item), out)
-            }
-            MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, &Item::from_int(item), out),
-            MavMessage::MISSION_ITEM(item) => self.guided_item(from, item.current, &Item::from_float(item), out),
+            MavMessage::MISSION_ITEM_INT(item) => self.take_item(from, item.clone(), out),
+            MavMessage::MISSION_ITEM(item) => self.take_item(from, from_float(item), out),
             MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
             MavMessage::MISSION_REQUEST_INT(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, true),
             MavMessage::MISSION_REQUEST(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, false),
@@ -366,17 +338,16 @@ impl Vehicle {
     }
 
     pub(super) fn tolerance_m(&self) -> f32 {
-        let tolerance = Meaning::Controller(TOLERANCE.name);
-        self.parameters.get(tolerance).unwrap_or(0.0)
+        self.parameters.get(TOLERANCE.name).unwrap_or(0.0)
     }
 
     pub(super) fn enter(&mut self, mode: FlightMode, out: &mut Out) {
-        if mode != self.mode {
-            let text = format!("mode {}", mode.name(self.model.flies));
+        let flies = self.model.flies;
+        if mode.number(flies) != self.mode.number(flies) {
+            let text = format!("mode {}", mode.name(flies));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
         }
         self.mode = mode;
-        (self.is_on_mission, self.is_landing_item) = (false, false);
         self.begin(out);
     }
 
@@ -384,14 +355,14 @@ impl Vehicle {
         let [x, y, z] = self.sample.position_m;
         let wish = match self.mode {
             _ if !self.is_armed => Wish::Off,
-            FlightMode::Auto if self.is_on_mission => return self.begin_item(out),
+            FlightMode::Mission { .. } => return self.begin_item(out),
             FlightMode::Auto => Wish::Own,
             FlightMode::Guided | FlightMode::Hold => Wish::Hold,
             FlightMode::Return => {
                 let [home_x, home_y, _] = self.home_m;
                 self.goal([home_x, home_y, z]).unwrap_or(Wish::Hold)
             }
-            FlightMode::Land => self.goal([x, y, 0.0]).unwrap_or(Wish::Hold),
+            FlightMode::Land { .. } => self.goal([x, y, 0.0]).unwrap_or(Wish::Hold),
         };
         out.actions.push(Action::Wish(wish));
     }
@@ -426,19 +397,21 @@ impl Vehicle {
         }
         let [x, y, z] = self.sample.position_m;
         match self.mode {
-            FlightMode::Land if self.is_at([x, y, 0.0], 0.0) => {
+            FlightMode::Land { is_item } if self.is_at([x, y, 0.0], 0.0) => {
                 self.is_armed = false;
                 self.begin(out);
-                self.finish_landing(out);
+                if is_item {
+                    self.finish_landing(out);
+                }
                 self.text(out, Kind::News, MAV_SEVERITY_INFO, "landed, disarmed");
             }
             FlightMode::Return if self.model.flies => {
                 let [home_x, home_y, _] = self.home_m;
                 if self.is_at([home_x, home_y, z], 0.0) {
-                    self.enter(FlightMode::Land, out);
+                    self.enter(FlightMode::LAND, out);
                 }
             }
-            FlightMode::Auto if self.is_on_mission => self.advance_mission(out),
+            FlightMode::Mission { .. } => self.advance_mission(out),
             _ => {}
         }
     }

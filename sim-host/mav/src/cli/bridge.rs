@@ -1,15 +1,13 @@
-use crate::Endpoint;
-use crate::bridge::{BridgeReport, Options, Refused, Swarm};
+use super::{number, say, signing};
+use crate::bridge::{BridgeReport, LineReport, Options, Refused, Swarm};
 use crate::geo::{Global as Place, Origin};
+use crate::{Counts, Endpoint};
 use anyhow::Result;
 use clap::Args;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
-use staya_mavlink::signing::Signing;
-use staya_sim::key::{KeyFile, timestamp};
 use staya_sim::scenario::{Overrides, Scenario, Setting};
 use staya_view::watch::Watcher;
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
 use std::path::PathBuf;
 
 /// Run a scenario in real time with each robot as a MAVLink vehicle for ground stations and
@@ -26,16 +24,16 @@ pub struct BridgeArgs {
     #[command(flatten)]
     page: staya_console::WatchArgs,
     /// Simulated seconds per second of real time.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number(0.01, 1000.0))]
     speed: f64,
     /// Stop after this many simulated seconds [default: run until Ctrl-C].
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = number(0.001, 1e6))]
     seconds: Option<f64>,
     /// Stop after this many ticks instead.
     #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
     /// Position messages per second and vehicle, until a client requests another rate.
-    #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = rate)]
+    #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = number(0.1, 1000.0))]
     rate: f64,
     /// Start disarmed and wait for the operator, instead of following the scenario until a command
     /// arrives.
@@ -51,7 +49,7 @@ pub struct BridgeArgs {
     key: Option<PathBuf>,
     /// With --key: reject messages whose timestamp is more than this many seconds ahead of the
     /// clock.
-    #[arg(long, value_name = "S", default_value_t = 60.0, requires = "key", value_parser = lead)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, requires = "key", value_parser = number(0.1, 1e8))]
     lead: f64,
     /// Write sent and accepted messages to a log for MAVExplorer and mavlogdump; an older file, and
     /// each file at 256 MiB, is renamed to FILE.1.
@@ -64,27 +62,6 @@ pub struct BridgeArgs {
     /// repeated.
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     settings: Vec<Setting>,
-}
-
-fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
-    let value: Option<f64> = text.parse().ok();
-    value.filter(|value| (least..=most).contains(value)).ok_or_else(|| format!("give a number from {least} to {most}"))
-}
-
-fn speed(text: &str) -> Result<f64, String> {
-    within(text, 0.01, 1000.0)
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    within(text, 0.001, 1e6)
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    within(text, 0.1, 1000.0)
-}
-
-fn lead(text: &str) -> Result<f64, String> {
-    within(text, 0.1, 1e8)
 }
 
 fn origin(text: &str) -> Result<Origin, String> {
@@ -104,12 +81,6 @@ fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
     named.collect::<Vec<_>>().join(", ")
 }
 
-fn say(remark: Option<&str>) {
-    if let Some(remark) = remark {
-        let _ = writeln!(io::stderr(), "staya: {remark}");
-    }
-}
-
 impl BridgeArgs {
     /// Runs the command.
     ///
@@ -120,21 +91,14 @@ impl BridgeArgs {
         let mut scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
         scenario.files.extend(self.key.clone());
         for remark in scenario.remarks() {
-            say(Some(&remark));
+            say(&remark);
         }
         let ticks = match (self.ticks, self.seconds) {
             (Some(ticks), _) => Some(ticks),
             (None, Some(seconds)) => Some(libm::ceil(seconds / scenario.tick_s()) as u32),
             (None, None) => None,
         };
-        let signing = match &self.key {
-            Some(path) => {
-                let file = KeyFile::read(path)?;
-                say(file.remark.as_deref());
-                Some(Signing::new(file.key, 0, timestamp()).with_lead((self.lead * 1e5) as u64))
-            }
-            None => None,
-        };
+        let signing = signing(self.key.as_deref(), 0)?.map(|signing| signing.with_lead((self.lead * 1e5) as u64));
         let options = Options {
             endpoints: self.mavlink.clone(),
             speed: self.speed,
@@ -151,7 +115,7 @@ impl BridgeArgs {
         let lines = lines(&swarm, &self.mavlink);
         let mut progress = ticks.map(|ticks| Progress::new(&scenario.name, ticks.into(), global));
         if progress.is_none() && !global.quiet {
-            say(Some(&format!("{count} vehicles at {lines}; press Ctrl-C to stop")));
+            say(&format!("{count} vehicles at {lines}; press Ctrl-C to stop"));
         }
         let mut shown = None;
         let mut page = Watcher::by_options(&self.page, &scenario)?;
@@ -164,7 +128,7 @@ impl BridgeArgs {
             }
             stop.is_requested()
         };
-        let report = swarm.run_watched(is_over, &mut |moment, robots| {
+        let report = swarm.run(is_over, &mut |moment, robots| {
             if let Some(page) = &mut page {
                 page.tick(moment, robots);
             }
@@ -223,17 +187,12 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
         "\n{:<32}{:>10}{:>10}{:>12}{:>8}{:>12}{:>8}",
         "line", "frames in", "out", "kB/s out", "lost", "junk bytes", "lost in"
     )?;
-    for line in &report.lines {
+    for LineReport { endpoint, counts, bytes_out_per_s } in &report.lines {
+        let Counts { frames_in, frames_out, lost_out, junk_bytes, lost_in, .. } = counts;
+        let kb_per_s = bytes_out_per_s / 1000.0;
         writeln!(
             text,
-            "{:<32}{:>10}{:>10}{:>12.1}{:>8}{:>12}{:>8}",
-            line.endpoint,
-            line.frames_in,
-            line.frames_out,
-            line.bytes_out_per_s / 1000.0,
-            line.lost_out,
-            line.junk_bytes,
-            line.lost_in
+            "{endpoint:<32}{frames_in:>10}{frames_out:>10}{kb_per_s:>12.1}{lost_out:>8}{junk_bytes:>12}{lost_in:>8}",
         )?;
     }
     Ok(text)

@@ -1,5 +1,6 @@
 mod page;
 
+use super::number;
 use crate::Tlog;
 use crate::companion::{Config, Options, Sight, run};
 use anyhow::Result;
@@ -25,10 +26,10 @@ pub struct CompanionArgs {
     #[arg(long, conflicts_with = "dry_run")]
     demo: bool,
     /// End with an error if no autopilot is heard in this many seconds; 0 waits forever.
-    #[arg(long, value_name = "N", default_value = "60", value_parser = seconds)]
+    #[arg(long, value_name = "N", default_value = "60", value_parser = number(0.0, 1e6))]
     wait: f64,
     /// Stop after this many seconds [default: run until Ctrl-C].
-    #[arg(long, value_name = "N", value_parser = seconds)]
+    #[arg(long, value_name = "N", value_parser = number(0.0, 1e6))]
     seconds: Option<f64>,
     /// Write sent and accepted messages of all links to a log for mavlogdump, MAVExplorer or
     /// QGroundControl; an older file, and each file at 256 MiB, is renamed to FILE.1.
@@ -44,12 +45,6 @@ pub struct CompanionArgs {
     link_key: Option<PathBuf>,
     #[command(flatten)]
     page: WatchArgs,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse::<f64>().ok();
-    let seconds = seconds.filter(|s| (0.0..=1e6).contains(s));
-    seconds.ok_or_else(|| String::from("give a number of seconds from 0 to 1000000"))
 }
 
 impl CompanionArgs {

@@ -1,15 +1,15 @@
+use super::{number, signing};
 use crate::Endpoint;
 use crate::formation::station::{Given, Members, Places, give, numbers};
 use crate::formation::{Graph, Order, Shape};
+use crate::tlog::micros_since_1970;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, print, print_json};
 use staya_controller::grid::{Cell, Dir};
-use staya_mavlink::signing::Signing;
-use staya_sim::key::{KeyFile, timestamp};
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// Send a new shape or goal to a formation over MAVLink.
 ///
@@ -49,7 +49,7 @@ pub struct FormationArgs {
     #[arg(long, value_name = "DIRECTION", default_value = "E", value_parser = heading)]
     heading: Dir,
     /// Time to wait for robots and their answers, seconds.
-    #[arg(long, value_name = "S", default_value_t = 8.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 8.0, value_parser = number(1.0, 600.0))]
     wait: f64,
     /// Sign the orders with the bridge's key in this file.
     #[arg(long, value_name = "FILE")]
@@ -111,11 +111,6 @@ fn heading(text: &str) -> Result<Dir, String> {
     found.map(|(_, heading)| heading).ok_or_else(|| String::from("give one of E, NE, N, NW, W, SW, S, SE"))
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    let value: Option<f64> = text.parse().ok();
-    value.filter(|value| (1.0..=600.0).contains(value)).ok_or_else(|| String::from("give a number from 1 to 600"))
-}
-
 impl FormationArgs {
     /// Runs the command.
     ///
@@ -130,18 +125,9 @@ impl FormationArgs {
             Wanted::Shape(shape) => shape.graph(robots, self.spacing),
             Wanted::Graph(graph) => Ok(graph),
         };
-        let mut signing = match &self.key {
-            Some(path) => {
-                let file = KeyFile::read(path)?;
-                file.remark.iter().for_each(|remark| eprintln!("staya: {remark}"));
-                // Link id 2; the bridge uses another one.
-                Some(Signing::new(file.key, 2, timestamp()))
-            }
-            None => None,
-        };
-        let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        let mut signing = signing(self.key.as_deref(), 2)?;
         // Every call gets a new boot counter, so robots accept its version 1.
-        let order = Order { goal: self.goal, to_all: true, boot: (since.as_millis() / 100) as u8, version: 1 };
+        let order = Order { goal: self.goal, to_all: true, boot: (micros_since_1970() / 100_000) as u8, version: 1 };
         let members = Members { robots: self.robots.clone(), places: self.places, heading: self.heading };
         let wait = Duration::from_secs_f64(self.wait);
         let given =
@@ -151,12 +137,7 @@ impl FormationArgs {
         } else {
             print(&self.table(&given))?;
         }
-        let robots = given.robots.iter().copied();
-        let silent: BTreeSet<u8> = robots
-            .filter(|robot| {
-                !given.placed.contains(robot) || (self.goal.is_some() && !given.heading_for_goal.contains(robot))
-            })
-            .collect();
+        let silent = given.silent(self.goal.is_some());
         if let Some((robot, objection)) = given.objections.first() {
             bail!("robot {robot}: {objection}; add [robots.formation] to the scenario");
         }

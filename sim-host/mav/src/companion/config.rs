@@ -22,7 +22,7 @@ const RADIUS: u8 = 16;
 #[serde(deny_unknown_fields)]
 struct ConfigFile {
     scenario: PathBuf,
-    origin: OriginTable,
+    origin: Global,
     #[serde(default)]
     air: AirTable,
     link_key: Option<PathBuf>,
@@ -30,15 +30,6 @@ struct ConfigFile {
     rules: RulesTable,
     #[serde(default)]
     vehicle: Vec<VehicleTable>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OriginTable {
-    latitude_deg: f64,
-    longitude_deg: f64,
-    #[serde(default)]
-    altitude_m: f64,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -159,12 +150,7 @@ impl Config {
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
         let file: ConfigFile = source.read(LIST)?;
-        let origin = Origin::new(Global {
-            latitude_deg: file.origin.latitude_deg,
-            longitude_deg: file.origin.longitude_deg,
-            altitude_m: file.origin.altitude_m,
-        });
-        let origin = origin.ok_or_else(|| {
+        let origin = Origin::new(file.origin).ok_or_else(|| {
             let remedy = "give latitude_deg from -90 to 90 and longitude_deg from -180 to 180";
             source.error("origin", "not a position on the Earth", remedy)
         })?;
@@ -213,32 +199,28 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
     let Some(plane) = &scenario.plane else {
         return Err(no_plane(source));
     };
-    let refused = |what: String, remedy: &str| Err(source.error("scenario", what, remedy));
-    if scenario.tick_us > 500_000 {
-        let what = format!("its tick of {} s is too long for vehicles", scenario.tick_s());
-        return refused(what, "give it tick_s = 0.5 or less; 0.1 is good");
+    let tick = format!("its tick of {} s is too long for vehicles", scenario.tick_s());
+    let radius = format!("route.radius {} is too large", scenario.route.params.radius);
+    let faults: [(bool, &str, &str); 6] = [
+        (scenario.tick_us > 500_000, &tick, "give it tick_s = 0.5 or less; 0.1 is good"),
+        (
+            !plane.orders.is_empty(),
+            "[[plane.order]] is not supported on real vehicles",
+            "remove it; an operator sends orders as packets",
+        ),
+        (
+            !plane.intruders.is_empty(),
+            "[[plane.intruder]] is not supported on real vehicles",
+            "remove it; intruders are simulated only",
+        ),
+        (plane.torus_m.is_some(), "plane.torus_m is not supported on real vehicles", "remove plane.torus_m"),
+        (scenario.sensing.is_some(), "autopilots report no detections of other vehicles", "remove plane.sensing"),
+        (scenario.route.params.radius > RADIUS, &radius, "give 16 or less"),
+    ];
+    match faults.into_iter().find(|(is_wrong, ..)| *is_wrong) {
+        Some((_, what, remedy)) => Err(source.error("scenario", what, remedy)),
+        None => Ok(()),
     }
-    if !plane.orders.is_empty() {
-        let what = String::from("[[plane.order]] is not supported on real vehicles");
-        return refused(what, "remove it; an operator sends orders as packets");
-    }
-    if !plane.intruders.is_empty() {
-        let what = String::from("[[plane.intruder]] is not supported on real vehicles");
-        return refused(what, "remove it; intruders are simulated only");
-    }
-    if plane.torus_m.is_some() {
-        let what = String::from("plane.torus_m is not supported on real vehicles");
-        return refused(what, "remove plane.torus_m");
-    }
-    if scenario.sensing.is_some() {
-        let what = String::from("autopilots report no detections of other vehicles");
-        return refused(what, "remove plane.sensing");
-    }
-    if scenario.route.params.radius > RADIUS {
-        let what = format!("route.radius {} is too large", scenario.route.params.radius);
-        return refused(what, "give 16 or less");
-    }
-    Ok(())
 }
 
 fn check_rules(source: &Source<'_>, rules: &RulesTable) -> Result<(), ScenarioError> {

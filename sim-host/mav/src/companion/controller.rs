@@ -7,7 +7,6 @@ use staya_controller::agent::{
 use staya_controller::agent::{GuidanceKind, SafetyKind, SafetySetup};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::parameters::RADIUS;
-use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{self, Instant};
 use staya_controller::wire::Wire;
 use staya_sim::engine::{self, Ground, Known, PlaneGround, Sensor, WIDE};
@@ -26,8 +25,10 @@ pub struct Body {
     pub error_m: f64,
 }
 
-type OperatedLaw = Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
-type ControllerAgent<W> = Agent<f32, OperatedLaw, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+/// A law that an operator may switch off.
+pub type OperatedLaw = Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
+/// The agent of a vehicle.
+pub type ControllerAgent<W> = Agent<f32, OperatedLaw, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// The agent of one vehicle with its map and senses.
 pub struct Controller<W> {
@@ -89,16 +90,10 @@ impl<W: Wire> Controller<W> {
         self.agent.wire_mut()
     }
 
-    /// Mode of the agent.
+    /// The agent.
     #[must_use]
-    pub fn mode(&self) -> Mode {
-        self.agent.mode()
-    }
-
-    /// Robot that this one follows; 0 for none.
-    #[must_use]
-    pub fn leader(&self) -> RobotId {
-        self.agent.leader()
+    pub fn agent(&self) -> &ControllerAgent<W> {
+        &self.agent
     }
 
     /// Why the robot waits, if it does.
@@ -118,17 +113,6 @@ impl<W: Wire> Controller<W> {
     pub fn known(&self) -> Vec<Known> {
         let stepped = self.stepped.iter();
         stepped.flat_map(|&(now, own, own_m)| engine::known(self.agent.neighbors(), own, own_m, now)).collect()
-    }
-
-    /// Number of known neighbours.
-    #[must_use]
-    pub fn neighbors(&self) -> usize {
-        self.agent.neighbors().len()
-    }
-
-    #[cfg(test)]
-    pub(crate) fn known_radius_m(&self, robot: u32) -> Option<f32> {
-        self.agent.neighbors().iter().find(|known| known.id.0 == robot).map(|known| known.radius_m)
     }
 
     /// Runs one step of the agent. An uncontrolled vehicle (flown by the pilot, or with stale

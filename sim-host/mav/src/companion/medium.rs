@@ -44,7 +44,7 @@ pub struct MediumError {
 }
 
 /// The network to companions in other processes.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Medium {
     socket: Option<UdpSocket>,
     to: Vec<SocketAddr>,
@@ -58,24 +58,16 @@ impl Medium {
     /// # Errors
     /// [`MediumError`] if an address is unavailable.
     pub fn open(setup: &MediumSetup) -> Result<Self, MediumError> {
-        let medium = |socket, to| Self { socket, to, sent: VecDeque::new() };
-        match setup {
-            MediumSetup::Here | MediumSetup::Tunnel => Ok(medium(None, Vec::new())),
-            MediumSetup::Multicast { group, interface } => match join(*group, *interface) {
-                Ok(socket) => Ok(medium(Some(socket), vec![SocketAddr::V4(*group)])),
-                Err(source) => Err(MediumError { over: group.to_string(), source }),
-            },
-            MediumSetup::Peers { bind, peers } => {
-                let socket = UdpSocket::bind(bind).and_then(|socket| {
-                    socket.set_nonblocking(true)?;
-                    Ok(socket)
-                });
-                match socket {
-                    Ok(socket) => Ok(medium(Some(socket), peers.clone())),
-                    Err(source) => Err(MediumError { over: bind.to_string(), source }),
-                }
+        let (over, socket, to) = match setup {
+            MediumSetup::Here | MediumSetup::Tunnel => return Ok(Self::default()),
+            MediumSetup::Multicast { group, interface } => {
+                (group.to_string(), join(*group, *interface), vec![SocketAddr::V4(*group)])
             }
-        }
+            MediumSetup::Peers { bind, peers } => (bind.to_string(), UdpSocket::bind(bind), peers.clone()),
+        };
+        let socket = socket.and_then(|socket| socket.set_nonblocking(true).map(|()| socket));
+        let socket = socket.map_err(|source| MediumError { over, source })?;
+        Ok(Self { socket: Some(socket), to, sent: VecDeque::new() })
     }
 
     /// Sends the frames of one agent. Datagrams that the network refuses are lost, as on a radio.
@@ -121,7 +113,6 @@ fn join(group: SocketAddrV4, interface: Ipv4Addr) -> io::Result<UdpSocket> {
     if !interface.is_unspecified() {
         socket.set_multicast_if_v4(&interface)?;
     }
-    socket.set_nonblocking(true)?;
     Ok(socket.into())
 }
 

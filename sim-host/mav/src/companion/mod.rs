@@ -21,7 +21,7 @@ pub use config::{Config, VehicleSetup};
 pub use controller::{Body, Controller};
 pub use kind::Kind;
 pub use medium::{Medium, MediumError, MediumSetup};
-pub use offboard::{AUTOPILOT, COMPONENT, Entry, Event, Fix, OffboardCounters, OffboardStateMachine, Rules, State};
+pub use offboard::{AUTOPILOT, Entry, Event, Fix, OffboardCounters, OffboardStateMachine, Rules, State};
 pub use report::{CompanionReport, VehicleReport};
 pub use run::{Options, RunError, Seen, Sight, run};
 pub use seal::{Seal, SealError};

@@ -14,20 +14,23 @@ pub use sight::{Seen, Sight};
 use super::config::{Config, VehicleSetup};
 use super::controller::Controller;
 use super::medium::{Medium, MediumSetup, tunnel, tunnelled};
-use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, Rules, State, status_text};
+use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
+use crate::framed::framed;
 use crate::geo::{Origin, ned};
-use crate::{Lines, Received};
+use crate::tlog::micros_since_1970;
+use crate::{Endpoint, Lines, Received};
 use demo::Demo;
 use machine::{Host, Machine};
 use options::DEMO_S;
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
 use staya_mavlink::dialect::MavMessage;
-use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
+use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::signing::Signing;
+use staya_mavlink::wire::COMPONENT;
 use staya_sim::engine::PlaneGround;
 use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
@@ -50,6 +53,7 @@ const SELDOM: Duration = Duration::from_secs(3);
 struct Link {
     name: String,
     trouble: Option<String>,
+    signing: Option<Signing>,
     is_end_told: bool,
 }
 
@@ -63,7 +67,6 @@ struct Companions<'a> {
     links: Vec<Link>,
     next_look: Duration,
     vehicles: Vec<Vehicle>,
-    signing: Option<Vec<Signing>>,
     wire: AnyWire,
     roll: Roll,
     options: &'a Options,
@@ -128,11 +131,6 @@ fn rules(setup: &VehicleSetup, options: &Options) -> Rules {
     Rules { rehearses: options.dry_run, stale, ..setup.rules }
 }
 
-fn micros_since_1970() -> u128 {
-    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
-    now.map_or(0, |time| time.as_micros())
-}
-
 impl<'a> Companions<'a> {
     fn new(
         config: &Config,
@@ -144,10 +142,12 @@ impl<'a> Companions<'a> {
         let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
         let boot = (micros_since_1970() >> 20) as u8;
         let format = config.scenario.radio.format;
-        let signing = link_key.map(|file| {
-            let line = |link| Signing::new(file.key.clone(), link, key::timestamp());
-            (0..=u8::MAX).map(line).take(config.lines.len()).collect()
-        });
+        let link = |(number, endpoint): (usize, &Endpoint)| Link {
+            name: endpoint.to_string(),
+            trouble: None,
+            signing: link_key.as_ref().map(|file| Signing::new(file.key.clone(), number as u8, key::timestamp())),
+            is_end_told: false,
+        };
         let vehicle = |setup: &VehicleSetup| Vehicle {
             setup: setup.clone(),
             max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
@@ -163,7 +163,7 @@ impl<'a> Companions<'a> {
             ),
             peer: None,
             is_signing_told: false,
-            sequence: 0,
+            sender: Sender { system: setup.system, component: COMPONENT, sequence: 0 },
             shown: None,
             inbox: Vec::new(),
             next_step: Duration::ZERO,
@@ -181,14 +181,9 @@ impl<'a> Companions<'a> {
             glance: if is_lan { lan } else { else_ },
             is_tunnel: config.air == MediumSetup::Tunnel,
             machine,
-            links: config
-                .lines
-                .iter()
-                .map(|line| Link { name: line.to_string(), trouble: None, is_end_told: false })
-                .collect(),
+            links: config.lines.iter().enumerate().map(link).collect(),
             next_look: Duration::ZERO,
             vehicles: config.vehicles.iter().map(vehicle).collect(),
-            signing,
             wire: AnyWire::new(format),
             roll: Roll::new(config.overlap, seal.is_some_and(Seal::has_old)),
             options,
@@ -278,10 +273,6 @@ impl<'a> Companions<'a> {
         });
     }
 
-    fn signing_of(&mut self, line: usize) -> Option<&mut Signing> {
-        self.signing.as_mut()?.get_mut(line)
-    }
-
     fn log(&mut self, frame: &[u8]) {
         if self.log_error.is_none()
             && let Err(error) = self.machine.log(frame)
@@ -308,11 +299,12 @@ impl<'a> Companions<'a> {
 
     fn hear(&mut self, received: &Received) {
         let Some(frame) = RawFrame::new(&received.frame) else { return };
-        let is_refused = self.signing_of(received.line).is_some_and(|signing| {
+        let signing = self.links[received.line].signing.as_mut();
+        let is_open = signing.is_none();
+        let is_refused = signing.is_some_and(|signing| {
             signing.advance_to(key::timestamp());
             !signing.verify(&frame).is_accepted()
         });
-        let is_open = self.signing.is_none();
         if is_refused || (is_open && frame.signature().is_some()) {
             self.tell_of_signing(received.line, frame.sender(), is_open);
         }
@@ -380,7 +372,7 @@ impl<'a> Companions<'a> {
         if steers {
             let velocity = ned(vehicle.controller.velocity_mps());
             vehicle.offboard.steer(velocity, now);
-            let is_there = vehicle.controller.mode() == Mode::Arrived;
+            let is_there = vehicle.controller.agent().mode() == Mode::Arrived;
             if is_there && !vehicle.has_arrived {
                 self.tell(index, "arrived");
             }
@@ -428,24 +420,18 @@ impl<'a> Companions<'a> {
     }
 
     fn send(&mut self, index: usize, message: &MavMessage) {
-        let vehicle = &mut self.vehicles[index];
-        let sender = Sender { system: vehicle.setup.system, component: COMPONENT, sequence: vehicle.sequence };
         if self.options.dry_run {
             return self.show(index, message);
         }
-        let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        if encode_message(sender, message, &mut frame).is_err() {
-            return;
-        }
-        vehicle.sequence = vehicle.sequence.wrapping_add(1);
-        let (line, peer) = (vehicle.setup.line, vehicle.peer);
-        if let Some(signing) = self.signing_of(line) {
+        let vehicle = &mut self.vehicles[index];
+        let line = vehicle.setup.line;
+        let mut signing = self.links[line].signing.as_mut();
+        if let Some(signing) = &mut signing {
             signing.advance_to(key::timestamp());
-            // Autopilots reject unsigned frames.
-            let Ok(signature) = signing.sign(&mut frame) else { return };
-            let _ = frame.extend_from_slice(&signature);
         }
-        self.machine.send(line, peer, &frame);
+        // Autopilots reject unsigned frames, so a frame that cannot be signed is not sent.
+        let Some(frame) = framed(&mut vehicle.sender, message, signing) else { return };
+        self.machine.send(line, vehicle.peer, &frame);
         self.log(&frame);
     }
 

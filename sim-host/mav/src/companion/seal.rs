@@ -66,9 +66,7 @@ pub struct Seal {
 
 /// After a power failure the file has the old or the new content.
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".new");
-    let new = PathBuf::from(name);
+    let new = path.with_added_extension("new");
     let mut file = File::create(&new)?;
     file.write_all(text.as_bytes())?;
     file.sync_all()?;
@@ -90,14 +88,9 @@ impl Seal {
     /// [`SealError`] with file and remedy.
     pub fn read(path: &Path) -> Result<Self, SealError> {
         let KeyFile { key, remark } = KeyFile::read(path)?;
-        let beside = |ending| {
-            let mut name = path.as_os_str().to_owned();
-            name.push(ending);
-            PathBuf::from(name)
-        };
-        let (file, before) = (path.to_path_buf(), beside(".old"));
+        let (file, before) = (path.to_path_buf(), path.with_added_extension("old"));
         let old = if before.exists() { Some(KeyFile::read(&before)?.key).filter(|old| *old != key) } else { None };
-        let path = beside(".starts");
+        let path = path.with_added_extension("starts");
         let starts = match std::fs::read_to_string(&path) {
             Ok(text) => text.strip_suffix('\n').and_then(|line| line.trim().parse::<u32>().ok()),
             Err(error) if error.kind() == ErrorKind::NotFound => return Err(SealError::Missing { path }),

@@ -1,12 +1,13 @@
 //! A ground station that sends orders to a formation and collects the confirmations.
 
 use super::{Graph, GraphError, Order, STATION, orders};
+use crate::framed::{framed, signed};
 use crate::{Endpoint, Lines, OpenError};
 use serde::Serialize;
 use staya_controller::grid::Dir;
 use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_WARNING, MAV_TYPE_GCS};
 use staya_mavlink::dialect::{HEARTBEAT_DATA, MavMessage};
-use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode};
+use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::signing::Signing;
 use staya_mavlink::wire::MAX_ROBOT;
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,6 +33,15 @@ pub struct Given {
     pub objections: Vec<(u8, String)>,
     /// Frames of orders sent, repetitions included.
     pub frames: usize,
+}
+
+impl Given {
+    /// Robots that have not confirmed their places, or the goal if they got one.
+    #[must_use]
+    pub fn silent(&self, has_goal: bool) -> BTreeSet<u8> {
+        let confirms = |robot: &u8| self.placed.contains(robot) && (!has_goal || self.heading_for_goal.contains(robot));
+        self.robots.iter().copied().filter(|robot| !confirms(robot)).collect()
+    }
 }
 
 /// Why no orders were sent.
@@ -96,37 +106,22 @@ struct Station<'a> {
     /// Longitude and latitude, 1e-7 degrees.
     at: BTreeMap<u8, [i32; 2]>,
     greeted: Option<Instant>,
-    sequence: u8,
+    sender: Sender,
     given: Given,
 }
 
 impl Station<'_> {
-    fn send(&mut self, frame: &[u8]) {
-        let mut frame = frame.to_vec();
-        if let Some(signing) = &mut self.signing {
-            match signing.sign(&mut frame) {
-                Ok(signature) => frame.extend_from_slice(&signature),
-                Err(_) => return,
-            }
-        }
-        self.lines.send(0, &frame);
-    }
-
     /// A listening link sends only to peers from which it received frames.
     fn greet(&mut self) {
         if self.greeted.is_some_and(|at| at.elapsed() < EVERY) {
             return;
         }
         self.greeted = Some(Instant::now());
-        let sender = Sender { system: STATION, component: 190, sequence: self.sequence };
-        self.sequence = self.sequence.wrapping_add(1);
         // 8: not an autopilot.
         let beat =
             HEARTBEAT_DATA { mavtype: MAV_TYPE_GCS, autopilot: 8, mavlink_version: 3, ..HEARTBEAT_DATA::DEFAULT };
-        let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        if encode(sender, &beat, &mut frame).is_ok() {
-            self.send(&frame);
-        }
+        let frame = framed(&mut self.sender, &MavMessage::HEARTBEAT(beat), self.signing.as_deref_mut());
+        frame.iter().for_each(|frame| self.lines.send_all(frame));
     }
 
     fn listen(&mut self) {
@@ -171,35 +166,30 @@ impl Station<'_> {
     fn gather(&mut self, endpoint: &Endpoint, wanted: &Members, until: Instant) -> Result<BTreeSet<u8>, StationError> {
         let mut first = None;
         loop {
-            let robots = wanted.robots.as_ref().unwrap_or(&self.heard);
-            let mut nowhere = robots.iter().filter(|robot| !self.at.contains_key(robot)).peekable();
-            let is_found = wanted.places == Places::Number || nowhere.peek().is_none();
-            let is_there = match &wanted.robots {
-                Some(robots) => robots.is_subset(&self.heard),
-                None => first.is_some_and(|at: Instant| at.elapsed() >= GATHER),
+            let robots = wanted.robots.as_ref().unwrap_or(&self.heard).clone();
+            let missing: BTreeSet<u8> = robots.difference(&self.heard).copied().collect();
+            let is_placed = |robot: &u8| wanted.places == Places::Number || self.at.contains_key(robot);
+            let nowhere: BTreeSet<u8> = robots.iter().copied().filter(|robot| !is_placed(robot)).collect();
+            let may_follow = wanted.robots.is_none() && first.is_none_or(|at: Instant| at.elapsed() < GATHER);
+            let is_whole = missing.is_empty() && nowhere.is_empty() && !may_follow;
+            if !is_whole && Instant::now() < until {
+                self.listen();
+                if !self.heard.is_empty() {
+                    first.get_or_insert_with(Instant::now);
+                }
+                continue;
+            }
+            return match () {
+                () if self.heard.is_empty() => Err(StationError::NoVehicle(endpoint.to_string())),
+                () if !missing.is_empty() => Err(StationError::Missing {
+                    missing: numbers(&missing),
+                    line: endpoint.to_string(),
+                    heard: numbers(&self.heard),
+                }),
+                () if !nowhere.is_empty() => Err(StationError::Nowhere(numbers(&nowhere))),
+                () => Ok(robots),
             };
-            if (is_there && is_found) || Instant::now() >= until {
-                break;
-            }
-            self.listen();
-            if !self.heard.is_empty() {
-                first.get_or_insert_with(Instant::now);
-            }
         }
-        if self.heard.is_empty() {
-            return Err(StationError::NoVehicle(endpoint.to_string()));
-        }
-        let robots = wanted.robots.as_ref().unwrap_or(&self.heard).clone();
-        let missing: BTreeSet<u8> = robots.difference(&self.heard).copied().collect();
-        if !missing.is_empty() {
-            let (missing, heard) = (numbers(&missing), numbers(&self.heard));
-            return Err(StationError::Missing { missing, line: endpoint.to_string(), heard });
-        }
-        let nowhere: BTreeSet<u8> = robots.iter().copied().filter(|robot| !self.at.contains_key(robot)).collect();
-        if wanted.places == Places::Nearest && !nowhere.is_empty() {
-            return Err(StationError::Nowhere(numbers(&nowhere)));
-        }
-        Ok(robots)
     }
 
     /// Positions relative to one robot, in a common unit.
@@ -251,7 +241,8 @@ pub fn give(
     let lines = Lines::open(std::slice::from_ref(endpoint))?;
     let until = Instant::now() + wait;
     let (heard, at, given) = (BTreeSet::new(), BTreeMap::new(), Given::default());
-    let mut station = Station { lines, signing, heard, at, greeted: None, sequence: 0, given };
+    let sender = Sender { system: STATION, component: 190, sequence: 0 };
+    let mut station = Station { lines, signing, heard, at, greeted: None, sender, given };
     let robots = station.gather(endpoint, members, until)?;
     let mut graph = graph(robots.len())?.turned(members.heading)?;
     if graph.robots() != robots.len() {
@@ -268,16 +259,17 @@ pub fn give(
     let until = until.max(Instant::now() + EVERY * 2);
     while Instant::now() < until {
         for chunk in frames.chunks(AT_ONCE) {
-            chunk.iter().for_each(|frame| station.send(frame));
+            for frame in chunk {
+                let frame = signed(frame.clone(), station.signing.as_deref_mut());
+                frame.iter().for_each(|frame| station.lines.send_all(frame));
+            }
             station.listen();
         }
         station.given.frames += frames.len();
         let again = Instant::now() + EVERY;
         while Instant::now() < again {
             station.listen();
-            let Given { robots, placed, heading_for_goal, objections, .. } = &station.given;
-            let has_all = placed.is_superset(robots) && (order.goal.is_none() || heading_for_goal.is_superset(robots));
-            if has_all || !objections.is_empty() {
+            if station.given.silent(order.goal.is_some()).is_empty() || !station.given.objections.is_empty() {
                 return Ok(station.given);
             }
         }

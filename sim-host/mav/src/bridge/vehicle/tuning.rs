@@ -1,4 +1,4 @@
-use super::super::params::{Meaning, NotSet};
+use super::super::params::{NotSet, SETPOINT_TIMEOUT};
 use super::{Action, Kind, Out, Vehicle};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
@@ -17,10 +17,8 @@ impl Vehicle {
         let told = self.parameters.message(index);
         out.messages.extend(told.map(MavMessage::PARAM_VALUE));
         match set {
-            Ok(Meaning::Controller(name)) => {
-                out.actions.push(Action::Set(name, wanted.param_value));
-            }
-            Ok(Meaning::SetpointTimeout) => {}
+            Ok(SETPOINT_TIMEOUT) => {}
+            Ok(name) => out.actions.push(Action::Set(name, wanted.param_value)),
             Err(NotSet::OutOf([least, greatest])) => {
                 let name = String::from_utf8_lossy(&*wanted.param_id).into_owned();
                 let name = name.trim_end_matches('\0');
@@ -33,10 +31,7 @@ impl Vehicle {
 
     /// Reports the value in use after the controller refused a value that conflicts with another.
     pub(in super::super) fn set_back(&mut self, name: &'static str, value: Option<f32>, out: &mut Out) {
-        let meaning = Meaning::Controller(name);
-        let Some(index) = value.and_then(|value| self.parameters.set_back(meaning, value)) else {
-            return;
-        };
+        let Some(index) = value.and_then(|value| self.parameters.set_back(name, value)) else { return };
         out.messages.extend(self.parameters.message(index).map(MavMessage::PARAM_VALUE));
         let text = format!("{name} conflicts with other parameters");
         self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);

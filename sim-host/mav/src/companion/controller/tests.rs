@@ -1,4 +1,5 @@
 use super::*;
+use staya_controller::robot::Mode;
 use staya_controller::wire::Postcard;
 use staya_sim::scenario::Overrides;
 use std::path::Path;
@@ -39,7 +40,7 @@ fn the_controller_heads_for_its_goal_and_sends_beacons() {
     }
     let [x, y, z] = controller.velocity_mps();
     assert!((x - 2.0).abs() < 1e-3 && y.abs() < 1e-3 && z == 0.0, "{x} {y} {z}");
-    assert_eq!(controller.mode(), Mode::Cruise);
+    assert_eq!(controller.agent().mode(), Mode::Cruise);
 }
 
 #[test]
@@ -48,7 +49,7 @@ fn an_uncontrolled_vehicle_is_passive_and_gets_no_command() {
     let _ = controller.step(&at(0.0, 0.0), true, &[], Duration::ZERO);
     let out = controller.step(&at(1.0, 0.0), false, &[], TICK);
     assert!(!out.outbox.is_empty(), "beacons continue");
-    assert_eq!(controller.mode(), Mode::Passive);
+    assert_eq!(controller.agent().mode(), Mode::Passive);
     assert_eq!(controller.velocity_mps(), [0.0; 3]);
 }
 
@@ -74,7 +75,7 @@ fn a_lagging_vehicle_stops_at_its_goal_without_overshoot() {
             follow(&mut body, controller.velocity_mps(), lag_s);
             farthest = farthest.max(body.position_m[0]);
         }
-        assert_eq!(controller.mode(), Mode::Arrived);
+        assert_eq!(controller.agent().mode(), Mode::Arrived);
         assert!(farthest < 50.1, "lag {lag_s} s: {farthest} m");
         assert!((body.position_m[0] - 50.0).abs() < 1.0, "lag {lag_s} s: {:?}", body.position_m);
     }
@@ -100,7 +101,7 @@ fn lagging_vehicles_that_meet_do_not_touch() {
             least = least.min(libm::hypot(off[0], off[1]));
         }
         assert!(least > 2.0, "lag {lag_s} s: {least} m");
-        assert!(both.iter().all(|controller| controller.mode() == Mode::Arrived), "lag {lag_s} s: {bodies:?}");
+        assert!(both.iter().all(|controller| controller.agent().mode() == Mode::Arrived), "lag {lag_s} s: {bodies:?}");
     }
 }
 
@@ -133,7 +134,7 @@ fn least_distance(error_m: f64) -> f64 {
         let off = [0, 1].map(|axis| moves.position_m[axis] - stands.position_m[axis]);
         least = least.min(off.iter().map(|x| x * x).sum::<f64>().sqrt());
     }
-    assert_eq!(second.mode(), Mode::Arrived);
+    assert_eq!(second.agent().mode(), Mode::Arrived);
     least
 }
 

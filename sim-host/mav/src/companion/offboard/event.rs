@@ -1,4 +1,5 @@
-use super::{ARM_DISARM, DO_SET_MODE, Doubt, NAV_TAKEOFF, State};
+use super::{Doubt, State};
+use staya_mavlink::constants::{MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF};
 use std::fmt;
 use std::time::Duration;
 
@@ -68,9 +69,9 @@ impl State {
 
 const fn command_words(command: u16) -> &'static str {
     match command {
-        DO_SET_MODE => "mode change",
-        ARM_DISARM => "arming",
-        NAV_TAKEOFF => "takeoff",
+        MAV_CMD_DO_SET_MODE => "mode change",
+        MAV_CMD_COMPONENT_ARM_DISARM => "arming",
+        MAV_CMD_NAV_TAKEOFF => "takeoff",
         _ => "a request",
     }
 }

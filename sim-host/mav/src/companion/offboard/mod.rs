@@ -15,23 +15,22 @@ mod poll;
 
 pub use event::Event;
 pub use health::Doubt;
-pub use out::{ARM_DISARM, DO_SET_MODE, NAV_TAKEOFF, SET_MESSAGE_INTERVAL, status_text};
+pub use out::status_text;
 
 use super::kind::Kind;
 use crate::geo::Global;
 use health::Health;
 use serde::{Deserialize, Serialize};
 use staya_mavlink::constants::{
+    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_COMP_ID_AUTOPILOT1,
     MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_LANDING, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
 };
 use staya_mavlink::dialect::MavMessage;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Component id of the companion, `MAV_COMP_ID_ONBOARD_COMPUTER`.
-pub const COMPONENT: u8 = 191;
 /// Component id of the autopilot.
-pub const AUTOPILOT: u8 = 1;
+pub const AUTOPILOT: u8 = MAV_COMP_ID_AUTOPILOT1;
 
 const HEARTBEAT: Duration = Duration::from_secs(1);
 const QUIET: Duration = Duration::from_secs(5);
@@ -125,8 +124,41 @@ pub struct Fix {
 struct Beat {
     at: Duration,
     custom_mode: u32,
-    is_controlled: bool,
+    control: Control,
     is_armed: bool,
+}
+
+/// The external control mode in heartbeats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Control {
+    /// Another mode.
+    Pilot,
+    /// The mode, as a permission.
+    Companion,
+    /// The mode since before a restart: the pilot must leave it first.
+    Withdrawn,
+}
+
+/// The last trusted position.
+#[derive(Clone, Copy, Debug)]
+enum Position {
+    Unknown,
+    /// Kept, because it is the best estimate for others.
+    BeforeRestart(Fix),
+    OfThisBoot(Fix),
+}
+
+/// Telemetry since the last restart of the autopilot.
+#[derive(Clone, Debug, Default)]
+struct Boot {
+    health: Health,
+    /// Largest time since boot.
+    time_ms: Option<u32>,
+    /// The last message behind that time, and how many in a row rose.
+    behind: Option<(u32, u8)>,
+    /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
+    velocity: Option<(Duration, [f64; 3])>,
+    landed: Option<u8>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +166,35 @@ enum Ask {
     Mode,
     Arm,
     Takeoff,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Request {
+    ask: Ask,
+    attempt: u8,
+    at: Duration,
+}
+
+/// Progress of [`Entry::Once`].
+#[derive(Clone, Copy, Debug)]
+enum Entering {
+    /// Not wanted, complete, or stopped by the pilot.
+    Over,
+    Open {
+        request: Option<Request>,
+        /// Command and result of the last acknowledgement, if it was a refusal.
+        refused: Option<(u16, u8)>,
+    },
+}
+
+/// The last check of the rates at which telemetry arrives.
+#[derive(Clone, Copy, Debug)]
+struct Check {
+    next: Duration,
+    positions: u64,
+    reports: u64,
+    /// Number of checks since the first request.
+    count: u8,
 }
 
 /// Counters of a companion.
@@ -163,28 +224,15 @@ pub struct OffboardStateMachine {
     rules: Rules,
     state: State,
     beat: Option<Beat>,
-    fix: Option<Fix>,
-    is_of_boot: bool,
-    health: Health,
-    boot_ms: Option<u32>,
-    behind: Option<(u32, u8)>,
-    /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
-    velocity: Option<(Duration, [f64; 3])>,
-    landed: Option<u8>,
-    may_enter: bool,
-    /// Whether the mode is not a permission until it was left.
-    must_be_left: bool,
+    position: Position,
+    boot: Boot,
+    entering: Entering,
     quiet_until: Duration,
     streaming_since: Option<Duration>,
-    asked: Option<(Ask, u8, Duration)>,
-    refused: Option<(u16, u8)>,
     command: Option<(Duration, [f64; 3])>,
     next_heartbeat: Duration,
     next_setpoint: Duration,
-    next_look: Option<Duration>,
-    positions_at_look: u64,
-    reports_at_look: u64,
-    looks: u8,
+    check: Option<Check>,
     events: VecDeque<Event>,
     tally: OffboardCounters,
 }
@@ -199,26 +247,18 @@ impl OffboardStateMachine {
             rules,
             state: State::Silent,
             beat: None,
-            fix: None,
-            is_of_boot: false,
-            health: Health::default(),
-            boot_ms: None,
-            behind: None,
-            velocity: None,
-            landed: None,
-            may_enter: rules.entry == Entry::Once,
-            must_be_left: false,
+            position: Position::Unknown,
+            boot: Boot::default(),
+            entering: match rules.entry {
+                Entry::Wait => Entering::Over,
+                Entry::Once => Entering::Open { request: None, refused: None },
+            },
             quiet_until: Duration::ZERO,
             streaming_since: None,
-            asked: None,
-            refused: None,
             command: None,
             next_heartbeat: Duration::ZERO,
             next_setpoint: Duration::ZERO,
-            next_look: None,
-            positions_at_look: 0,
-            reports_at_look: 0,
-            looks: 0,
+            check: None,
             events: VecDeque::new(),
             tally: OffboardCounters::default(),
         }
@@ -239,14 +279,18 @@ impl OffboardStateMachine {
     /// Last trusted position, of any age and any boot.
     #[must_use]
     pub const fn fix(&self) -> Option<Fix> {
-        self.fix
+        match self.position {
+            Position::Unknown => None,
+            Position::BeforeRestart(fix) | Position::OfThisBoot(fix) => Some(fix),
+        }
     }
 
     /// Last position, if it is fresh and trusted.
     #[must_use]
     pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
-        let fix = self.fix.filter(|_| self.is_of_boot && self.health.is_trusted(now));
-        fix.filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
+        let Position::OfThisBoot(fix) = self.position else { return None };
+        let is_fresh = now.saturating_sub(fix.at) <= self.rules.stale;
+        (is_fresh && self.boot.health.is_trusted(now)).then_some(fix)
     }
 
     /// Takes the next event for the operator.
@@ -270,15 +314,15 @@ impl OffboardStateMachine {
                     return;
                 }
                 let fine = self
+                    .boot
                     .velocity
                     .filter(|(heard, _)| now.saturating_sub(*heard).as_secs_f64() * self.rules.position_hz <= 2.0);
                 let coarse = [at.vx, at.vy, at.vz].map(|v| f64::from(v) / 100.0);
                 self.tally.positions += 1;
-                if !self.health.is_trusted(now) {
+                if !self.boot.health.is_trusted(now) {
                     return;
                 }
-                self.is_of_boot = true;
-                self.fix = Some(Fix {
+                self.position = Position::OfThisBoot(Fix {
                     at: now,
                     place: Global::from_e7(at.lat, at.lon, at.alt),
                     above_home_m: f64::from(at.relative_alt) / 1e3,
@@ -288,13 +332,13 @@ impl OffboardStateMachine {
             MavMessage::LOCAL_POSITION_NED(at) if self.is_in_order(at.time_boot_ms) => {
                 let velocity = [at.vx, at.vy, at.vz];
                 if velocity.iter().all(|v| v.is_finite()) {
-                    self.velocity = Some((now, velocity.map(f64::from)));
+                    self.boot.velocity = Some((now, velocity.map(f64::from)));
                 }
             }
-            MavMessage::EXTENDED_SYS_STATE(state) => self.landed = Some(state.landed_state),
+            MavMessage::EXTENDED_SYS_STATE(state) => self.boot.landed = Some(state.landed_state),
             MavMessage::COMMAND_ACK(ack) => self.acknowledged(ack.command, ack.result),
             _ => {
-                if let Some(doubt) = self.health.hear(message, now) {
+                if let Some(doubt) = self.boot.health.hear(message, now) {
                     self.tally.doubts += 1;
                     self.events.push_back(Event::Doubts(doubt));
                     self.settle(now);
@@ -305,12 +349,12 @@ impl OffboardStateMachine {
 
     /// Returns false for a reordered message.
     fn is_in_order(&mut self, boot_ms: u32) -> bool {
-        let since = self.boot_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
+        let since = self.boot.time_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
         match since {
             Some(ms) if (-OVERTAKEN_MS..0).contains(&ms) => {
-                let rising = self.behind.filter(|(last, _)| boot_ms > *last);
+                let rising = self.boot.behind.filter(|(last, _)| boot_ms > *last);
                 let count = rising.map_or(1, |(_, count)| count.saturating_add(1));
-                self.behind = Some((boot_ms, count));
+                self.boot.behind = Some((boot_ms, count));
                 if count < BEHIND {
                     return false;
                 }
@@ -319,38 +363,43 @@ impl OffboardStateMachine {
             Some(ms) if !(0..=DAY_MS).contains(&ms) => self.restarted(),
             _ => {}
         }
-        (self.boot_ms, self.behind) = (Some(boot_ms), None);
+        (self.boot.time_ms, self.boot.behind) = (Some(boot_ms), None);
         true
     }
 
     fn restarted(&mut self) {
         self.tally.restarts += 1;
         self.events.push_back(Event::Restarted);
-        self.must_be_left = self.beat.is_some_and(|beat| beat.is_controlled);
+        if let Some(Beat { control: control @ Control::Companion, .. }) = &mut self.beat {
+            *control = Control::Withdrawn;
+        }
         self.end_entry(None);
-        // The last position is kept: it is the best estimate for others.
-        self.is_of_boot = false;
-        self.health = Health::default();
-        (self.velocity, self.landed) = (None, None);
-        self.next_look = None;
+        self.position = self.fix().map_or(Position::Unknown, Position::BeforeRestart);
+        self.boot = Boot::default();
+        self.check = None;
     }
 
     fn heartbeat(&mut self, custom_mode: u32, base_mode: u8, now: Duration) {
         const CUSTOM: u8 = 1;
         const ARMED: u8 = 128;
-        let is_controlled = base_mode & CUSTOM != 0 && self.kind.is_outside_control(custom_mode);
-        let beat = Beat { at: now, custom_mode, is_controlled, is_armed: base_mode & ARMED != 0 };
+        let is_withdrawn = self.beat.is_some_and(|last| last.control == Control::Withdrawn);
+        let control = match base_mode & CUSTOM != 0 && self.kind.is_outside_control(custom_mode) {
+            false => Control::Pilot,
+            true if is_withdrawn => Control::Withdrawn,
+            true => Control::Companion,
+        };
+        let beat = Beat { at: now, custom_mode, control, is_armed: base_mode & ARMED != 0 };
         self.tally.heartbeats += 1;
         if let Some(last) = self.beat {
             if now.saturating_sub(last.at) > self.rules.link_lost {
                 self.events.push_back(Event::Back(now.saturating_sub(last.at)));
-                self.next_look = None;
+                self.check = None;
             }
             let is_changed = last.custom_mode != custom_mode;
-            if is_changed && !is_controlled || last.is_armed && !beat.is_armed {
+            if is_changed && control == Control::Pilot || last.is_armed && !beat.is_armed {
                 self.end_entry(Some(Event::PilotActs));
             }
-            if last.is_controlled && !is_controlled {
+            if last.control != Control::Pilot && control == Control::Pilot {
                 self.quiet_until = now + QUIET;
                 self.streaming_since = None;
                 if self.state.has_control() {
@@ -359,33 +408,27 @@ impl OffboardStateMachine {
                 }
             }
         }
-        if !is_controlled {
-            self.must_be_left = false;
-        }
         self.beat = Some(beat);
         self.settle(now);
     }
 
     fn end_entry(&mut self, event: Option<Event>) {
-        if self.may_enter {
+        if let Entering::Open { .. } = std::mem::replace(&mut self.entering, Entering::Over) {
             self.events.extend(event);
         }
-        self.may_enter = false;
-        self.asked = None;
     }
 
     fn acknowledged(&mut self, command: u16, result: u8) {
         const IN_PROGRESS: u8 = 5;
-        let is_own = [out::DO_SET_MODE, out::ARM_DISARM, out::NAV_TAKEOFF].contains(&command);
-        let is_done = result == 0 || result == IN_PROGRESS;
-        if !is_own || self.asked.is_none() {
+        let Entering::Open { request: Some(_), refused: last } = &mut self.entering else { return };
+        if ![MAV_CMD_DO_SET_MODE, MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_NAV_TAKEOFF].contains(&command) {
             return;
         }
-        let refused = (!is_done).then_some((command, result));
-        if let Some((command, result)) = refused.filter(|_| refused != self.refused) {
+        let refused = (result != 0 && result != IN_PROGRESS).then_some((command, result));
+        if refused.is_some() && refused != *last {
             self.events.push_back(Event::Refused { command, result });
         }
-        self.refused = refused;
+        *last = refused;
     }
 
     /// A takeoff must be complete: takeoff and landing belong to the pilot or the entry.
@@ -395,23 +438,27 @@ impl OffboardStateMachine {
         }
         let has_begun = self.state.has_control();
         let [_, _, down_mps] = fix.velocity_ned_mps;
-        let asked_m = self.rules.altitude_m.filter(|_| self.may_enter && self.rules.takeoff);
+        let asked_m = self.rules.altitude_m.filter(|_| self.is_entering() && self.rules.takeoff);
         let is_up = match asked_m {
             Some(altitude_m) => fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5),
             None => has_begun || -down_mps < CLIMB_OVER_MPS,
         };
-        match self.landed {
+        match self.boot.landed {
             Some(MAV_LANDED_STATE_ON_GROUND | MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_LANDING) => false,
             Some(MAV_LANDED_STATE_IN_AIR) => is_up,
             _ => fix.above_home_m >= LOW_M && is_up,
         }
     }
 
+    const fn is_entering(&self) -> bool {
+        matches!(self.entering, Entering::Open { .. })
+    }
+
     fn is_taking_off(&self) -> bool {
-        match self.landed {
+        match self.boot.landed {
             Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
             Some(MAV_LANDED_STATE_ON_GROUND) => false,
-            _ => self.fix.is_some_and(|fix| self.is_of_boot && fix.above_home_m >= LOW_M),
+            _ => matches!(self.position, Position::OfThisBoot(fix) if fix.above_home_m >= LOW_M),
         }
     }
 
@@ -426,19 +473,18 @@ impl OffboardStateMachine {
         if self.rules.rehearses {
             return if fix.is_some() { State::Steering } else { State::NoPosition };
         }
-        let enters = self.may_enter && fix.is_some() && (beat.is_armed || self.rules.arm);
-        if !beat.is_controlled {
-            return if enters { State::Entering } else { State::Pilot };
-        }
-        if self.must_be_left {
-            return State::Restarted;
+        let enters = self.is_entering() && fix.is_some() && (beat.is_armed || self.rules.arm);
+        match beat.control {
+            Control::Pilot => return if enters { State::Entering } else { State::Pilot },
+            Control::Withdrawn => return State::Restarted,
+            Control::Companion => {}
         }
         if !beat.is_armed {
             return if enters { State::Entering } else { State::Disarmed };
         }
         let Some(fix) = fix else {
             return match self.state {
-                State::Steering | State::Stopped | State::Distrusted if !self.health.is_trusted(now) => {
+                State::Steering | State::Stopped | State::Distrusted if !self.boot.health.is_trusted(now) => {
                     State::Distrusted
                 }
                 State::Distrusted => State::Distrusted,

@@ -1,4 +1,8 @@
 use super::{AUTOPILOT, Kind};
+use staya_mavlink::constants::{
+    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
+    MAV_FRAME_LOCAL_NED,
+};
 use staya_mavlink::dialect::{
     COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
     GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GPS2_RAW_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavMessage,
@@ -7,13 +11,8 @@ use staya_mavlink::dialect::{
 use staya_mavlink::mavlink_core::MessageData as _;
 use std::time::Duration;
 
-pub const NAV_TAKEOFF: u16 = 22;
-pub const DO_SET_MODE: u16 = 176;
-pub const ARM_DISARM: u16 = 400;
-pub const SET_MESSAGE_INTERVAL: u16 = 511;
 const VELOCITY_ONLY: u16 = 0xDC7;
 const VELOCITY_AND_YAW_RATE: u16 = 0x5C7;
-const LOCAL_NED: u8 = 1;
 
 pub fn heartbeat() -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
@@ -25,34 +24,29 @@ pub fn heartbeat() -> MavMessage {
     })
 }
 
-fn command(system: u8, command: u16, params: [f64; 7]) -> MavMessage {
-    let [param1, param2, param3, param4, param5, param6, param7] = params.map(|p| p as f32);
+fn command(system: u8, command: u16, params: [f64; 2], height_m: f64) -> MavMessage {
+    let [param1, param2] = params.map(|p| p as f32);
     MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
         param1,
         param2,
-        param3,
-        param4,
-        param5,
-        param6,
-        param7,
+        param7: height_m as f32,
         command,
         target_system: system,
         target_component: AUTOPILOT,
-        confirmation: 0,
+        ..COMMAND_LONG_DATA::DEFAULT
     })
 }
 
 pub fn set_mode(system: u8, kind: Kind) -> MavMessage {
-    let mode = f64::from(kind.outside_control());
-    command(system, DO_SET_MODE, [1.0, mode, 0.0, 0.0, 0.0, 0.0, 0.0])
+    command(system, MAV_CMD_DO_SET_MODE, [1.0, f64::from(kind.outside_control())], 0.0)
 }
 
 pub fn arm(system: u8) -> MavMessage {
-    command(system, ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    command(system, MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0], 0.0)
 }
 
 pub fn takeoff(system: u8, altitude_m: f64) -> MavMessage {
-    command(system, NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, altitude_m])
+    command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)
 }
 
 /// Positions, and from flying vehicles the landed state at 2 Hz.
@@ -72,7 +66,7 @@ pub fn health_intervals(system: u8, kind: Kind) -> impl Iterator<Item = MavMessa
 }
 
 fn interval(system: u8, id: u32, hz: f64) -> MavMessage {
-    command(system, SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0])
+    command(system, MAV_CMD_SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz], 0.0)
 }
 
 /// Below 0.05 m/s an ArduPilot rover also gets a yaw rate of 0: it derives its heading from the
@@ -88,7 +82,7 @@ pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duratio
         time_boot_ms: now.as_millis() as u32,
         target_system: system,
         target_component: AUTOPILOT,
-        coordinate_frame: LOCAL_NED,
+        coordinate_frame: MAV_FRAME_LOCAL_NED,
         type_mask,
         vx,
         vy,

@@ -1,4 +1,6 @@
-use super::{Ask, Event, HEARTBEAT, OffboardStateMachine, Rules, State, out};
+use super::{
+    Ask, Check, Control, Entering, Event, HEARTBEAT, OffboardCounters, OffboardStateMachine, Request, Rules, State, out,
+};
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
@@ -74,45 +76,41 @@ impl OffboardStateMachine {
 
     /// Adds the climb to the set height, and holds it unless the agent controls the height.
     fn at_altitude(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
-        let is_armed = self.beat.is_some_and(|beat| beat.is_armed && beat.is_controlled);
+        let is_armed = self.beat.is_some_and(|beat| beat.is_armed && beat.control != Control::Pilot);
         let is_told = self.rules.keeps_altitude || self.state == State::Entering;
-        let height = self.rules.altitude_m.zip(self.fix).filter(|_| is_armed && is_told);
+        let height = self.rules.altitude_m.zip(self.fix()).filter(|_| is_armed && is_told);
         let down = height.map_or(down, |(altitude_m, fix)| -(0.5 * (altitude_m - fix.above_home_m)).clamp(-1.0, 1.0));
         [north, east, down]
     }
 
+    /// Requests message rates at first, and again if too few messages arrived.
     fn look(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
-        if self.next_look.is_some_and(|at| now < at) {
-            return;
-        }
-        let is_first = self.next_look.is_none();
         // A dry run gets no answers, so it requests once.
-        if self.rules.rehearses && !is_first {
+        if self.check.is_some_and(|last| now < last.next || self.rules.rehearses) {
             return;
         }
-        let got = self.tally.positions - self.positions_at_look;
+        let Self { system, kind, tally: OffboardCounters { positions, .. }, .. } = *self;
+        let reports = self.boot.health.reports;
         let wanted = self.rules.position_hz * LOOK.as_secs_f64();
-        if is_first || (got as f64) < wanted / 2.0 {
-            out.extend(out::intervals(self.system, self.kind, self.rules.position_hz));
+        if self.check.is_none_or(|last| ((positions - last.positions) as f64) < wanted / 2.0) {
+            out.extend(out::intervals(system, kind, self.rules.position_hz));
         }
-        self.looks = if is_first { 0 } else { self.looks.saturating_add(1) };
-        let has_health = !is_first && self.health.reports > self.reports_at_look;
-        if !has_health && self.looks < HEALTH_LOOKS {
-            out.extend(out::health_intervals(self.system, self.kind));
-        } else if !has_health && self.looks == HEALTH_LOOKS {
+        let count = self.check.map_or(0, |last| last.count.saturating_add(1));
+        let has_health = self.check.is_some_and(|last| reports > last.reports);
+        if !has_health && count < HEALTH_LOOKS {
+            out.extend(out::health_intervals(system, kind));
+        } else if !has_health && count == HEALTH_LOOKS {
             self.events.push_back(Event::NoHealth);
         }
-        self.positions_at_look = self.tally.positions;
-        self.reports_at_look = self.health.reports;
-        self.next_look = Some(now + LOOK);
+        self.check = Some(Check { next: now + LOOK, positions, reports, count });
     }
 
     fn enter(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         let Some(beat) = self.beat else { return };
-        let ask = match (beat.is_controlled, beat.is_armed) {
-            (false, _) => Ask::Mode,
-            (true, false) => Ask::Arm,
-            (true, true) => Ask::Takeoff,
+        let ask = match (beat.control, beat.is_armed) {
+            (Control::Pilot, _) => Ask::Mode,
+            (_, false) => Ask::Arm,
+            (_, true) => Ask::Takeoff,
         };
         // ArduPilot answers a second request during the climb with "failed".
         if ask == Ask::Takeoff && self.is_taking_off() {
@@ -122,20 +120,16 @@ impl OffboardStateMachine {
         if ask == Ask::Mode && self.kind.needs_stream() && !self.streaming_since.is_some_and(is_streaming) {
             return;
         }
-        let attempt = match self.asked {
-            Some((last, attempt, at)) if last == ask => {
-                if now.saturating_sub(at) < RETRY {
-                    return;
-                }
-                attempt + 1
-            }
+        let Entering::Open { request, .. } = &mut self.entering else { return };
+        let attempt = match *request {
+            Some(last) if last.ask == ask && now.saturating_sub(last.at) < RETRY => return,
+            Some(last) if last.ask == ask => last.attempt + 1,
             _ => 1,
         };
         if attempt > ATTEMPTS {
-            self.end_entry(Some(Event::GaveUp));
-            return;
+            return self.end_entry(Some(Event::GaveUp));
         }
-        self.asked = Some((ask, attempt, now));
+        *request = Some(Request { ask, attempt, at: now });
         match ask {
             Ask::Mode => out.push(out::set_mode(self.system, self.kind)),
             Ask::Arm => out.push(out::arm(self.system)),
@@ -149,9 +143,7 @@ impl OffboardStateMachine {
     }
 
     fn rehearse_entry(&mut self, out: &mut Vec<MavMessage>) {
-        if !std::mem::take(&mut self.may_enter) {
-            return;
-        }
+        let Entering::Open { .. } = std::mem::replace(&mut self.entering, Entering::Over) else { return };
         let Rules { arm, takeoff, altitude_m, .. } = self.rules;
         out.push(out::set_mode(self.system, self.kind));
         out.extend(arm.then(|| out::arm(self.system)));

@@ -200,8 +200,8 @@ fn no_requests_are_sent_while_the_pilot_has_control() {
         let sent = bench.run(30.0);
         assert_eq!(bench.state(), State::Pilot);
         assert_eq!(setpoints(&sent).len(), 0);
-        assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
-        assert_eq!(commands(&sent, out::ARM_DISARM), 0);
+        assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 0);
+        assert_eq!(commands(&sent, MAV_CMD_COMPONENT_ARM_DISARM), 0);
     }
 }
 
@@ -220,7 +220,7 @@ fn a_disarmed_vehicle_gets_no_setpoints() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, GUIDED, DISARMED);
     let sent = bench.run(5.0);
     assert_eq!(bench.state(), State::Disarmed);
-    assert_eq!(setpoints(&sent).len() + commands(&sent, out::ARM_DISARM), 0);
+    assert_eq!(setpoints(&sent).len() + commands(&sent, MAV_CMD_COMPONENT_ARM_DISARM), 0);
     bench.base = ARMED;
     bench.run(1.0);
     assert_eq!(bench.state(), State::Steering);
@@ -287,7 +287,7 @@ fn the_pilot_gets_control_with_the_first_heartbeat_in_another_mode() {
         assert_eq!(bench.state(), State::Pilot);
         let sent = bench.run(60.0);
         assert_eq!(setpoints(&sent).len(), 0);
-        assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "control is not requested back");
+        assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 0, "control is not requested back");
         assert!(bench.events().contains(&Event::HandedOver(MANUAL)));
         assert_eq!(bench.offboard.tally().hand_overs, 1);
         bench.mode = GUIDED;

@@ -2,19 +2,22 @@
 
 use super::machine::Machine;
 use crate::companion::config::{Config, VehicleSetup};
-use crate::companion::offboard::{ARM_DISARM, AUTOPILOT, DO_SET_MODE, Entry, NAV_TAKEOFF, SET_MESSAGE_INTERVAL};
+use crate::companion::offboard::{AUTOPILOT, Entry};
+use crate::framed::framed;
 use crate::geo::{Origin, enu, ned};
 use crate::{Counts, Peer, Received, Tlog};
-use staya_mavlink::constants::{MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF};
+use staya_mavlink::constants::{
+    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
+    MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
+};
 use staya_mavlink::dialect::{
     COMMAND_ACK_DATA, COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
     GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavMessage,
 };
-use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
+use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::mavlink_core::MessageData as _;
 use staya_sim::record;
 use std::collections::VecDeque;
-use std::io::{self, Write as _};
 use std::time::Duration;
 
 const STEP: Duration = Duration::from_millis(20);
@@ -51,7 +54,7 @@ struct Autopilot {
     is_armed: bool,
     climb_to_m: Option<f64>,
     position_every: Duration,
-    sequence: u8,
+    sender: Sender,
 }
 
 impl Demo {
@@ -70,7 +73,7 @@ impl Demo {
                 is_armed: false,
                 climb_to_m: None,
                 position_every: Duration::from_millis(250),
-                sequence: 0,
+                sender: Sender { system: setup.system, component: AUTOPILOT, sequence: 0 },
             }
         };
         Self {
@@ -194,20 +197,17 @@ impl Autopilot {
     }
 
     fn packed(&mut self, message: &MavMessage) -> Received {
-        let sender = Sender { system: self.setup.system, component: AUTOPILOT, sequence: self.sequence };
-        self.sequence = self.sequence.wrapping_add(1);
-        let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
         // A frame has room for any message.
-        let _ = encode_message(sender, message, &mut frame);
+        let frame = framed(&mut self.sender, message, None).unwrap_or_default();
         Received { line: self.setup.line, peer: Peer::Wire, frame: frame.to_vec() }
     }
 
     fn obey(&mut self, command: &COMMAND_LONG_DATA) {
         match command.command {
-            DO_SET_MODE => self.is_controlled = command.param2 == self.setup.kind.outside_control() as f32,
-            ARM_DISARM => self.is_armed = command.param1 != 0.0,
-            NAV_TAKEOFF if !self.is_flying() => self.climb_to_m = Some(command.param7.into()),
-            SET_MESSAGE_INTERVAL if command.param1 == GLOBAL_POSITION_INT_DATA::ID as f32 => {
+            MAV_CMD_DO_SET_MODE => self.is_controlled = command.param2 == self.setup.kind.outside_control() as f32,
+            MAV_CMD_COMPONENT_ARM_DISARM => self.is_armed = command.param1 != 0.0,
+            MAV_CMD_NAV_TAKEOFF if !self.is_flying() => self.climb_to_m = Some(command.param7.into()),
+            MAV_CMD_SET_MESSAGE_INTERVAL if command.param1 == GLOBAL_POSITION_INT_DATA::ID as f32 => {
                 self.position_every = Duration::from_micros(command.param2.max(0.0) as u64);
             }
             _ => {}
@@ -256,19 +256,9 @@ impl Machine for Demo {
         }
     }
 
-    fn believe(&mut self, _: usize, _: Peer) {}
-
     fn counts(&self, line: usize) -> Counts {
         self.counts[line]
     }
-
-    fn trouble(&self, _: usize) -> Option<String> {
-        None
-    }
-
-    fn hear_others(&mut self, _: &mut dyn FnMut(&[u8])) {}
-
-    fn tell_others(&mut self, _: &[u8]) {}
 
     fn log(&mut self, frame: &[u8]) -> Result<(), record::Error> {
         self.tlog.as_mut().map_or(Ok(()), |tlog| tlog.add(frame))
@@ -276,13 +266,5 @@ impl Machine for Demo {
 
     fn close_log(&mut self) -> Result<(), record::Error> {
         self.tlog.take().map_or(Ok(()), Tlog::finish)
-    }
-
-    fn show(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stdout(), "{line}")
-    }
-
-    fn tell(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stderr(), "{line}")
     }
 }

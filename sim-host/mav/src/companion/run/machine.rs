@@ -8,6 +8,7 @@ use staya_sim::record;
 use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
+/// By default there is no network, and no peer to choose from.
 pub trait Machine {
     fn now(&self) -> Duration;
 
@@ -17,15 +18,17 @@ pub trait Machine {
 
     fn send(&mut self, line: usize, peer: Option<Peer>, frame: &[u8]);
 
-    fn believe(&mut self, line: usize, peer: Peer);
+    fn believe(&mut self, _line: usize, _peer: Peer) {}
 
     fn counts(&self, line: usize) -> Counts;
 
-    fn trouble(&self, line: usize) -> Option<String>;
+    fn trouble(&self, _line: usize) -> Option<String> {
+        None
+    }
 
-    fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8]));
+    fn hear_others(&mut self, _heard: &mut dyn FnMut(&[u8])) {}
 
-    fn tell_others(&mut self, frames: &[u8]);
+    fn tell_others(&mut self, _frames: &[u8]) {}
 
     /// After an error it is not called again.
     fn log(&mut self, frame: &[u8]) -> Result<(), record::Error>;
@@ -36,9 +39,13 @@ pub trait Machine {
         None
     }
 
-    fn show(&mut self, line: &str) -> io::Result<()>;
+    fn show(&mut self, line: &str) -> io::Result<()> {
+        writeln!(io::stdout(), "{line}")
+    }
 
-    fn tell(&mut self, line: &str) -> io::Result<()>;
+    fn tell(&mut self, line: &str) -> io::Result<()> {
+        writeln!(io::stderr(), "{line}")
+    }
 }
 
 pub struct Host {
@@ -99,13 +106,5 @@ impl Machine for Host {
 
     fn new_key(&mut self) -> Option<Result<Key, String>> {
         self.key.as_ref()?.news()
-    }
-
-    fn show(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stdout(), "{line}")
-    }
-
-    fn tell(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stderr(), "{line}")
     }
 }

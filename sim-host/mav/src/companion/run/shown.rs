@@ -1,4 +1,6 @@
-use crate::companion::offboard::{ARM_DISARM, DO_SET_MODE, NAV_TAKEOFF, SET_MESSAGE_INTERVAL};
+use staya_mavlink::constants::{
+    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
+};
 use staya_mavlink::dialect::{COMMAND_LONG_DATA, MavMessage};
 use staya_mavlink::mavlink_core::Message as _;
 
@@ -18,14 +20,14 @@ pub fn words(message: &MavMessage) -> Option<String> {
 
 fn command_words(command: &COMMAND_LONG_DATA) -> String {
     match command.command {
-        SET_MESSAGE_INTERVAL => {
+        MAV_CMD_SET_MESSAGE_INTERVAL => {
             let id = command.param1 as u32;
             let name = MavMessage::default_message_from_id(id).map_or("?", |message| message.message_name());
             format!("SET_MESSAGE_INTERVAL {name} {:.1} Hz", 1e6 / command.param2)
         }
-        DO_SET_MODE => format!("DO_SET_MODE {}", command.param2),
-        ARM_DISARM => String::from("COMPONENT_ARM_DISARM: arm"),
-        NAV_TAKEOFF => format!("NAV_TAKEOFF to {} m", command.param7),
+        MAV_CMD_DO_SET_MODE => format!("DO_SET_MODE {}", command.param2),
+        MAV_CMD_COMPONENT_ARM_DISARM => String::from("COMPONENT_ARM_DISARM: arm"),
+        MAV_CMD_NAV_TAKEOFF => format!("NAV_TAKEOFF to {} m", command.param7),
         other => other.to_string(),
     }
 }

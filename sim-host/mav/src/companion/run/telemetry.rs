@@ -1,4 +1,4 @@
-use super::{Companions, FEW_TIMESTAMPS, LOOK, Vehicle, shown, status_text};
+use super::{Companions, FEW_TIMESTAMPS, LOOK, Link, Vehicle, shown, status_text};
 use crate::companion::config::Config;
 use crate::companion::offboard::{AUTOPILOT, State};
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
@@ -6,7 +6,6 @@ use staya_controller::agent::Event as AgentEvent;
 use staya_controller::robot::Mode;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::Sender;
-use staya_mavlink::signing::Signing;
 use std::time::Duration;
 
 const SHOWN: Duration = Duration::from_secs(1);
@@ -59,7 +58,7 @@ impl Companions<'_> {
 
     pub(super) fn look_at_timestamps(&mut self) {
         for line in 0..self.links.len() {
-            let is_ending = self.signing_of(line).is_some_and(|signing| signing.left() < FEW_TIMESTAMPS);
+            let is_ending = self.links[line].signing.as_ref().is_some_and(|signing| signing.left() < FEW_TIMESTAMPS);
             if !is_ending || std::mem::replace(&mut self.links[line].is_end_told, true) {
                 continue;
             }
@@ -94,32 +93,25 @@ impl Companions<'_> {
     }
 
     pub(super) fn tell_of(&mut self, index: usize, event: AgentEvent) {
-        match event {
-            AgentEvent::NeighborFound(id) => self.tell(index, &format!("found robot {}", id.0)),
-            AgentEvent::NeighborLost(id) => self.tell(index, &format!("lost robot {id}")),
-            AgentEvent::DuplicateId(id) => {
-                self.tell(index, &format!("two robots use number {id}; give one of them another number"))
-            }
-            AgentEvent::Implausible { id, claim } => {
-                self.tell(index, &format!("ignores robot {id}: implausible {claim}"));
-            }
-            AgentEvent::ContactLost => self.tell(index, "lost contact to all robots"),
+        let text = match event {
+            AgentEvent::NeighborFound(id) => format!("found robot {id}"),
+            AgentEvent::NeighborLost(id) => format!("lost robot {id}"),
+            AgentEvent::DuplicateId(id) => format!("two robots use number {id}; give one of them another number"),
+            AgentEvent::Implausible { id, claim } => format!("ignores robot {id}: implausible {claim}"),
+            AgentEvent::ContactLost => "lost contact to all robots".into(),
             AgentEvent::Muted => {
                 self.tell(index, "cannot send: packet counters or timestamps are used up; give a new key (air.key)");
-                self.send(index, &status_text("staya: cannot send, new swarm key needed", true));
+                return self.send(index, &status_text("staya: cannot send, new swarm key needed", true));
             }
-            AgentEvent::NoRoute => self.tell(index, "no open route to the goal"),
+            AgentEvent::NoRoute => "no open route to the goal".into(),
             AgentEvent::ModeChanged { to: Mode::Fault, .. }
                 if self.vehicles[index].offboard.state() == State::Steering =>
             {
-                self.tell(index, "stopped: off the scenario's map, or without a goal");
+                "stopped: off the scenario's map, or without a goal".into()
             }
-            _ => {}
-        }
-    }
-
-    fn signing_at(&self, line: usize) -> Option<&Signing> {
-        self.signing.as_ref()?.get(line)
+            _ => return,
+        };
+        self.tell(index, &text);
     }
 
     pub(super) fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
@@ -128,22 +120,21 @@ impl Companions<'_> {
             system: vehicle.setup.system,
             autopilot: vehicle.setup.kind,
             state: vehicle.offboard.state(),
-            agent: vehicle.controller.mode(),
+            agent: vehicle.controller.agent().mode(),
             has_arrived: vehicle.has_arrived,
             position_m: vehicle.offboard.fix().and_then(|fix| self.origin.to_enu_m(&fix.place)),
             tally: vehicle.offboard.tally(),
             packets_heard: vehicle.heard,
             packets_refused: vehicle.refused,
-            neighbors: vehicle.controller.neighbors(),
+            neighbors: vehicle.controller.agent().neighbors().len(),
         });
-        let lines = if self.options.demo { &[][..] } else { &config.lines[..] };
-        let links = lines.iter().enumerate();
-        let links = links.map(|(line, endpoint)| LineReport {
-            link: endpoint.to_string(),
+        let links = self.links.iter().enumerate().filter(|_| !self.options.demo);
+        let links = links.map(|(line, Link { name, signing, .. })| LineReport {
+            link: name.clone(),
             counts: self.machine.counts(line),
             trouble: self.machine.trouble(line),
-            refused: self.signing_at(line).map_or(0, |signing| signing.counts().refused()),
-            is_exhausted: self.signing_at(line).is_some_and(|signing| signing.left() == 0),
+            refused: signing.as_ref().map_or(0, |signing| signing.counts().refused()),
+            is_exhausted: signing.as_ref().is_some_and(|signing| signing.left() == 0),
         });
         CompanionReport {
             scenario: config.scenario.name.clone(),

@@ -4,6 +4,7 @@ use super::*;
 use crate::geo::Global;
 use crate::{Counts, Peer};
 use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
+use staya_mavlink::frame::{MAX_FRAME_LEN, encode_message};
 use staya_sim::record;
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -324,7 +325,7 @@ fn used_up_timestamps_are_reported_while_signing_is_possible() {
     let world = Rc::new(RefCell::new(World::new(None)));
     let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
     let last = (1 << 48) - 1;
-    companions.signing = Some(vec![Signing::new(staya_controller::auth::Key::new([7; 32]), 0, last - 3)]);
+    companions.links[0].signing = Some(Signing::new(staya_controller::auth::Key::new([7; 32]), 0, last - 3));
     let (seconds, _) = companions.run(|| true, &mut |_| {});
     let report = companions.report(&config, seconds, false);
     drop(companions);

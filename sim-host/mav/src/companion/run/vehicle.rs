@@ -3,6 +3,7 @@ use crate::companion::config::VehicleSetup;
 use crate::companion::controller::{Body, Controller};
 use crate::companion::offboard::OffboardStateMachine;
 use crate::geo::{Origin, enu};
+use staya_mavlink::frame::Sender;
 use staya_sim::radio::HostWire;
 use std::time::Duration;
 
@@ -17,7 +18,7 @@ pub struct Vehicle {
     pub controller: Controller<HostWire>,
     pub peer: Option<Peer>,
     pub is_signing_told: bool,
-    pub sequence: u8,
+    pub sender: Sender,
     pub shown: Option<Duration>,
     pub inbox: Vec<u8>,
     pub next_step: Duration,

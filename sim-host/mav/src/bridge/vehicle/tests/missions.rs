@@ -27,14 +27,18 @@ fn a_mission_runs_item_by_item() {
     assert_eq!(reached(bench.tick(|_| {})), None);
     let out = bench.tick(|sample| sample.position_m = [10.0, 10.0, 0.0]);
     assert_eq!(reached(out), Some(2));
-    assert_eq!((bench.wish(), bench.vehicle.is_on_mission), (Some(Wish::Hold), false));
+    assert_eq!((bench.wish(), is_on_mission(&bench)), (Some(Wish::Hold), false));
     assert_eq!(bench.texts(), ["mission done: holding"]);
     assert_eq!(bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(1.0)), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 10.0)), MAV_RESULT_ACCEPTED);
-    assert!(bench.vehicle.is_on_mission);
+    assert!(is_on_mission(&bench));
     assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 15.0)), MAV_RESULT_ACCEPTED);
-    assert!(!bench.vehicle.is_on_mission);
+    assert!(!is_on_mission(&bench));
     assert_eq!(bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(9.0)), MAV_RESULT_DENIED);
+}
+
+fn is_on_mission(bench: &Bench) -> bool {
+    matches!(bench.vehicle.mode, FlightMode::Mission { .. })
 }
 
 fn reached(out: &Out) -> Vec<u16> {
@@ -78,7 +82,7 @@ fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     assert!(reached(bench.tick(|_| {})).is_empty());
     assert!(reached(bench.tick(|_| {})).is_empty());
     assert_eq!(reached(bench.tick(|_| {})), [4, 5, 6]);
-    assert!(!bench.vehicle.is_on_mission && bench.texts().contains(&"mission done: holding".to_owned()));
+    assert!(!is_on_mission(&bench) && bench.texts().contains(&"mission done: holding".to_owned()));
     for (bad, fault) in [
         (order(1, MAV_CMD_DO_CHANGE_SPEED, 1.0, NAN), MAV_MISSION_INVALID_PARAM2),
         (order(1, MAV_CMD_DO_CHANGE_SPEED, 1.0, 0.0), MAV_MISSION_INVALID_PARAM2),
@@ -96,7 +100,7 @@ fn a_landing_at_the_end_of_a_mission_is_reached_on_the_ground() {
     let landing = MISSION_ITEM_INT_DATA { command: MAV_CMD_NAV_LAND, ..item(1, 0.0, 0.0) };
     assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), landing]), MAV_MISSION_ACCEPTED);
     assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_ACCEPTED);
-    assert_eq!(bench.vehicle.mode, FlightMode::Land);
+    assert_eq!(bench.vehicle.mode, FlightMode::Land { is_item: true });
     assert!(reached(bench.tick(|_| {})).is_empty());
     assert_eq!(reached(bench.tick(|sample| sample.position_m[2] = 0.0)), [1]);
     assert!(!bench.vehicle.is_armed);

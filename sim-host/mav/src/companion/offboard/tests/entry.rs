@@ -6,7 +6,7 @@ fn one_request_leads_to_control() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     let sent = bench.run(1.0);
     assert_eq!(bench.state(), State::Entering);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 1);
+    assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 1);
     assert_eq!(setpoints(&sent).len(), 0);
     bench.mode = GUIDED;
     bench.run(0.5);
@@ -19,17 +19,17 @@ fn no_request_before_the_first_position() {
     bench.fixes = false;
     let sent = bench.run(42.0);
     assert_eq!(bench.state(), State::Pilot);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
+    assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 0);
     bench.fixes = true;
     let sent = bench.run(1.0);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 1);
+    assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 1);
 }
 
 #[test]
 fn requests_end_after_the_last_retry() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     let sent = bench.run(200.0);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), usize::from(ATTEMPTS));
+    assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), usize::from(ATTEMPTS));
     assert_eq!(bench.state(), State::Pilot);
     assert!(bench.events().contains(&Event::GaveUp));
 }
@@ -40,7 +40,7 @@ fn any_action_of_the_pilot_ends_the_requests() {
     bench.run(1.0);
     bench.mode = 4;
     let sent = bench.run(30.0);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
+    assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 0);
     assert!(bench.events().contains(&Event::PilotActs));
     bench.mode = GUIDED;
     bench.run(1.0);
@@ -50,16 +50,16 @@ fn any_action_of_the_pilot_ends_the_requests() {
 #[test]
 fn disarming_ends_the_entry_and_is_not_reversed() {
     let mut bench = Bench::new(Kind::ArduRover, Rules { arm: true, ..ONCE }, MANUAL, DISARMED);
-    assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
+    assert_eq!(commands(&bench.run(1.0), MAV_CMD_DO_SET_MODE), 1);
     bench.mode = GUIDED;
-    assert_eq!(commands(&bench.run(1.0), out::ARM_DISARM), 1);
+    assert_eq!(commands(&bench.run(1.0), MAV_CMD_COMPONENT_ARM_DISARM), 1);
     bench.base = ARMED;
     bench.run(1.0);
     assert_eq!(bench.state(), State::Steering);
     bench.base = DISARMED;
     let sent = bench.run(30.0);
     assert_eq!(bench.state(), State::Disarmed);
-    assert_eq!(commands(&sent, out::ARM_DISARM), 0);
+    assert_eq!(commands(&sent, MAV_CMD_COMPONENT_ARM_DISARM), 0);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_refusal_is_reported_once() {
     bench.events();
     for result in [4, 4, 4, 0] {
         let ack = MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
-            command: out::DO_SET_MODE,
+            command: MAV_CMD_DO_SET_MODE,
             result,
             ..COMMAND_ACK_DATA::DEFAULT
         });
@@ -83,12 +83,12 @@ fn a_refusal_is_reported_once() {
 #[test]
 fn a_copter_is_armed_takes_off_and_is_controlled_at_its_height() {
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 0, DISARMED);
-    assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
+    assert_eq!(commands(&bench.run(1.0), MAV_CMD_DO_SET_MODE), 1);
     bench.mode = 4;
-    assert_eq!(commands(&bench.run(1.0), out::ARM_DISARM), 1);
+    assert_eq!(commands(&bench.run(1.0), MAV_CMD_COMPONENT_ARM_DISARM), 1);
     bench.base = ARMED;
     let sent = bench.run(1.0);
-    assert_eq!(commands(&sent, out::NAV_TAKEOFF), 1);
+    assert_eq!(commands(&sent, MAV_CMD_NAV_TAKEOFF), 1);
     assert_eq!(setpoints(&sent).len(), 0, "velocities would end the take-off");
     bench.above_home_m = 8.9;
     bench.run(0.5);
@@ -173,13 +173,13 @@ fn control_begins_after_the_climb_and_continues_during_later_climbs() {
 fn a_started_takeoff_is_not_requested_again() {
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 4, ARMED);
     bench.offboard.hear(&landed(1), bench.now);
-    assert_eq!(commands(&bench.run(3.0), out::NAV_TAKEOFF), 2, "the takeoff has not started");
+    assert_eq!(commands(&bench.run(3.0), MAV_CMD_NAV_TAKEOFF), 2, "the takeoff has not started");
     bench.offboard.hear(&landed(3), bench.now);
-    assert_eq!(commands(&bench.run(10.0), out::NAV_TAKEOFF), 0);
+    assert_eq!(commands(&bench.run(10.0), MAV_CMD_NAV_TAKEOFF), 0);
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 4, ARMED);
     bench.run(1.0);
     bench.above_home_m = 1.0;
-    assert_eq!(commands(&bench.run(10.0), out::NAV_TAKEOFF), 0);
+    assert_eq!(commands(&bench.run(10.0), MAV_CMD_NAV_TAKEOFF), 0);
 }
 
 #[test]
@@ -187,10 +187,10 @@ fn px4_gets_setpoints_before_the_mode_request() {
     let mut bench = Bench::new(Kind::Px4Rover, ONCE, POSITION_CONTROL, ARMED);
     let sent = bench.run(0.9);
     assert!(setpoints(&sent).len() >= 17 && setpoints(&sent).iter().all(stands));
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
+    assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 0);
     let sent = bench.run(0.5);
     let request = sent.iter().find_map(|message| match message {
-        MavMessage::COMMAND_LONG(data) if data.command == out::DO_SET_MODE => Some(data),
+        MavMessage::COMMAND_LONG(data) if data.command == MAV_CMD_DO_SET_MODE => Some(data),
         _ => None,
     });
     let request = request.expect("a mode request");
@@ -227,7 +227,9 @@ fn a_dry_run_shows_its_requests_and_then_velocities() {
         bench.fix();
         sent.extend(bench.run(1.0));
     }
-    for (command, times) in [(out::DO_SET_MODE, 1), (out::ARM_DISARM, 1), (out::NAV_TAKEOFF, 1), (511, 7)] {
+    for (command, times) in
+        [(MAV_CMD_DO_SET_MODE, 1), (MAV_CMD_COMPONENT_ARM_DISARM, 1), (MAV_CMD_NAV_TAKEOFF, 1), (511, 7)]
+    {
         assert_eq!(commands(&sent, command), times, "{command}");
     }
     let states = bench.events().iter().filter(|event| matches!(event, Event::State { .. })).count();
@@ -240,7 +242,7 @@ fn px4_climbs_by_its_setpoints() {
     let mut bench = Bench::new(Kind::Px4Copter, FLY, OFFBOARD, ARMED);
     let sent = bench.run(1.0);
     assert_eq!(bench.state(), State::Entering);
-    assert_eq!(commands(&sent, out::NAV_TAKEOFF), 0);
+    assert_eq!(commands(&sent, MAV_CMD_NAV_TAKEOFF), 0);
     assert_eq!(setpoints(&sent).last().unwrap().vz, -1.0);
     bench.above_home_m = 9.5;
     bench.run(0.5);

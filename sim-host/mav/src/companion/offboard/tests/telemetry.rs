@@ -51,7 +51,7 @@ fn an_untrusted_first_position_does_not_start_the_entry() {
     bench.ekf();
     let sent = bench.run(10.0);
     assert_eq!(bench.state(), State::Pilot);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "no request without a trusted position");
+    assert_eq!(commands(&sent, MAV_CMD_DO_SET_MODE), 0, "no request without a trusted position");
     (bench.mode, bench.base) = (GUIDED, ARMED);
     let sent = bench.run(3.0);
     assert_eq!((bench.state(), setpoints(&sent).len()), (State::NoPosition, 0));

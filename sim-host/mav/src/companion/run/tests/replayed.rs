@@ -71,7 +71,8 @@ fn known_of_the_third(name: &str, until: f64) -> Vec<(f64, Option<f32>)> {
     let mut known = Vec::new();
     while companions.now().as_secs_f64() < until {
         companions.turn();
-        known.push((companions.now().as_secs_f64(), companions.vehicles[0].controller.known_radius_m(3)));
+        let third = companions.vehicles[0].controller.agent().neighbors().iter().find(|known| known.id.0 == 3);
+        known.push((companions.now().as_secs_f64(), third.map(|known| known.radius_m)));
     }
     companions.has_said_farewell = true;
     known
