@@ -3,9 +3,10 @@
 use crate::device::{PARTS, Part};
 use crate::files;
 use crate::firmware;
+use crate::modules;
 use crate::python;
 use crate::repo::{ended, output_of};
-use crate::session::Session;
+use crate::session::{Session, folders};
 use std::thread::JoinHandle;
 
 /// Workspaces of their own, and how to leave out what needs more than a stable compiler.
@@ -26,8 +27,9 @@ pub fn run(s: &mut Session) {
             s.report.command(&name, s.repo.cargo_in(folder, &check));
         }
     }
-    s.report.step("layers of the controller", || crate::layers::check(&s.repo.root.join("controller/src")));
-    s.report.step("no circles between modules", || crate::circles::check(&s.repo.root));
+    let controller = s.repo.root.join("controller/src");
+    s.report.step("layers of the controller", || modules::check_layers(&controller));
+    s.report.step_with("no circles between modules", folders(&s.repo), |crates| modules::check_circles(&crates));
     s.report.step(crate::weight::SHARED, || crate::weight::check_shared(&s.repo));
     s.report.step("no log that panics", || crate::plants::check_logs(&s.repo.root));
     crate::minimal::check(s);

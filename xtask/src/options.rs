@@ -66,6 +66,11 @@ impl<'a> Options<'a> {
         self.values.iter().filter(move |(name, _)| *name == option).map(|(_, value)| *value)
     }
 
+    /// These options with their values, as on a command line.
+    pub fn all_of(&self, options: &[&str]) -> impl Iterator<Item = &'a str> {
+        self.values.iter().filter(|(option, _)| options.contains(option)).flat_map(|&(option, value)| [option, value])
+    }
+
     /// The first name.
     pub fn name(&self) -> Option<&'a str> {
         self.names.first().copied()
