@@ -65,12 +65,8 @@ pub fn run(s: &mut Session) {
 
 /// Whether a component of the toolchain is there; records a skipped part otherwise.
 fn has(s: &mut Session, subcommand: &str, component: &str) -> bool {
-    let found = output_of(&mut s.repo.cargo(&[subcommand, "--version"])).is_some();
-    if !found {
-        let reason = format!("not installed; run `rustup component add {component}`");
-        s.report.skip(component, &reason);
-    }
-    found
+    let found = output_of(&mut s.repo.cargo(&[subcommand, "--version"]));
+    s.report.need(component, found.ok_or(format!("not installed; run `rustup component add {component}`"))).is_some()
 }
 
 /// Checks of the controller for a part with each set of features that its manifest lists: the name

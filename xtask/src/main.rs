@@ -99,7 +99,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let (name, rest) = arguments.split_first().map_or(("", &[][..]), |(name, rest)| (*name, rest));
-    if ["help", "-h", "--help"].contains(&name) {
+    if ["help", "-h", "--help"].contains(&name) || rest.contains(&"--help") {
         print!("{}", help());
         return ExitCode::SUCCESS;
     }

@@ -123,8 +123,8 @@ fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured, String> {
     Ok(Measured { programs, cases, laws, steps, formats })
 }
 
-/// The output of `bench`: rows of case, kind of number (`-` for wire formats) and figures. The error
-/// names the first line of another form.
+/// The output of `bench`: rows of case, kind of number (`-` for wire formats) and figures. The
+/// error names the first line of another form.
 fn cases(output: &str) -> Result<Table, String> {
     const COLUMNS: [&str; 7] = ["case", "steps", "median", "worst", "stack", "agent", "workspace"];
     let row = |line: &str| {

@@ -105,8 +105,8 @@ impl Program {
         Table { columns: &["frame of a wire format", "text", "rodata"], rows }
     }
 
-    /// The types of each function of `bench` by this name, without paths and sorted, and the machine
-    /// code and constants that it needs.
+    /// The types of each function of `bench` by this name, without paths and sorted, and the
+    /// machine code and constants that it needs.
     fn needs(&self, function: &str) -> Vec<(String, Vec<u64>)> {
         let start = format!("bench::program::{function}::<");
         let needs = self.names.iter().filter_map(|(name, at)| {
