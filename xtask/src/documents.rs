@@ -25,9 +25,9 @@ pub fn check(root: &Path) -> Result<(), String> {
     if faults.is_empty() { Ok(()) } else { Err(format!("{} references lead nowhere", faults.len())) }
 }
 
-/// What texts can refer to.
+/// The files and folders that texts can refer to.
 struct Pages {
-    /// The files and folders of the repository, from its top down.
+    /// Paths from the top of the repository down.
     paths: BTreeSet<PathBuf>,
 }
 

@@ -25,7 +25,7 @@ impl Profile {
         }
     }
 
-    /// What names say of it behind that of a part.
+    /// The end of names behind that of a part.
     pub fn suffix(self) -> &'static str {
         if self == Self::Debug { ", debug" } else { "" }
     }

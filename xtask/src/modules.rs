@@ -58,8 +58,8 @@ fn all_printed<'a>(faults: impl IntoIterator<Item = &'a String> + Copy) -> Resul
     faults.into_iter().next().cloned().map_or(Ok(()), Err)
 }
 
-/// What has a layer: a module of the root, or an algorithm in the folder of its law. The laws
-/// themselves are `laws`.
+/// The part of a path that has a layer: a module of the root, or an algorithm in the folder of its
+/// law. The laws themselves are `laws`.
 fn unit(path: &[String]) -> &str {
     match path {
         [laws, folder, rest @ ..] if laws == "laws" && layer(folder).is_some() => {

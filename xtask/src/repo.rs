@@ -53,7 +53,7 @@ impl Repo {
         command
     }
 
-    /// What a command of the shell prints, whose `$1` is [`Repo::tools`]; `None` unless it
+    /// The output of a command of the shell, whose `$1` is [`Repo::tools`]; `None` unless it
     /// succeeds.
     pub fn answer(&self, question: &str) -> Option<String> {
         output_of(self.command("sh").args(["-c", question, "sh"]).arg(self.tools()))

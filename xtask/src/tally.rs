@@ -41,7 +41,7 @@ impl Tally {
         }
     }
 
-    /// What the closing table says of failures.
+    /// The note on failures in the closing table.
     fn failures(&self) -> Option<String> {
         let mut names: Vec<String> = self.failed.iter().take(NAMED).cloned().collect();
         names.extend((self.failed.len() > NAMED).then(|| format!("and {} more", self.failed.len() - NAMED)));

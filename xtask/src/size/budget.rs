@@ -4,8 +4,8 @@ use super::Measured;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// The limits of a part: figures, and tables of figures of cases or laws. What is not there is not
-/// limited.
+/// The limits of a part: figures, and tables of figures of cases or laws. Other figures have no
+/// limit.
 pub fn read(text: &str, part: &str) -> Result<Table, String> {
     let parts: Table = text.parse().map_err(|error| format!("{error}"))?;
     let limits = parts.get(part).and_then(Value::as_table).cloned();
