@@ -1,12 +1,12 @@
 //! `cargo xtask check`: everything that can be said without running the code.
 
 use crate::device::{PARTS, Part};
-use crate::files;
 use crate::firmware;
 use crate::modules;
 use crate::python;
-use crate::repo::{ended, output_of};
-use crate::session::{Session, folders};
+use crate::repo::{Repo, ended, output_of};
+use crate::session::{Session, folders, packages};
+use serde_json::Value;
 use std::thread::JoinHandle;
 
 /// Workspaces of their own, and how to leave out what needs more than a stable compiler.
@@ -76,7 +76,11 @@ type FeatureCheck = (String, Result<JoinHandle<Result<(), String>>, String>);
 /// Begins them, one thread a part: the compiler has one thread for one crate. The part with a
 /// Cortex-M0 has no FPU and takes the sets with fixed point.
 fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
-    let sets = feature_sets(&files::read(&s.repo.root.join("controller/Cargo.toml")).unwrap_or_default());
+    let mut sets = Vec::new();
+    s.report.step("list of the controller's feature sets", || {
+        sets = feature_sets(&s.repo)?;
+        Ok(())
+    });
     let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
     let mut check = |part: &Part| {
         let has_fpu = part.target.ends_with("hf");
@@ -109,27 +113,14 @@ fn end_feature_checks(s: &mut Session, checks: Vec<FeatureCheck>) {
     }
 }
 
-/// The list `feature-sets` in a manifest's metadata, and the set without any feature.
-fn feature_sets(manifest: &str) -> Vec<String> {
-    let manifest: Option<toml::Table> = manifest.parse().ok();
-    let sets = manifest.as_ref().and_then(|manifest| {
-        let metadata = manifest.get("package")?.get("metadata")?.get("staya")?;
-        metadata.get("feature-sets")?.as_array()
-    });
-    let names = sets.into_iter().flatten().filter_map(toml::Value::as_str);
-    let mut names: Vec<String> = std::iter::once("").chain(names).map(String::from).collect();
+/// The list `feature-sets` in the metadata of the controller's manifest, and the set without any
+/// feature.
+fn feature_sets(repo: &Repo) -> Result<Vec<String>, String> {
+    let packages = packages(repo)?;
+    let controller = packages.iter().find(|package| package["name"] == "staya-controller");
+    let sets = controller.and_then(|package| package["metadata"]["staya"]["feature-sets"].as_array());
+    let sets = sets.ok_or("controller/Cargo.toml has no list package.metadata.staya.feature-sets")?;
+    let mut names: Vec<&str> = std::iter::once("").chain(sets.iter().filter_map(Value::as_str)).collect();
     names.dedup();
-    names
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn feature_sets_are_those_of_the_manifest_and_the_empty_one() {
-        let manifest = "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
-        assert_eq!(feature_sets(manifest), ["", "orca", "orca,fixed"]);
-        assert_eq!(feature_sets("[package]\n"), [""]);
-    }
+    Ok(names.into_iter().map(String::from).collect())
 }

@@ -89,17 +89,14 @@ fn table(records: &str, figures: &[Option<f64>; 5]) -> String {
 fn code_lines(repo: &Repo) -> Result<Vec<(String, usize)>, String> {
     let count = |folder: &PathBuf| {
         let is_code = |path: &Path| !["bin", "tests", "tests.rs"].contains(&files::name(path).as_str());
-        let sources = files::below(&folder.join("src"), &|path| is_code(path) && (path.is_dir() || is_rust(path)))?;
+        let is_rust = |path: &Path| path.is_dir() || files::has_extension(path, &["rs"]);
+        let sources = files::below(&folder.join("src"), &|path| is_code(path) && is_rust(path))?;
         let texts = sources.iter().map(|file| files::read(file)).collect::<Result<Vec<_>, _>>()?;
         let lines = texts.iter().flat_map(|text| text.lines().take_while(|line| *line != "mod tests {"));
         let lines = lines.map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
         Ok((folder.strip_prefix(&repo.root).unwrap_or(folder).display().to_string(), lines.count()))
     };
     folders(repo)?.iter().filter(|folder| folder.join("src").is_dir()).map(count).collect()
-}
-
-fn is_rust(path: &Path) -> bool {
-    files::has_extension(path, &["rs"])
 }
 
 /// The name of the step in `cargo xtask check`.
