@@ -25,73 +25,56 @@ struct Kind {
     files: &'static [&'static str],
 }
 
-const KINDS: [Kind; 2] = [
-    Kind {
-        name: "rover",
-        option: "--rover",
-        variable: "STAYA_ROVER",
-        files: &["test_rovers.py", "test_failures.py", "test_links.py"],
-    },
-    Kind { name: "copter", option: "--copter", variable: "STAYA_COPTER", files: &["test_copters.py"] },
-];
+const ROVER: Kind = Kind {
+    name: "rover",
+    option: "--rover",
+    variable: "STAYA_ROVER",
+    files: &["test_rovers.py", "test_failures.py", "test_links.py"],
+};
+const COPTER: Kind = Kind { name: "copter", option: "--copter", variable: "STAYA_COPTER", files: &["test_copters.py"] };
 
-/// A simulation that can be started, and the folder with its parameters.
-struct Simulation {
-    program: PathBuf,
-    defaults: PathBuf,
-}
-
-/// The simulation of `kind` that is asked for; the error says why there is none.
-fn simulation(repo: &Repo, options: &Options<'_>, kind: &Kind) -> Result<Simulation, String> {
+/// The program that simulates this kind of vehicle, and the folder with its parameters; the error
+/// says why there is none.
+fn simulation(repo: &Repo, options: &Options<'_>, kind: &Kind) -> Result<[PathBuf; 2], String> {
     let Kind { name, option, .. } = kind;
-    let Some(program) = options.value(option) else {
-        return Err(format!("no program: {REMEDY}, `cargo xtask autopilots {option} PATH`"));
-    };
+    let program = options.value(option);
+    let program = program.ok_or_else(|| format!("no program: {REMEDY}, `cargo xtask autopilots {option} PATH`"))?;
     let absent = |error: std::io::Error| format!("{option} {program}: {error}; {REMEDY}");
     let program = Path::new(program).canonicalize().map_err(absent)?;
     // It ends with 1 after its help.
-    let help = repo.command(&program).arg("--help").output();
-    let help = help.map_err(|error| format!("{option} {}: cannot start: {error}; {REMEDY}", program.display()))?;
-    let text = [help.stdout, help.stderr].concat();
-    if !String::from_utf8_lossy(&text).contains("--model") {
+    let help = repo.command(&program).arg("--help").output().map_err(absent)?;
+    if !String::from_utf8_lossy(&[help.stdout, help.stderr].concat()).contains("--model") {
         return Err(format!("{option} {}: not a simulation of ArduPilot (board sitl)", program.display()));
     }
     let file = format!("{name}.parm");
-    let beside = || program.ancestors().map(|folder| folder.join(DEFAULTS)).find(|folder| folder.join(&file).is_file());
-    let defaults = match options.value("--defaults") {
-        Some(folder) => Path::new(folder).canonicalize().ok().filter(|folder| folder.join(&file).is_file()),
-        None => beside(),
-    };
-    let defaults = defaults.ok_or_else(|| {
-        format!(
+    let beside = || program.ancestors().map(|folder| folder.join(DEFAULTS)).collect();
+    let named = |folder| Path::new(folder).canonicalize().into_iter().collect();
+    let folders: Vec<PathBuf> = options.value("--defaults").map_or_else(beside, named);
+    match folders.into_iter().find(|folder| folder.join(&file).is_file()) {
+        Some(defaults) => Ok([program, defaults]),
+        None => Err(format!(
             "no {file}, with which ArduPilot starts its simulation: name its folder, --defaults ARDUPILOT/{DEFAULTS}"
-        )
-    })?;
-    Ok(Simulation { program, defaults })
+        )),
+    }
 }
 
 /// The command: each flight is a row of the closing table, with its figures.
 pub fn run_command(s: &mut Session, options: &Options<'_>) {
     let mut flights = Vec::new();
-    for kind in &KINDS {
-        match simulation(&s.repo, options, kind) {
-            Ok(simulation) => flights.push((kind, simulation)),
-            Err(reason) => s.report.skip(&format!("ArduPilot's {}s", kind.name), &reason),
-        }
+    for kind in [ROVER, COPTER] {
+        let simulation = simulation(&s.repo, options, &kind);
+        flights.extend(s.report.need(&format!("ArduPilot's {}s", kind.name), simulation).map(|found| (kind, found)));
     }
     if flights.is_empty() {
         return;
     }
-    let Some(staya) = s.staya("release") else { return };
-    let python = match python::client_environment(&s.repo) {
-        Ok(python) => python,
-        Err(reason) => return s.report.skip("flights", &reason),
-    };
-    for (kind, simulation) in flights {
+    let program = s.staya("release");
+    let ready = program.and_then(|program| Ok((program, python::client_environment(&s.repo)?)));
+    let Some((staya, python)) = s.report.need("flights", ready) else { return };
+    for (kind, [program, defaults]) in flights {
         let start = || {
             let mut tests = python::pytest(&s.repo, &python, &["--timeout", LONGEST]);
-            tests.env(kind.variable, &simulation.program).env("STAYA_AUTOPILOT_DEFAULTS", &simulation.defaults);
-            tests.env("STAYA", &staya);
+            tests.env(kind.variable, &program).env("STAYA_AUTOPILOT_DEFAULTS", &defaults).env("STAYA", &staya);
             tests
         };
         let mut list = start();
@@ -100,7 +83,7 @@ pub fn run_command(s: &mut Session, options: &Options<'_>) {
         for test in names(&mut list) {
             // One at a time: they go by the clock.
             let row = test.rsplit("::test_").next().unwrap_or(&test).replace('_', " ");
-            s.report.part(&row, || counted(start().arg("-s").arg(&test), ""));
+            s.report.part(&row, || counted(start().arg("-s").arg(&test)));
         }
     }
 }
@@ -119,10 +102,10 @@ mod tests {
 
     #[test]
     fn a_program_that_cannot_be_started_is_refused_with_the_remedy() {
-        let (repo, [rover, _]) = (Repo::find(), &KINDS);
+        let repo = Repo::find();
         let refused = |arguments: &[&str]| {
             let options = Options::read("autopilots [--rover PATH]", arguments).expect("sound");
-            simulation(&repo, &options, rover).err().unwrap_or_default()
+            simulation(&repo, &options, &ROVER).err().unwrap_or_default()
         };
         assert!(refused(&[]).contains("docs/autopilots.md"));
         assert!(refused(&["--rover", "/nowhere/ardurover"]).contains("--rover /nowhere/ardurover: "));

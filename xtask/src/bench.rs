@@ -6,7 +6,6 @@ use crate::python;
 use crate::repo::run as run_command_line;
 use crate::report::Counts;
 use crate::session::Session;
-use std::fs;
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -51,10 +50,9 @@ pub fn run_goals(s: &mut Session) {
 
 /// A benchmark in Python with the program as users have it; the script judges.
 fn script(s: &mut Session, name: &str, file: &str) {
-    let Some(program) = s.staya("release") else {
-        return s.report.skip(name, "the program was not built");
-    };
-    s.report.step_with(name, python::client_environment(&s.repo), |python| {
+    let program = s.staya("release");
+    let ready = program.and_then(|program| Ok((program, python::client_environment(&s.repo)?)));
+    s.report.step_with(name, ready, |(program, python)| {
         run_command_line(s.repo.command(&python).arg(file).env("STAYA", program))
     });
 }
@@ -67,45 +65,36 @@ fn criterion(s: &mut Session, filter: Option<&str>) {
     benches.env("CRITERION_HOME", &home).args(filter.map(|name| ["--", name]).into_iter().flatten());
     s.report.command("benchmarks", benches);
     s.report.part("goals", || {
-        let (mut counts, note) = judge(&medians(&home, start));
+        let mut counts = judge(&medians(&home, start));
         if filter.is_some_and(|name| !name.starts_with('^')) {
             // The others were not asked for.
             counts.skipped = 0;
         }
-        (counts, note)
+        let note = if counts.skipped > 0 { "skipped: goals of benchmarks that did not run" } else { "" };
+        (counts, note.to_string())
     });
 }
 
 /// Prints each median beside its goal and counts the goals.
-fn judge(medians: &[(String, f64)]) -> (Counts, String) {
-    let of = |name: &str| medians.iter().find(|(known, _)| known == name).map(|&(_, ns)| ns);
+fn judge(medians: &[(String, f64)]) -> Counts {
     let width = medians.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let mut counts = Counts::default();
+    let mut counts = Counts { skipped: GOALS.len() as u64, ..Counts::default() };
     println!("{:width$}  {:>10}  goal", "benchmark", "median");
     for (name, median) in medians {
-        let (met, what) = match GOALS.iter().find(|(known, ..)| known == name) {
-            None => (None, String::new()),
-            Some((_, times, other)) => match of(other) {
-                None => (None, format!("{other} did not run")),
-                Some(ns) => {
-                    let ratio = ns / median;
-                    (Some(ratio >= *times), format!("{ratio:.1} times as fast as {other}, at least {times}"))
-                }
-            },
-        };
-        let verdict = match met {
-            None => "",
-            Some(true) => ": met",
-            Some(false) => ": MISSED",
-        };
-        println!("{name:width$}  {:>10}  {what}{verdict}", shown(*median));
-        counts.passed += u64::from(met == Some(true));
-        counts.failed += u64::from(met == Some(false));
+        let goal = GOALS.iter().find(|(known, ..)| known == name).map(|(_, times, other)| {
+            let Some((_, ns)) = medians.iter().find(|(name, _)| name == other) else {
+                return format!("{other} did not run");
+            };
+            let (ratio, is_met) = (ns / median, ns / median >= *times);
+            counts.skipped -= 1;
+            counts.passed += u64::from(is_met);
+            counts.failed += u64::from(!is_met);
+            let verdict = if is_met { "met" } else { "MISSED" };
+            format!("{ratio:.1} times as fast as {other}, at least {times}: {verdict}")
+        });
+        println!("{name:width$}  {:>10}  {}", shown(*median), goal.unwrap_or_default());
     }
-    let ran = counts.passed + counts.failed;
-    counts.skipped = (GOALS.len() as u64).saturating_sub(ran);
-    let note = if counts.skipped > 0 { "skipped: goals of benchmarks that did not run" } else { "" };
-    (counts, note.to_string())
+    counts
 }
 
 /// The medians in nanoseconds that criterion wrote since `start`, by name.
@@ -113,7 +102,7 @@ fn medians(home: &Path, start: SystemTime) -> Vec<(String, f64)> {
     let inside = |folder: &Path| files::entries(folder).unwrap_or_default();
     let read = |folder: &Path| {
         let file = folder.join("new/estimates.json");
-        let is_fresh = fs::metadata(&file).and_then(|meta| meta.modified()).is_ok_and(|time| time >= start);
+        let is_fresh = file.metadata().and_then(|meta| meta.modified()).is_ok_and(|time| time >= start);
         let name = folder.strip_prefix(home).ok()?.display().to_string();
         Some((name, files::read(&file).ok().filter(|_| is_fresh).as_deref().and_then(median)?))
     };
@@ -163,6 +152,6 @@ mod tests {
         ];
         // The peer of one did not run, and neither did the others.
         let skipped = GOALS.len() as u64 - 3;
-        assert_eq!(judge(&medians).0, Counts { passed: 1, failed: 2, skipped });
+        assert_eq!(judge(&medians), Counts { passed: 1, failed: 2, skipped });
     }
 }

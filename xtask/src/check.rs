@@ -1,11 +1,12 @@
 //! `cargo xtask check`: everything that can be said without running the code.
 
 use crate::device::{PARTS, Part};
-use crate::files;
 use crate::firmware;
+use crate::modules;
 use crate::python;
-use crate::repo::{ended, output_of};
-use crate::session::Session;
+use crate::repo::{Repo, ended, output_of};
+use crate::session::{Session, folders, packages};
+use serde_json::Value;
 use std::thread::JoinHandle;
 
 /// Workspaces of their own, and how to leave out what needs more than a stable compiler.
@@ -26,8 +27,9 @@ pub fn run(s: &mut Session) {
             s.report.command(&name, s.repo.cargo_in(folder, &check));
         }
     }
-    s.report.step("layers of the controller", || crate::layers::check(&s.repo.root.join("controller/src")));
-    s.report.step("no circles between modules", || crate::circles::check(&s.repo.root));
+    let controller = s.repo.root.join("controller/src");
+    s.report.step("layers of the controller", || modules::check_layers(&controller));
+    s.report.step_with("no circles between modules", folders(&s.repo), |crates| modules::check_circles(&crates));
     s.report.step(crate::weight::SHARED, || crate::weight::check_shared(&s.repo));
     s.report.step("no log that panics", || crate::plants::check_logs(&s.repo.root));
     crate::minimal::check(s);
@@ -63,12 +65,8 @@ pub fn run(s: &mut Session) {
 
 /// Whether a component of the toolchain is there; records a skipped part otherwise.
 fn has(s: &mut Session, subcommand: &str, component: &str) -> bool {
-    let found = output_of(&mut s.repo.cargo(&[subcommand, "--version"])).is_some();
-    if !found {
-        let reason = format!("not installed; run `rustup component add {component}`");
-        s.report.skip(component, &reason);
-    }
-    found
+    let found = output_of(&mut s.repo.cargo(&[subcommand, "--version"]));
+    s.report.need(component, found.ok_or(format!("not installed; run `rustup component add {component}`"))).is_some()
 }
 
 /// Checks of the controller for a part with each set of features that its manifest lists: the name
@@ -78,7 +76,11 @@ type FeatureCheck = (String, Result<JoinHandle<Result<(), String>>, String>);
 /// Begins them, one thread a part: the compiler has one thread for one crate. The part with a
 /// Cortex-M0 has no FPU and takes the sets with fixed point.
 fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
-    let sets = feature_sets(&files::read(&s.repo.root.join("controller/Cargo.toml")).unwrap_or_default());
+    let mut sets = Vec::new();
+    s.report.step("list of the controller's feature sets", || {
+        sets = feature_sets(&s.repo)?;
+        Ok(())
+    });
     let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
     let mut check = |part: &Part| {
         let has_fpu = part.target.ends_with("hf");
@@ -111,27 +113,14 @@ fn end_feature_checks(s: &mut Session, checks: Vec<FeatureCheck>) {
     }
 }
 
-/// The list `feature-sets` in a manifest's metadata, and the set without any feature.
-fn feature_sets(manifest: &str) -> Vec<String> {
-    let manifest: Option<toml::Table> = manifest.parse().ok();
-    let sets = manifest.as_ref().and_then(|manifest| {
-        let metadata = manifest.get("package")?.get("metadata")?.get("staya")?;
-        metadata.get("feature-sets")?.as_array()
-    });
-    let names = sets.into_iter().flatten().filter_map(toml::Value::as_str);
-    let mut names: Vec<String> = std::iter::once("").chain(names).map(String::from).collect();
+/// The list `feature-sets` in the metadata of the controller's manifest, and the set without any
+/// feature.
+fn feature_sets(repo: &Repo) -> Result<Vec<String>, String> {
+    let packages = packages(repo)?;
+    let controller = packages.iter().find(|package| package["name"] == "staya-controller");
+    let sets = controller.and_then(|package| package["metadata"]["staya"]["feature-sets"].as_array());
+    let sets = sets.ok_or("controller/Cargo.toml has no list package.metadata.staya.feature-sets")?;
+    let mut names: Vec<&str> = std::iter::once("").chain(sets.iter().filter_map(Value::as_str)).collect();
     names.dedup();
-    names
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn feature_sets_are_those_of_the_manifest_and_the_empty_one() {
-        let manifest = "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
-        assert_eq!(feature_sets(manifest), ["", "orca", "orca,fixed"]);
-        assert_eq!(feature_sets("[package]\n"), [""]);
-    }
+    Ok(names.into_iter().map(String::from).collect())
 }

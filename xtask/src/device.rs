@@ -11,53 +11,82 @@ pub struct Part {
     pub name: &'static str,
     /// The target that its code is compiled for.
     pub target: &'static str,
-    /// The emulator that runs it.
+    /// The emulator that runs it, and the machine that it models.
     pub emulator: &'static str,
+    pub machine: &'static [&'static str],
 }
 
 /// Every part.
 pub const PARTS: [Part; 3] = [
-    Part { name: "stm32f405", target: "thumbv7em-none-eabihf", emulator: "qemu-system-arm" },
-    Part { name: "nrf51", target: "thumbv6m-none-eabi", emulator: "qemu-system-arm" },
-    Part { name: "riscv32", target: "riscv32imac-unknown-none-elf", emulator: "qemu-system-riscv32" },
+    Part {
+        name: "stm32f405",
+        target: "thumbv7em-none-eabihf",
+        emulator: "qemu-system-arm",
+        machine: &["-machine", "netduinoplus2"],
+    },
+    Part {
+        name: "nrf51",
+        target: "thumbv6m-none-eabi",
+        emulator: "qemu-system-arm",
+        machine: &["-machine", "microbit"],
+    },
+    Part {
+        name: "riscv32",
+        target: "riscv32imac-unknown-none-elf",
+        emulator: "qemu-system-riscv32",
+        // Without firmware of the machine's own, which would be loaded over ours.
+        machine: &["-machine", "virt", "-bios", "none"],
+    },
 ];
 
 /// The part with an FPU and room for all of the controller.
 pub const STM32F405: &Part = &PARTS[0];
 
 /// The parts of these names; all of them without names.
-pub fn parts(names: &[&str]) -> Vec<&'static Part> {
-    PARTS.iter().filter(|part| names.is_empty() || names.contains(&part.name)).collect()
+pub fn parts(names: &[&str]) -> impl Iterator<Item = &'static Part> {
+    PARTS.iter().filter(move |part| names.is_empty() || names.contains(&part.name))
 }
 
 /// Debian's packaged Rust, which can build `core` from source for any target.
-const DEBIAN: Tools =
-    Tools { packages: &["rustc-web", "cargo-web", "rust-web-src", "lld"], programs: &["rustc", "cargo", "ld.lld"] };
+const DEBIAN: Tools = Tools {
+    packages: &["rustc-web", "cargo-web", "rust-web-src", "lld"],
+    programs: &["rustc", "cargo", "ld.lld"],
+    question: "for bin in /usr/bin \"$1\"; do
+        core=$(\"$bin/rustc\" --print sysroot)/lib/rustlib/src/rust/library/core/src/lib.rs
+        if [ -f \"$bin/cargo\" ] && [ -f \"$bin/ld.lld\" ] && [ -f \"$core\" ]; then echo \"$bin\"; exit; fi
+    done; exit 1",
+};
 const REMEDY: &str = "run `rustup target add thumbv7em-none-eabihf thumbv6m-none-eabi riscv32imac-unknown-none-elf`";
 
 /// Where `core` for a microcontroller comes from.
+#[derive(Clone)]
 pub enum Toolchain {
     /// The toolchain that runs this program has the target.
     Own,
-    /// Debian's packages build it from source.
-    Debian(Debian),
+    /// Debian's packages, whose programs are in this folder, build it from source.
+    Debian(PathBuf),
 }
 
 /// Finds toolchains; looks for Debian's packages (and fetches them) once, and only if a target
 /// needs them.
 #[derive(Default)]
 pub struct Toolchains {
-    debian: Option<Result<Debian, String>>,
+    debian: Option<Result<Toolchain, String>>,
 }
 
 impl Toolchains {
     /// The toolchain for a target. The error says why there is none, and what to do.
     pub fn find(&mut self, repo: &Repo, target: &str) -> Result<Toolchain, String> {
-        if has_target(repo, target) {
+        let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+        let folder = output_of(repo.command(rustc).args(["--print", "target-libdir", "--target", target]));
+        if folder.is_some_and(|folder| Path::new(&folder).is_dir()) {
             return Ok(Toolchain::Own);
         }
-        let ready = self.debian.get_or_insert_with(|| prepare(repo));
-        ready.clone().map(Toolchain::Debian)
+        let find = || {
+            DEBIAN.prepare(repo).map_err(|reason| format!("{reason}; or {REMEDY}"))?;
+            repo.answer(DEBIAN.question).map(|bin| Toolchain::Debian(bin.into())).ok_or_else(|| REMEDY.into())
+        };
+        self.debian.get_or_insert_with(find).clone()
     }
 }
 
@@ -66,11 +95,20 @@ impl Toolchain {
     pub fn cargo(&self, repo: &Repo, target: &str, subcommand: &str) -> Command {
         let mut command = match self {
             Self::Own => repo.cargo(&[subcommand]),
-            Self::Debian(rust) => {
-                let mut command = rust.cargo(repo, &[subcommand, "-Zbuild-std=core"]);
+            Self::Debian(bin) => {
+                let mut command = repo.command(bin.join("cargo"));
+                // Cargo and rustup tell their children which toolchain runs; that is another one
+                // here.
+                for name in std::env::vars_os().filter_map(|(name, _)| name.into_string().ok()) {
+                    if names_a_toolchain(&name) {
+                        command.env_remove(name);
+                    }
+                }
+                command.args([subcommand, "-Zbuild-std=core"]);
+                command.env("RUSTC", bin.join("rustc")).env("RUSTC_BOOTSTRAP", "1");
                 // The targets ask for Rust's own copy of the linker, which Debian does not have.
-                let target = target.to_uppercase().replace(['-', '.'], "_");
-                command.env(format!("CARGO_TARGET_{target}_LINKER"), "ld.lld");
+                let linker = format!("CARGO_TARGET_{}_LINKER", target.to_uppercase().replace(['-', '.'], "_"));
+                command.env(linker, "ld.lld").env("CARGO_TARGET_DIR", self.target_folder(repo));
                 command
             }
         };
@@ -82,71 +120,13 @@ impl Toolchain {
         command
     }
 
-    /// Where it builds.
+    /// Where it builds: two compilers in one folder would rebuild everything at each change.
     pub fn target_folder(&self, repo: &Repo) -> PathBuf {
         match self {
             Self::Own => repo.target.clone(),
-            Self::Debian(_) => debian_folder(repo),
+            Self::Debian(_) => repo.target.join("debian"),
         }
     }
-}
-
-/// Whether the toolchain that runs this program ships `core` for a target.
-fn has_target(repo: &Repo, target: &str) -> bool {
-    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let mut question = repo.command(rustc);
-    question.args(["--print", "target-libdir", "--target", target]);
-    output_of(&mut question).is_some_and(|folder| Path::new(&folder).is_dir())
-}
-
-/// Debian's Rust, with the sources of `core`.
-#[derive(Clone)]
-pub struct Debian {
-    /// The folder of its programs.
-    bin: PathBuf,
-}
-
-/// Finds the packages, or unpacks them. The error says why they are not there, and what to do.
-fn prepare(repo: &Repo) -> Result<Debian, String> {
-    let find = || {
-        let places = [PathBuf::from("/usr/bin"), repo.tools()];
-        places.into_iter().map(|bin| Debian { bin }).find(|rust| rust.is_complete(repo))
-    };
-    DEBIAN.prepare(repo, || find().is_some()).map_err(|reason| format!("{reason}; or {REMEDY}"))?;
-    find().ok_or_else(|| String::from(REMEDY))
-}
-
-impl Debian {
-    /// Its cargo with these arguments, with its rustc, allowed to build `core`, in a target folder
-    /// of its own: two compilers in one folder would rebuild everything at each change.
-    fn cargo(&self, repo: &Repo, arguments: &[&str]) -> Command {
-        let mut command = repo.command(self.bin.join("cargo"));
-        // Cargo and rustup tell their children which toolchain runs; that is another one here.
-        for (name, _) in std::env::vars_os() {
-            if name.to_str().is_some_and(names_a_toolchain) {
-                command.env_remove(name);
-            }
-        }
-        command
-            .args(arguments)
-            .env("RUSTC", self.bin.join("rustc"))
-            .env("RUSTC_BOOTSTRAP", "1")
-            .env("CARGO_TARGET_DIR", debian_folder(repo));
-        command
-    }
-
-    /// Whether compiler, cargo, linker and the sources of `core` are all there.
-    fn is_complete(&self, repo: &Repo) -> bool {
-        let sysroot = output_of(repo.command(self.bin.join("rustc")).args(["--print", "sysroot"]));
-        let sources = sysroot.map(|root| Path::new(&root).join("lib/rustlib/src/rust/library/core/src/lib.rs"));
-        let programs = DEBIAN.programs.iter().all(|program| self.bin.join(program).is_file());
-        programs && sources.is_some_and(|sources| sources.is_file())
-    }
-}
-
-/// Where Debian's cargo builds.
-fn debian_folder(repo: &Repo) -> PathBuf {
-    repo.target.join("debian")
 }
 
 /// Whether an environment variable chooses a compiler, its flags or its libraries.
@@ -169,12 +149,5 @@ mod tests {
         for name in ["PATH", "HOME", "CARGO_HOME", "CARGO_BUILD_JOBS", "CARGO_HTTP_PROXY"] {
             assert!(!names_a_toolchain(name), "{name}");
         }
-    }
-
-    #[test]
-    fn parts_are_found_by_their_names() {
-        let names = |names: &[&str]| parts(names).iter().map(|part| part.name).collect::<Vec<_>>();
-        assert_eq!(names(&["nrf51"]), ["nrf51"]);
-        assert_eq!(names(&[]), PARTS.each_ref().map(|part| part.name));
     }
 }

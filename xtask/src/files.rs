@@ -28,17 +28,15 @@ pub fn make(folder: &Path) -> Result<(), String> {
     named(folder, fs::create_dir_all(folder))
 }
 
-/// Makes a folder that is empty.
-pub fn make_empty(folder: &Path) -> Result<(), String> {
-    if folder.exists() {
-        named(folder, fs::remove_dir_all(folder))?;
-    }
-    make(folder)
+/// Removes a folder with all that is in it.
+pub fn remove(folder: &Path) -> Result<(), String> {
+    if folder.exists() { named(folder, fs::remove_dir_all(folder)) } else { Ok(()) }
 }
 
-/// Removes a folder that is empty.
-pub fn remove_empty(folder: &Path) -> Result<(), String> {
-    named(folder, fs::remove_dir(folder))
+/// Makes a folder that is empty.
+pub fn make_empty(folder: &Path) -> Result<(), String> {
+    remove(folder)?;
+    make(folder)
 }
 
 /// Copies a file, and makes the folder that it goes to. A program that runs cannot be written to,

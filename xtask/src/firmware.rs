@@ -25,14 +25,22 @@ impl Profile {
         }
     }
 
+    /// The end of names behind that of a part.
+    pub fn suffix(self) -> &'static str {
+        if self == Self::Debug { ", debug" } else { "" }
+    }
+
     /// Where the ELF file of a program is put: `target/firmware/PART/BIN`, or
     /// `target/firmware/PART/debug/BIN`.
     pub fn elf(self, repo: &Repo, part: &Part, bin: &str) -> PathBuf {
         let folder = repo.target.join("firmware").join(part.name);
-        match self {
-            Self::Firmware => folder.join(bin),
-            Self::Debug => folder.join("debug").join(bin),
-        }
+        if self == Self::Debug { folder.join("debug").join(bin) } else { folder.join(bin) }
+    }
+
+    /// The ELF file of a program that was built before.
+    pub fn find(self, repo: &Repo, part: &Part, bin: &str) -> Result<PathBuf, String> {
+        let elf = self.elf(repo, part, bin);
+        if elf.is_file() { Ok(elf) } else { Err(format!("no firmware for {}", part.name)) }
     }
 }
 
@@ -68,10 +76,7 @@ pub fn begin(s: &mut Session) -> Option<Child> {
 /// Builds the programs of these names for a part as one step, or all of them if none is named.
 /// Returns whether the ELF files are there.
 pub fn build(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) -> bool {
-    let name = match profile {
-        Profile::Firmware => format!("firmware for {}", part.name),
-        Profile::Debug => format!("firmware for {}, debug", part.name),
-    };
+    let name = format!("firmware for {}{}", part.name, profile.suffix());
     if part.name == "nrf51" && profile == Profile::Debug {
         s.report.skip(&name, "256 KiB of flash hold it only optimised");
         return false;
@@ -146,7 +151,7 @@ fn put(from: &Path, to: &Path) -> Result<(), String> {
 }
 
 /// The sizes of an ELF file, bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sections {
     /// Machine code.
     pub text: u64,

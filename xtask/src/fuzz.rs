@@ -1,7 +1,7 @@
 //! `cargo xtask fuzz`: a fuzzer looks for bytes that break what must hold for any bytes.
 
 use crate::files;
-use crate::repo::{Repo, output_of};
+use crate::repo::Repo;
 use crate::session::Session;
 use std::process::Command;
 
@@ -9,11 +9,11 @@ const FOLDER: &str = "tests/fuzz";
 /// How long each target runs unless the command line says otherwise; libFuzzer takes 0 for ever.
 const SECONDS: &str = "60";
 
-/// Requirements of the fuzzer: the command that finds each, and the remedy without it.
-const NEEDS: [(&[&str], &str); 3] = [
-    (&["rustup", "run", "nightly", "cargo", "--version"], "no nightly Rust; run `rustup toolchain install nightly`"),
-    (&["rustup", "run", "nightly", "cargo", "fuzz", "--version"], "no cargo-fuzz; run `cargo install cargo-fuzz`"),
-    (&["c++", "--version"], "no C++ compiler, which libFuzzer needs; on Debian run, as root, `apt-get install g++`"),
+/// Requirements of the fuzzer: a command that shows each, and the remedy without it.
+const NEEDS: [(&str, &str); 3] = [
+    ("rustup run nightly cargo --version", "no nightly Rust; run `rustup toolchain install nightly`"),
+    ("rustup run nightly cargo fuzz --version", "no cargo-fuzz; run `cargo install cargo-fuzz`"),
+    ("c++ --version", "no C++ compiler, which libFuzzer needs; on Debian run, as root, `apt-get install g++`"),
 ];
 
 /// Targets whose bytes are choices, not words to be guessed, in code without `unsafe`: what the
@@ -24,12 +24,9 @@ const STORIES: [&str; 1] = ["messages_model"];
 /// Runs each target for some seconds. New inputs stay in `tests/fuzz/corpus`, those that break
 /// something in `tests/fuzz/artifacts`.
 pub fn run(s: &mut Session, seconds: Option<&str>) {
-    let is_missing = |question: &[&str]| output_of(s.repo.command(question[0]).args(&question[1..])).is_none();
-    let missing = NEEDS.iter().find(|(question, _)| is_missing(question));
-    let targets = files::entries(&s.repo.root.join(FOLDER).join("fuzz_targets")).unwrap_or_default();
-    if targets.is_empty() {
-        s.report.step("fuzz targets", || Err(format!("none in {FOLDER}")));
-    }
+    let missing = NEEDS.iter().find(|(question, _)| !s.repo.says(question));
+    let targets = files::entries(&s.repo.root.join(FOLDER).join("fuzz_targets"));
+    let Some(targets) = s.report.need("fuzz targets", targets) else { return };
     for target in targets.iter().map(|file| files::stem(file)) {
         match missing {
             None => drop(s.report.command(&target, fuzz(&s.repo, &target, seconds.unwrap_or(SECONDS)))),

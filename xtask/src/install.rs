@@ -15,14 +15,13 @@ use std::path::Path;
 pub fn run_command(s: &mut Session, options: &Options<'_>) {
     let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".local"));
     let prefix = options.value("--prefix").and_then(|folder| std::path::absolute(folder).ok()).or(home);
-    let Some(prefix) = prefix else {
-        return s.report.skip("install", "there is no HOME to install into: give --prefix DIR");
-    };
+    let prefix = prefix.ok_or_else(|| String::from("there is no HOME to install into: give --prefix DIR"));
+    let Some(prefix) = s.report.need("install", prefix) else { return };
     for part in &PARTS {
         firmware::build(s, part, Profile::Firmware, &["lockstep"]);
     }
     let profile = if options.has("--debug") { "debug" } else { "release" };
-    if s.staya(profile).is_some() {
+    if s.staya(profile).is_ok() {
         put_step(s, &prefix, profile);
     }
 }

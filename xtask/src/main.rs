@@ -9,20 +9,17 @@ mod bench;
 mod bless;
 mod c;
 mod check;
-mod circles;
 mod device;
 mod documents;
 mod emulate;
 mod emulated;
-mod extent;
-mod figures;
 mod files;
 mod firmware;
 mod fuzz;
 mod install;
 mod language;
-mod layers;
 mod minimal;
+mod modules;
 mod mpi;
 mod mutants;
 mod options;
@@ -34,13 +31,11 @@ mod report;
 mod session;
 mod size;
 mod soak;
-mod source;
 mod swarms;
 mod tally;
 mod test;
 mod weight;
 
-use extent::Extent::{All, Short};
 use options::Options;
 use session::Session;
 use std::process::ExitCode;
@@ -52,8 +47,8 @@ type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
 #[rustfmt::skip]
 const COMMANDS: [Command; 32] = [
     ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
-    ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, Short)),
-    ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, All)),
+    ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, false)),
+    ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, true)),
     ("autopilots [--rover PATH] [--copter PATH] [--defaults FOLDER] [NAME]", "flights with your build of ArduPilot",
         autopilots::run_command),
     ("bench [NAME]", "benchmarks: medians, ratios, goals", |s, o| bench::run(s, o.name())),
@@ -61,12 +56,12 @@ const COMMANDS: [Command; 32] = [
     ("book", "the pages as a book with search: target/book/index.html", |s, _| python::book(s)),
     ("browser", "the page of `staya view` in Chromium", |s, _| python::browser(s)),
     ("c", "the library for C, on this machine and on an emulated STM32F405", |s, _| c::run(s)),
-    ("clients [NAME]", "MAVLink clients against staya", |s, o| python::clients(s, o.name(), All)),
+    ("clients [NAME]", "MAVLink clients against staya", |s, o| python::clients(s, o.name(), true)),
     ("cluster", "sweeps on Slurm and GNU parallel, on this machine", |s, _| python::cluster(s)),
     ("example", "the example firmware of examples/stm32f4", |s, _| firmware::example(s)),
     ("faults [stm32f405|nrf51|riscv32...]", "firmware that fails restarts", |s, o| swarms::faults(s, &o.names)),
     ("figures [--out FILE] [--against FILE]", "figures of scenarios and experiments: target/figures.csv, or as before a change",
-        figures::run_command),
+        python::figures),
     ("firmware [--debug] [--bin NAME] [stm32f405|nrf51|riscv32...]", "programs of hil/firmware: target/firmware/PART",
         firmware::run_command),
     ("firmware [--crate DIR] [stm32f405|nrf51|riscv32...]", "firmware of a crate with a law of its own",
@@ -78,11 +73,11 @@ const COMMANDS: [Command; 32] = [
     ("mpi [--scaling]", "times of 200,000 robots on 1, 2 and 4 ranks", |s, _| mpi::run_scaling(s)),
     ("mutants [--shard K/N]", "changes of the controller that its tests must notice",
         |s, o| mutants::run_shard(s, o.value("--shard"))),
-    ("new", "what `staya new` makes, compiled and tested", |s, _| project::run(s, All)),
+    ("new", "what `staya new` makes, compiled and tested", |s, _| project::run(s, true)),
     ("plants", "panics planted in the firmware's sources: the linker refuses each", |s, _| plants::run(s, true)),
-    ("pogema", "robots that negotiate on all maps of POGEMA's tables", |s, _| python::pogema(s, All)),
+    ("pogema", "robots that negotiate on all maps of POGEMA's tables", |s, _| python::pogema(s, true)),
     ("python", "the package for Python: its wheel, types and tests", |s, _| python::package(s)),
-    ("qemu", "fetches the emulators of the parts", |s, _| emulate::run_command(s)),
+    ("qemu", "fetches the emulators of the parts", |s, _| emulate::fetch(s)),
     ("size [--json]", "flash, RAM, stack, instructions against budgets", |s, o| size::run(s, o.has("--json"))),
     ("size [--search] [--seed N] [--scenes N]", "the longest step behind ORCA that a search finds", size::search),
     ("soak [--minutes N] [--json FILE] [flood|key|companion|hil...]", "everything at once among hostile clients",
@@ -104,7 +99,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let (name, rest) = arguments.split_first().map_or(("", &[][..]), |(name, rest)| (*name, rest));
-    if ["help", "-h", "--help"].contains(&name) {
+    if ["help", "-h", "--help"].contains(&name) || rest.contains(&"--help") {
         print!("{}", help());
         return ExitCode::SUCCESS;
     }

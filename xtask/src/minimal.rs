@@ -1,46 +1,25 @@
 //! The oldest Rust that the workspace declares (`rust-version`) compiles it.
 
-use crate::files;
-use crate::repo::{Repo, output_of};
 use crate::session::Session;
-
-const NAME: &str = "the declared minimal Rust";
 
 /// If the toolchain here is that Rust, all that is compiled shows it; else rustup's of that version
 /// has to check the workspace.
 pub fn check(s: &mut Session) {
-    let declared = match declared(&s.repo) {
-        Ok(declared) => declared,
-        Err(reason) => {
-            s.report.step(NAME, || Err(reason));
-            return;
-        }
-    };
-    let here = output_of(s.repo.command("rustc").arg("--version")).unwrap_or_default();
-    let rustup = |arguments: &[&str]| {
-        let mut command = s.repo.command("rustup");
-        command.args(["run", &declared]).args(arguments);
-        command
-    };
-    if is_release_of(&here, &declared) {
+    const NAME: &str = "the declared minimal Rust";
+    const DECLARED: &str = env!("CARGO_PKG_RUST_VERSION");
+    let here = s.repo.answer("rustc --version").unwrap_or_default();
+    if is_release_of(&here, DECLARED) {
         println!("{here} compiles everything here");
         s.report.step(NAME, || Ok(()));
-    } else if output_of(&mut rustup(&["rustc", "--version"])).is_some() {
-        let mut check = rustup(&["cargo", "check", "--locked", "--workspace", "--target-dir"]);
+    } else if s.repo.says(&format!("rustup run {DECLARED} rustc --version")) {
+        let mut check = s.repo.command("rustup");
+        check.args(["run", DECLARED, "cargo", "check", "--locked", "--workspace", "--target-dir"]);
         check.arg(s.repo.target.join("minimal"));
         s.report.command(NAME, check);
     } else {
         let remedy = "or declare another rust-version in Cargo.toml";
-        s.report.skip(NAME, &format!("this is {here}; run `rustup toolchain install {declared}`, {remedy}"));
+        s.report.skip(NAME, &format!("this is {here}; run `rustup toolchain install {DECLARED}`, {remedy}"));
     }
-}
-
-/// `rust-version` of the workspace.
-fn declared(repo: &Repo) -> Result<String, String> {
-    let path = repo.root.join("Cargo.toml");
-    let manifest: toml::Table = files::read(&path)?.parse().map_err(|error| format!("{}: {error}", path.display()))?;
-    let version = manifest["workspace"]["package"].get("rust-version").and_then(toml::Value::as_str);
-    version.map(String::from).ok_or_else(|| format!("{}: no rust-version", path.display()))
 }
 
 /// Whether what `rustc --version` says is a release of `version`, such as `rustc 1.95.0 (...)` of
@@ -66,11 +45,5 @@ mod tests {
         ] {
             assert_eq!(is_release_of(said, version), is, "{said} {version}");
         }
-    }
-
-    #[test]
-    fn this_repository_declares_one() {
-        let version = declared(&Repo::find()).unwrap();
-        assert!(version.starts_with("1."), "{version}");
     }
 }

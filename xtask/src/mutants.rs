@@ -4,10 +4,10 @@
 //! and the survivors that are accepted, each with its reason.
 
 use crate::files;
-use crate::repo::{Repo, output_of, run};
-use crate::report::Counts;
+use crate::repo::{Repo, run};
+use crate::report::{Counts, failure};
 use crate::session::Session;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The share that `cargo xtask test --all` plants: some 23 of 4,500, in a minute and a half per
 /// ten on two processors.
@@ -31,19 +31,15 @@ pub fn run_shard(s: &mut Session, shard: Option<&str>) {
     let shard = shard.unwrap_or(SHARD);
     let name = format!("mutants, shard {shard}");
     let repo = &s.repo;
-    s.report.part(&name, || match planted(repo, shard) {
-        Ok(found) => found,
-        Err(reason) => {
-            println!("failed: {reason}");
-            (Counts { failed: 1, ..Counts::default() }, reason)
-        }
-    });
+    s.report.part(&name, || planted(repo, shard).unwrap_or_else(failure));
 }
 
 fn planted(repo: &Repo, shard: &str) -> Result<(Counts, String), String> {
     let folder = repo.target.join("mutants");
     let program = program(repo)?;
-    let sources = copied(repo, &folder)?;
+    let sources = folder.join("sources");
+    // An interrupted run leaves no mutant behind.
+    repo.copy(&sources, |_, bytes| bytes)?;
     let mut command = repo.command(program);
     command
         .args(["mutants", "--in-place", "--package", "staya-controller", "--features", "host"])
@@ -73,21 +69,6 @@ fn program(repo: &Repo) -> Result<PathBuf, String> {
         run(repo.cargo(&["install", "--quiet", "--locked", "cargo-mutants@27.1.0", "--root"]).arg(&folder))?;
     }
     Ok(program)
-}
-
-/// The sources without what git ignores, so that an interrupted run leaves no mutant behind.
-fn copied(repo: &Repo, folder: &Path) -> Result<PathBuf, String> {
-    let sources = folder.join("sources");
-    let listed = output_of(repo.command("git").args(["ls-files", "--cached", "--others", "--exclude-standard"]));
-    for file in listed.ok_or("git ls-files fails")?.lines().map(Path::new) {
-        let (from, to) = (repo.root.join(file), sources.join(file));
-        let is_same = files::bytes(&to).is_ok_and(|old| files::bytes(&from).is_ok_and(|new| new == old));
-        if from.is_file() && !is_same {
-            files::make(to.parent().unwrap_or(folder))?;
-            files::copy(&from, &to)?;
-        }
-    }
-    Ok(sources)
 }
 
 /// One failure if the tests notice too few.

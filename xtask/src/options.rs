@@ -25,13 +25,13 @@ impl<'a> Options<'a> {
         while let Some(argument) = arguments.next() {
             let bare = |word: &&str| word.trim_matches(['[', ']']) == argument;
             if let Some(at) = words.iter().position(|word| word.contains("--") && bare(word)) {
-                let wanted = words.get(at + 1).filter(|_| is_open(words[at]));
+                let wanted = words.get(at + 1).filter(|_| is_open(words[at])).map(|word| word.trim_end_matches(']'));
                 let value = match wanted {
                     Some(wanted) => arguments.next().ok_or_else(|| format!("{argument} needs a value: {wanted}"))?,
                     None => "",
                 };
                 let is_number = value.parse().is_ok_and(|n: f64| n > 0.0 && n.is_finite());
-                if wanted.is_some_and(|wanted| wanted.starts_with("N]")) && !is_number {
+                if wanted == Some("N") && !is_number {
                     return Err(format!("{argument} needs a number above 0, not `{value}`"));
                 }
                 options.values.push((argument, value));
@@ -64,6 +64,11 @@ impl<'a> Options<'a> {
     /// The values of an option that can be given several times.
     pub fn all(&self, option: &str) -> impl Iterator<Item = &'a str> {
         self.values.iter().filter(move |(name, _)| *name == option).map(|(_, value)| *value)
+    }
+
+    /// These options with their values, as on a command line.
+    pub fn all_of(&self, options: &[&str]) -> impl Iterator<Item = &'a str> {
+        self.values.iter().filter(|(option, _)| options.contains(option)).flat_map(|&(option, value)| [option, value])
     }
 
     /// The first name.

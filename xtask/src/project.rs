@@ -4,19 +4,18 @@
 use crate::apt::Tools;
 use crate::c;
 use crate::device::STM32F405;
-use crate::emulate;
-use crate::extent::Extent;
+use crate::emulate::QEMU;
 use crate::files;
 use crate::firmware::build_own;
 use crate::python;
-use crate::repo::{Repo, output_of, run as run_command_line};
-use crate::report::Counts;
+use crate::repo::{Repo, run as run_command};
+use crate::report::failure;
 use crate::session::{MAIN, Session};
 use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const MAKE: Tools = Tools { packages: &["make"], programs: &["make"] };
+const MAKE: Tools = Tools { packages: &["make"], programs: &["make"], question: "make --version" };
 /// Parts of `staya new`, and the targets of their code.
 const PARTS: [(&str, &str); 4] = [
     ("stm32f405", "thumbv7em-none-eabihf"),
@@ -24,24 +23,26 @@ const PARTS: [(&str, &str); 4] = [
     ("nrf52840", "thumbv7em-none-eabihf"),
     ("esp32c3", "riscv32imc-unknown-none-elf"),
 ];
-/// Rust on this machine; of all extent also C, firmware for each part, the law on the emulated one,
+
+/// Rust on this machine; with `is_all` also C, firmware for each part, the law on the emulated one,
 /// Python.
-pub fn run(s: &mut Session, extent: Extent) {
-    if s.staya("debug").is_none() {
-        return s.report.skip("new projects", "`staya` is not compiled");
+pub fn run(s: &mut Session, is_all: bool) {
+    let program = s.staya("debug");
+    if s.report.need("new projects", program).is_none() {
+        return;
     }
     let is_made = s.report.step("a new project in Rust", || {
         let folder = make(&s.repo, STM32F405.name, &[])?;
-        run_command_line(s.repo.cargo(&["test", "--quiet"]).current_dir(&folder))?;
+        run_command(s.repo.cargo(&["test", "--quiet"]).current_dir(&folder))?;
         let mut keep = s.repo.cargo(&["run", "--quiet", "--example", "run", "--", "run.staya"]);
-        run_command_line(keep.current_dir(folder))
+        run_command(keep.current_dir(folder))
     });
-    if extent == Extent::Short {
+    if !is_all {
         return;
     }
     s.report.step_with("a new project in C", make_is_there(&s.repo), |()| {
         let folder = make(&s.repo, "c", &["--c"])?;
-        run_command_line(make_in(&s.repo, &folder).arg("test"))
+        run_command(make_in(&s.repo, &folder).arg("test"))
     });
     for (name, target) in PARTS {
         firmware(s, name, target);
@@ -55,21 +56,19 @@ pub fn run(s: &mut Session, extent: Extent) {
 
 /// Makes sure that there is what projects in C are compiled by; `make` is unpacked on Debian.
 fn make_is_there(repo: &Repo) -> Result<(), String> {
-    let is_there = |program: &str| output_of(repo.command(program).arg("--version")).is_some();
-    if !is_there("cc") {
+    if !repo.says("cc --version") {
         return Err(String::from("no cc; on Debian run, as root, `apt-get install gcc libc6-dev`"));
     }
-    MAKE.prepare(repo, || is_there("make"))
+    MAKE.prepare(repo)
 }
 
 /// The folder of a project that was just made.
 fn make(repo: &Repo, kind: &str, options: &[&str]) -> Result<PathBuf, String> {
     let folder = repo.target.join("new").join(format!("pack-{kind}"));
     // `staya new` makes the folder itself.
-    files::make_empty(&folder)?;
-    files::remove_empty(&folder)?;
+    files::remove(&folder)?;
     let mut new = repo.command(repo.program("debug", MAIN));
-    run_command_line(new.args(["new", "--quiet"]).args(options).arg("--staya").arg(&repo.root).arg(&folder))?;
+    run_command(new.args(["new", "--quiet"]).args(options).arg("--staya").arg(&repo.root).arg(&folder))?;
     Ok(folder)
 }
 
@@ -88,21 +87,21 @@ fn firmware(s: &mut Session, name: &str, target: &str) {
         // As quick to compile as can be linked; the part that `cargo xtask example` has compiled
         // for release is that.
         build.args((name == STM32F405.name).then_some("--release"));
-        run_command_line(build.arg("--quiet").current_dir(folder.join("firmware")))
+        run_command(build.arg("--quiet").current_dir(folder.join("firmware")))
     });
 }
 
 fn firmware_in_c(s: &mut Session) {
     let step = "a new robot's firmware in C";
-    if let Err(reason) = make_is_there(&s.repo).and_then(|()| c::compilers(&s.repo)) {
-        return s.report.skip(step, &reason);
+    let tools = make_is_there(&s.repo).and_then(|()| c::COMPILER.prepare(&s.repo));
+    if s.report.need(step, tools).is_none() {
+        return;
     }
     s.with_toolchain(step, STM32F405.target, |repo, toolchain| {
-        let library = c::library(repo, toolchain)?;
+        let library = format!("LIBRARY_FIRMWARE={}", c::library(repo, toolchain)?.display());
         [STM32F405.name, "nrf52840"].into_iter().try_for_each(|name| {
             let folder = make(repo, &format!("c-{name}"), &["--c", "--part", name])?;
-            let mut build = make_in(repo, &folder);
-            run_command_line(build.arg("build/firmware.elf").arg(format!("LIBRARY_FIRMWARE={}", library.display())))
+            run_command(make_in(repo, &folder).args(["build/firmware.elf", &library]))
         })
     });
 }
@@ -111,8 +110,8 @@ fn firmware_in_c(s: &mut Session) {
 fn on_emulated_part(s: &mut Session) {
     let step = "a new law on the emulated stm32f405";
     let folder = s.repo.target.join("new").join(format!("pack-{}", STM32F405.name)).join("hil");
-    if let Err(reason) = emulate::prepare(&s.repo, STM32F405) {
-        return s.report.skip(step, &reason);
+    if s.report.need(step, QEMU.prepare(&s.repo)).is_none() {
+        return;
     }
     if !build_own(s, STM32F405, &folder) {
         return s.report.skip(step, "there is no firmware of it");
@@ -125,19 +124,13 @@ fn on_emulated_part(s: &mut Session) {
 /// In the environment in which the package for Python has been tested.
 fn in_python(s: &mut Session) {
     let step = "a new project in Python";
-    let python = match python::with_wheel(&s.repo) {
-        Ok(python) => python,
-        Err(reason) => return s.report.skip(step, &reason),
-    };
+    let Some(python) = s.report.need(step, python::with_wheel(&s.repo)) else { return };
     s.report.part(step, || {
         let made = make(&s.repo, "python", &["--python"]).and_then(|folder| {
             python::pip(&s.repo, &python, &["--no-deps", "--editable", &folder.display().to_string()])?;
-            run_command_line(s.repo.command(&python).arg("show.py").current_dir(&folder))?;
-            Ok(folder)
+            run_command(s.repo.command(&python).arg("show.py").current_dir(&folder))?;
+            Ok(counted(python::pytest(&s.repo, &python, &[]).current_dir(folder)))
         });
-        match made {
-            Ok(folder) => counted(python::pytest(&s.repo, &python, &[]).current_dir(folder), ""),
-            Err(reason) => (Counts { failed: 1, ..Default::default() }, reason),
-        }
+        made.unwrap_or_else(failure)
     });
 }

@@ -1,26 +1,33 @@
 //! Tests in Python, each suite in an environment of its own in the target folder.
 
 use crate::apt::Tools;
-use crate::extent::Extent;
 use crate::files;
+use crate::options::Options;
 use crate::repo::{Repo, output_of, run};
 use crate::session::Session;
 use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const PYTHON: Tools = Tools { packages: &["python3", "python3-venv"], programs: &["Python 3 with venv"] };
+const PYTHON: Tools = Tools {
+    packages: &["python3", "python3-venv"],
+    programs: &["Python 3 with venv"],
+    question: "python3 -c 'import venv, ensurepip'",
+};
 /// Looks into a capture.
-const TSHARK: Tools = Tools { packages: &["tshark"], programs: &["tshark"] };
+const TSHARK: Tools = Tools { packages: &["tshark"], programs: &["tshark"], question: "tshark --version" };
 /// A browser without windows, and its fonts.
 const CHROMIUM: Tools = Tools {
     packages: &["chromium-headless-shell", "chromium-common", "fontconfig-config", "fonts-dejavu-core"],
     programs: &["chromium-headless-shell"],
+    question: "chromium-headless-shell --version",
 };
 /// Slurm's daemons and clients, and GNU parallel.
 const CLUSTER: Tools = Tools {
     packages: &["slurmctld", "slurmd", "slurm-client", "parallel"],
     programs: &["slurmctld-wlm", "slurmd-wlm", "slurmstepd-wlm", "sbatch", "squeue", "scontrol", "scancel", "parallel"],
+    // Slurm's clients want a configuration before they say anything.
+    question: "slurmctld-wlm -V && slurmd-wlm -V && command -v sbatch && parallel --version",
 };
 /// The package for Python, which has nothing in it without this feature.
 pub const FEATURE: &str = "staya-python/module";
@@ -32,50 +39,36 @@ const PACKAGE: &str = "python-package";
 
 /// MAVLink clients against `staya`: the tests whose names contain `only`; long ones only if all are
 /// wanted.
-pub fn clients(s: &mut Session, only: Option<&str>, extent: Extent) {
+pub fn clients(s: &mut Session, only: Option<&str>, is_all: bool) {
     // Tests wait for real time more than they compute.
     let mut arguments = vec!["tests/python", "-n", "12", "--dist", "worksteal"];
     arguments.extend(only.into_iter().flat_map(|name| ["-k", name]));
-    if extent == Extent::Short {
-        arguments.extend(["-m", "not long"]);
-    }
-    let program = s.staya("debug");
-    suite(s, "MAVLink clients", Suite { program, arguments: &arguments, ..Suite::default() }, client_tools);
+    arguments.extend(if is_all { &[][..] } else { &["-m", "not long"] });
+    suite(s, "MAVLink clients", &arguments, &[], client_tools);
 }
 
 /// Pages of `staya view` in a browser.
 pub fn browser(s: &mut Session) {
-    let prepare = |repo: &Repo| {
-        CHROMIUM.prepare(repo, || output_of(repo.command(CHROMIUM.programs[0]).arg("--version")).is_some())?;
+    let variables = [("CHROMIUM", CHROMIUM.programs[0].to_string())];
+    suite(s, "pages in a browser", &["tests/browser", "--timeout", "120"], &variables, |repo| {
+        CHROMIUM.prepare(repo)?;
         environment(repo, "python", "tests/browser/requirements.txt")
-    };
-    let program = s.staya("debug");
-    let environment = vec![("CHROMIUM", CHROMIUM.programs[0].to_string())];
-    let arguments = &["tests/browser", "--timeout", "120"];
-    suite(s, "pages in a browser", Suite { program, environment, arguments }, prepare);
+    });
 }
 
 /// Sweeps on Slurm and GNU parallel.
 pub fn cluster(s: &mut Session) {
-    let prepare = |repo: &Repo| {
-        // Slurm's clients want a configuration before they say anything.
-        let question = "slurmctld-wlm -V && slurmd-wlm -V && command -v sbatch && parallel --version";
-        CLUSTER.prepare(repo, || output_of(repo.command("sh").args(["-c", question])).is_some())?;
+    let variables = [("STAYA_TOOLS", s.repo.target.join("tools").display().to_string())];
+    suite(s, "sweeps on Slurm and GNU parallel", &["tests/cluster", "--timeout", "300"], &variables, |repo| {
+        CLUSTER.prepare(repo)?;
         client_environment(repo)
-    };
-    let program = s.staya("debug");
-    let environment = vec![("STAYA_TOOLS", s.repo.target.join("tools").display().to_string())];
-    let arguments = &["tests/cluster", "--timeout", "300"];
-    suite(s, "sweeps on Slurm and GNU parallel", Suite { program, environment, arguments }, prepare);
+    });
 }
 
 /// The package for Python: a wheel, the types of its Python code, tests.
 pub fn package(s: &mut Session) {
     const NAME: &str = "the package for Python";
-    let python = match package_environment(&s.repo) {
-        Ok(python) => python,
-        Err(reason) => return s.report.skip(NAME, &reason),
-    };
+    let Some(python) = s.report.need(NAME, package_environment(&s.repo)) else { return };
     if !s.report.step("the wheel", || wheel(&s.repo, &python)) {
         return s.report.skip(NAME, "the wheel was not built");
     }
@@ -83,30 +76,25 @@ pub fn package(s: &mut Session) {
     types.args(["-m", "mypy", "--strict", "--python-executable"]).arg(&python).arg("sim-host/python/python/staya");
     types.arg("--cache-dir").arg(s.repo.target.join(PACKAGE).join("mypy"));
     s.report.command("types of the package for Python", types);
-    let arguments = &["tests/python-package", "--timeout", "300"];
-    suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
+    let mut tests = pytest(&s.repo, &python, &["tests/python-package", "--timeout", "300"]);
+    s.report.part(NAME, || counted(&mut tests));
 }
 
 /// Robots that negotiate in POGEMA's world and by its rules in the simulator: a few maps, or all of
 /// its tables, which it writes to `target/pogema.csv` and `target/pogema`.
-pub fn pogema(s: &mut Session, extent: Extent) {
-    let prepare = |repo: &Repo| {
+pub fn pogema(s: &mut Session, is_all: bool) {
+    let mut arguments = vec!["tests/pogema"];
+    if is_all {
+        let _ = std::fs::remove_file(s.repo.target.join("pogema.csv"));
+    } else {
+        arguments.extend(["-m", "not long"]);
+    }
+    let variables = [("STAYA_TABLES", s.repo.target.display().to_string())];
+    suite(s, "robots in POGEMA's world", &arguments, &variables, |repo| {
         let python = environment(repo, "python-pogema", "tests/pogema/requirements.txt")?;
         pip(repo, &python, &["--no-deps", "--requirement", "tests/pogema/toolbox.txt"])?;
-        wheel(repo, &python)?;
-        Ok(python)
-    };
-    let tables = s.repo.target.display().to_string();
-    let arguments = match extent {
-        Extent::Short => &["tests/pogema", "-m", "not long"][..],
-        Extent::All => {
-            let _ = std::fs::remove_file(s.repo.target.join("pogema.csv"));
-            &["tests/pogema"]
-        }
-    };
-    let program = s.staya("debug");
-    let suite_of = Suite { program, environment: vec![("STAYA_TABLES", tables)], arguments };
-    suite(s, "robots in POGEMA's world", suite_of, prepare);
+        wheel(repo, &python).map(|()| python)
+    });
 }
 
 /// The pages as a book with search, in `target/book`; warnings of Sphinx are errors.
@@ -123,27 +111,32 @@ pub fn book(s: &mut Session) {
     });
 }
 
-/// The setting of a suite.
-#[derive(Default)]
-pub struct Suite<'a> {
-    /// The program under test, in the variable `STAYA`; the suite is skipped without it.
-    pub program: Option<PathBuf>,
-    /// Further variables.
-    pub environment: Vec<(&'static str, String)>,
-    /// pytest's arguments.
-    pub arguments: &'a [&'a str],
+/// The figures of all scenarios and experiments, in `target/figures.csv` or `--out`, compared with
+/// those of `--against`. Paths begin at the top of the repository.
+pub fn figures(s: &mut Session, options: &Options<'_>) {
+    let program = s.staya("release");
+    s.report.step_with("figures of scenarios and experiments", program, |staya| {
+        let mut figures = s.repo.command("python3");
+        figures.arg("xtask/figures.py").args(options.all_of(&["--out", "--against"]));
+        run(figures.env("STAYA", staya))
+    });
 }
 
-/// Runs a suite with the Python that `prepare` gives.
-pub fn suite(s: &mut Session, name: &str, suite: Suite<'_>, prepare: impl FnOnce(&Repo) -> Result<PathBuf, String>) {
-    let program = suite.program.ok_or_else(|| String::from("the program was not built"));
-    match program.and_then(|program| Ok((program, prepare(&s.repo)?))) {
-        Err(reason) => s.report.skip(name, &reason),
-        Ok((program, python)) => {
-            let mut tests = pytest(&s.repo, &python, suite.arguments);
-            tests.env("STAYA", program).envs(suite.environment);
-            s.report.part(name, || counted(&mut tests, ""));
-        }
+/// Runs a suite on `staya`, which is in the variable `STAYA`, with further variables and the Python
+/// that `prepare` gives.
+pub fn suite(
+    s: &mut Session,
+    name: &str,
+    arguments: &[&str],
+    variables: &[(&str, String)],
+    prepare: impl FnOnce(&Repo) -> Result<PathBuf, String>,
+) {
+    let program = s.staya("debug");
+    let ready = program.and_then(|program| Ok((program, prepare(&s.repo)?)));
+    if let Some((program, python)) = s.report.need(name, ready) {
+        let mut tests = pytest(&s.repo, &python, arguments);
+        tests.env("STAYA", program).envs(variables.iter().cloned());
+        s.report.part(name, || counted(&mut tests));
     }
 }
 
@@ -160,10 +153,7 @@ fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf, String>
     let folder = repo.target.join(folder);
     let python = folder.join("bin/python");
     if output_of(repo.command(&python).arg("--version")).is_none() {
-        let has_venv = || output_of(repo.command("python3").args(["-c", "import venv, ensurepip"])).is_some();
-        if !has_venv() {
-            PYTHON.install(repo)?;
-        }
+        PYTHON.prepare_with(repo, Tools::install)?;
         run(repo.command("python3").args(["-m", "venv", "--clear"]).arg(&folder))
             .map_err(|reason| format!("no environment for Python ({reason})"))?;
     }
@@ -189,13 +179,10 @@ pub fn client_environment(repo: &Repo) -> Result<PathBuf, String> {
 /// The same with MAVProxy and tshark.
 pub fn client_tools(repo: &Repo) -> Result<PathBuf, String> {
     let python = client_environment(repo)?;
-    if output_of(repo.command("tshark").arg("--version")).is_none() {
-        // For root it reads its data from where it was built for, and nowhere else. Without it one
-        // test is skipped.
-        if let Err(reason) = TSHARK.install(repo).or_else(|_| TSHARK.unpack(repo)) {
-            println!("no tshark ({reason}); on Debian run, as root, `apt-get update && apt-get install tshark`");
-        }
-    }
+    // For root it reads its data from where it was built for, and nowhere else. Without it one test
+    // is skipped.
+    let tshark = TSHARK.prepare_with(repo, |tools, repo| tools.install(repo).or_else(|_| tools.unpack(repo)));
+    tshark.unwrap_or_else(|reason| println!("{reason}"));
     pip(repo, &python, &["--no-deps", "--requirement", "tests/python/mavproxy.txt"])?;
     Ok(python)
 }

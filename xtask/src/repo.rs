@@ -1,5 +1,6 @@
 //! Where things are, and how a child process is started.
 
+use crate::files;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -50,6 +51,33 @@ impl Repo {
             // Only `bless` may rewrite golden files, whatever the caller's environment says.
             .env_remove(BLESS);
         command
+    }
+
+    /// The output of a command of the shell, whose `$1` is [`Repo::tools`]; `None` unless it
+    /// succeeds.
+    pub fn answer(&self, question: &str) -> Option<String> {
+        output_of(self.command("sh").args(["-c", question, "sh"]).arg(self.tools()))
+    }
+
+    /// Whether a command of the shell succeeds.
+    pub fn says(&self, question: &str) -> bool {
+        self.answer(question).is_some()
+    }
+
+    /// Copies the sources, without what git ignores, to a folder: `change` gives the bytes of each
+    /// file by its path. Unchanged files are not written, so that cargo builds only the difference.
+    pub fn copy(&self, to: &Path, mut change: impl FnMut(&Path, Vec<u8>) -> Vec<u8>) -> Result<(), String> {
+        let listed = self.answer("git ls-files --cached --others --exclude-standard");
+        for file in listed.ok_or("git ls-files fails")?.lines().map(Path::new) {
+            let (from, to) = (self.root.join(file), to.join(file));
+            if from.is_file() {
+                let bytes = change(file, files::bytes(&from)?);
+                if files::bytes(&to).ok().as_ref() != Some(&bytes) {
+                    files::write(&to, bytes)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// A program that was built by the profile `debug` or `release`.

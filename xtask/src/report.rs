@@ -29,6 +29,12 @@ impl std::fmt::Display for Counts {
     }
 }
 
+/// The counts and the note of a part that failed as a whole.
+pub fn failure(reason: String) -> (Counts, String) {
+    println!("failed: {reason}");
+    (Counts { failed: 1, ..Counts::default() }, reason)
+}
+
 /// One row of the closing table.
 struct Part {
     name: String,
@@ -38,16 +44,6 @@ struct Part {
     worked: Option<Duration>,
     /// The reason of a failure or a skip, or the findings.
     note: String,
-}
-
-impl Part {
-    fn seconds(&self) -> String {
-        format!("{:.1}", self.took.as_secs_f64())
-    }
-
-    fn seconds_worked(&self) -> String {
-        self.worked.map_or(String::from("-"), |worked| format!("{:.1}", worked.as_secs_f64()))
-    }
 }
 
 /// The rows so far.
@@ -77,39 +73,31 @@ impl Report {
             counts.failed += std::mem::take(&mut counts.skipped);
             note = format!("with CI=true nothing may be skipped: {note}");
         }
-        let part = Part { name: name.to_string(), counts, took: start.elapsed(), worked, note };
-        println!("-- {} s, of processors {} s", part.seconds(), part.seconds_worked());
-        self.parts.push(part);
+        let took = start.elapsed();
+        println!("-- {} s, of processors {} s", seconds(Some(took)), seconds(worked));
+        self.parts.push(Part { name: name.to_string(), counts, took, worked, note });
         counts
     }
 
     /// Runs one part that either succeeds or fails. Returns whether it succeeded.
     pub fn step(&mut self, name: &str, work: impl FnOnce() -> Result<(), String>) -> bool {
-        let counts = self.part(name, || match work() {
-            Ok(()) => (Counts { passed: 1, ..Counts::default() }, String::new()),
-            Err(reason) => {
-                println!("failed: {reason}");
-                (Counts { failed: 1, ..Counts::default() }, reason)
-            }
-        });
-        counts.failed == 0
+        let succeeded = || work().map(|()| (Counts { passed: 1, ..Counts::default() }, String::new()));
+        self.part(name, || succeeded().unwrap_or_else(failure)).failed == 0
     }
 
-    /// Runs one part with the value that it needs; skips it if the value is missing. Returns
-    /// whether the part succeeded.
+    /// The value that a part needs; records the part as skipped without it.
+    pub fn need<T>(&mut self, name: &str, needed: Result<T, String>) -> Option<T> {
+        needed.map_err(|reason| self.skip(name, &reason)).ok()
+    }
+
+    /// Runs one part with the value that it needs. Returns whether it could and succeeded.
     pub fn step_with<T>(
         &mut self,
         name: &str,
         needed: Result<T, String>,
         work: impl FnOnce(T) -> Result<(), String>,
     ) -> bool {
-        match needed {
-            Ok(needed) => self.step(name, || work(needed)),
-            Err(reason) => {
-                self.skip(name, &reason);
-                false
-            }
-        }
+        self.need(name, needed).is_some_and(|needed| self.step(name, || work(needed)))
     }
 
     /// Runs one command as a part.
@@ -128,22 +116,25 @@ impl Report {
     /// Prints the table and the closing line.
     pub fn close(self) -> ExitCode {
         let mut total = Counts::default();
-        let widest = self.parts.iter().map(|part| part.name.chars().count()).max();
-        let width = widest.unwrap_or(0);
+        let width = self.parts.iter().map(|part| part.name.chars().count()).max().unwrap_or(0);
         println!("\n{:width$}  passed  failed  skipped  seconds  of processors", "part");
         for part in &self.parts {
-            let Part { name, counts, note, .. } = part;
-            let Counts { passed, failed, skipped } = counts;
-            let (took, worked) = (part.seconds(), part.seconds_worked());
+            let Part { name, counts: Counts { passed, failed, skipped }, note, .. } = part;
+            let (took, worked) = (seconds(Some(part.took)), seconds(part.worked));
             let row = format!("{name:width$}  {passed:>6}  {failed:>6}  {skipped:>7}  {took:>7}  {worked:>13}  {note}");
             println!("{}", row.trim_end());
-            total += *counts;
+            total += part.counts;
         }
         let took: Duration = self.parts.iter().map(|part| part.took).sum();
         println!("{:.0} seconds in all", took.as_secs_f64());
         println!("{total}");
         ExitCode::from(u8::from(total.failed > 0))
     }
+}
+
+/// Seconds to a tenth, for people.
+fn seconds(time: Option<Duration>) -> String {
+    time.map_or(String::from("-"), |time| format!("{:.1}", time.as_secs_f64()))
 }
 
 /// Processor time so far of this program and of the commands that have ended, by `/proc/self/stat`

@@ -4,12 +4,13 @@
 use crate::device::{Toolchain, Toolchains};
 use crate::repo::{Repo, output_of};
 use crate::report::Report;
-use std::path::PathBuf;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// The program of the README's first command.
 pub const MAIN: &str = "staya";
-/// Programs that it hands over to; those that the workspace does not have are left out.
-const OTHERS: [&str; 5] = ["staya-lab", "staya-view", "staya-mav", "staya-hil", "staya-voxel"];
+/// It and the programs that it hands over to; those that the workspace does not have are left out.
+const PROGRAMS: [&str; 6] = [MAIN, "staya-lab", "staya-view", "staya-mav", "staya-hil", "staya-voxel"];
 
 /// The session of a command.
 pub struct Session {
@@ -17,7 +18,7 @@ pub struct Session {
     pub report: Report,
     pub toolchains: Toolchains,
     /// Profiles of which the programs were built, and whether they could be.
-    pub built: Vec<(&'static str, bool)>,
+    built: Vec<(&'static str, bool)>,
 }
 
 impl Session {
@@ -27,22 +28,20 @@ impl Session {
     }
 
     /// `staya` of a profile, `debug` or `release`, in a folder with the programs that it hands over
-    /// to. Builds them unless that was done before; none if they cannot be built.
-    pub fn staya(&mut self, profile: &'static str) -> Option<PathBuf> {
-        let before = self.built.iter().find(|(known, _)| *known == profile).map(|(_, is_built)| *is_built);
-        let is_built = before.unwrap_or_else(|| {
+    /// to. Builds them unless that was done before; the error says that they cannot be built.
+    pub fn staya(&mut self, profile: &'static str) -> Result<PathBuf, String> {
+        if !self.built.iter().any(|(known, _)| *known == profile) {
             let is_built = self.report.step(&format!("staya, {profile}"), || {
                 let mut build = self.repo.cargo(&["build", "--locked"]);
                 for (package, program) in programs(&self.repo)? {
                     build.args(["--package", &package, "--bin", program]);
                 }
-                build.args((profile == "release").then_some("--release"));
-                crate::repo::run(&mut build)
+                crate::repo::run(build.args((profile == "release").then_some("--release")))
             });
             self.built.push((profile, is_built));
-            is_built
-        });
-        is_built.then(|| self.repo.program(profile, MAIN))
+        }
+        let is_built = self.built.contains(&(profile, true));
+        is_built.then(|| self.repo.program(profile, MAIN)).ok_or_else(|| String::from("the program was not built"))
     }
 
     /// A step that compiles for a target; skipped without a toolchain for it. Returns whether it
@@ -58,17 +57,28 @@ impl Session {
     }
 }
 
+/// The packages of the workspace, as `cargo metadata` tells them.
+pub fn packages(repo: &Repo) -> Result<Vec<Value>, String> {
+    let metadata = output_of(&mut repo.cargo(&["metadata", "--no-deps", "--format-version", "1", "--locked"]));
+    let metadata: Result<Value, _> = serde_json::from_str(&metadata.ok_or("cargo metadata fails")?);
+    let packages = metadata.map_err(|error| format!("cargo metadata: {error}"))?["packages"].take();
+    Ok(packages.as_array().cloned().unwrap_or_default())
+}
+
+/// The folders of the workspace's packages.
+pub fn folders(repo: &Repo) -> Result<Vec<PathBuf>, String> {
+    let manifests =
+        packages(repo)?.into_iter().filter_map(|package| Some(package["manifest_path"].as_str()?.to_owned()));
+    Ok(manifests.filter_map(|manifest| Some(Path::new(&manifest).parent()?.to_path_buf())).collect())
+}
+
 /// The programs of the workspace that users start, each with the package that it is in.
 pub fn programs(repo: &Repo) -> Result<Vec<(String, &'static str)>, String> {
-    let metadata = output_of(&mut repo.cargo(&["metadata", "--no-deps", "--format-version", "1", "--locked"]));
-    let metadata = serde_json::from_str(&metadata.ok_or("cargo metadata fails")?);
-    let metadata: serde_json::Value = metadata.map_err(|error| format!("cargo metadata: {error}"))?;
-    let packages = || metadata["packages"].as_array().into_iter().flatten();
+    let packages = packages(repo)?;
     let find = |program: &'static str| {
-        let is_it = |target: &serde_json::Value| target["name"] == program && target["kind"][0] == "bin";
-        let package =
-            packages().find(|package| package["targets"].as_array().is_some_and(|all| all.iter().any(is_it)))?;
-        Some((package["name"].as_str()?.to_string(), program))
+        let is_it = |target: &Value| target["name"] == program && target["kind"][0] == "bin";
+        let has_it = |package: &&Value| package["targets"].as_array().is_some_and(|all| all.iter().any(is_it));
+        Some((packages.iter().find(has_it)?["name"].as_str()?.to_string(), program))
     };
-    Ok(std::iter::once(MAIN).chain(OTHERS).filter_map(find).collect())
+    Ok(PROGRAMS.into_iter().filter_map(find).collect())
 }

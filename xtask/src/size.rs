@@ -1,7 +1,6 @@
 //! `cargo xtask size`: what the firmware takes on each part, against `hil/budgets.toml`, and the
 //! search for the longest step behind ORCA.
 
-mod bench;
 mod budget;
 mod laws;
 mod reach;
@@ -9,30 +8,62 @@ mod reach;
 use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
 use crate::files;
-use crate::firmware::{self, Profile, Sections};
+use crate::firmware::{Profile, Sections, sections};
 use crate::options::Options;
 use crate::repo::Repo;
 use crate::session::Session;
-use bench::Row;
-use budget::Budget;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 /// Where the limits are.
 const BUDGETS: &str = "hil/budgets.toml";
 
+/// Figures of one kind: rows with a name and a figure for each column, after the first column.
+struct Table {
+    columns: &'static [&'static str],
+    rows: Vec<(String, Vec<u64>)>,
+}
+
+impl Table {
+    /// The figure in a row and a column.
+    fn get(&self, name: &str, column: &str) -> Option<u64> {
+        let (_, figures) = self.rows.iter().find(|(known, _)| known == name)?;
+        figures.get(self.columns[1..].iter().position(|known| *known == column)?).copied()
+    }
+
+    /// For people.
+    fn text(&self) -> String {
+        let width = self.rows.iter().map(|(name, _)| name.len()).chain([self.columns[0].len()]).max().unwrap_or(0);
+        let mut text = format!("\n{:width$}", self.columns[0]);
+        text.extend(self.columns[1..].iter().map(|column| format!(" {column:>9}")));
+        for (name, figures) in &self.rows {
+            text += &format!("\n{name:width$}");
+            text.extend(figures.iter().map(|figure| format!(" {figure:>9}")));
+        }
+        text + "\n"
+    }
+
+    /// For programs: an object by row.
+    fn json(&self) -> Value {
+        let object = |figures: &[u64]| -> Value {
+            let columns = self.columns[1..].iter().map(ToString::to_string);
+            columns.zip(figures.iter().copied().map(Value::from)).collect()
+        };
+        self.rows.iter().map(|(name, figures)| (name.clone(), object(figures))).collect()
+    }
+}
+
 /// The measurements of a part.
-#[derive(Serialize)]
 struct Measured {
-    part: &'static str,
     /// Programs with their sections, bytes.
-    programs: Vec<(String, Sections)>,
-    rows: Vec<Row>,
+    programs: Table,
+    /// Cases of `bench` with the kind of number: instructions and bytes.
+    cases: Table,
     /// The agent of each law and `lockstep`, in the kind of number that limits are for.
-    laws: Vec<laws::Law>,
+    laws: Table,
     /// The flash that each behaviour's step needs.
-    steps: Vec<reach::Step>,
+    steps: Table,
     /// The flash that encoder and decoder of each wire format need.
-    formats: Vec<reach::Step>,
+    formats: Table,
 }
 
 /// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON
@@ -42,22 +73,25 @@ pub fn run(s: &mut Session, is_json: bool) {
     for part in &PARTS {
         on_part(s, &format!("budget of the {}", part.name), part, (Profile::Firmware, &[]), |repo| {
             let text = files::read(&repo.root.join(BUDGETS))?;
-            let budget = Budget::read(&text, part.name).map_err(|error| format!("{BUDGETS}: {error}"))?;
-            let measured = measure(repo, part, budget.number())?;
-            let breaches = budget.breaches(&measured);
-            if !is_json {
-                print!("{}", measured.table());
+            let budget = budget::read(&text, part.name).map_err(|error| format!("{BUDGETS}: {error}"))?;
+            let measured = measure(repo, part, budget::number(&budget))?;
+            let Measured { programs, cases, laws, steps, formats } = &measured;
+            if is_json {
+                let [programs, cases, laws] = [programs, cases, laws].map(Table::json);
+                let [steps, formats] = [steps, formats].map(Table::json);
+                all.push(json!({ "part": part.name, "programs": programs, "cases": cases, "laws": laws,
+                    "steps": steps, "formats": formats }));
+            } else {
+                println!("{}", part.name);
+                [programs, cases, laws, steps, formats].iter().for_each(|table| print!("{}", table.text()));
             }
-            all.push(measured);
+            let breaches = budget::breaches(&budget, &measured);
             breaches.iter().for_each(|breach| println!("{breach}"));
             if breaches.is_empty() { Ok(()) } else { Err(breaches.join("; ")) }
         });
     }
     if is_json {
-        match serde_json::to_string_pretty(&all) {
-            Ok(text) => println!("{text}"),
-            Err(error) => println!("{error}"),
-        }
+        println!("{:#}", Value::Array(all));
     }
 }
 
@@ -68,60 +102,60 @@ pub fn search(s: &mut Session, options: &Options<'_>) {
     let scenes = options.value("--scenes").unwrap_or("20000");
     on_part(s, "search for the longest step", STM32F405, (Profile::Firmware, &["search"]), |repo| {
         let elf = Profile::Firmware.elf(repo, STM32F405, "search");
-        let said = emulate::run_with(repo, STM32F405, &elf, "none", &[seed, scenes])?;
-        print!("{said}");
+        print!("{}", emulate::run(repo, STM32F405, &elf, "none", &[seed, scenes])?);
         Ok(())
     });
 }
 
-fn measure(repo: &Repo, part: &'static Part, number: &str) -> Result<Measured, String> {
+fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured, String> {
     let elf = |program: &str| Profile::Firmware.elf(repo, part, program);
-    let programs = ["lockstep", "replay", "bench"];
-    let sections = |program: &&str| Ok((program.to_string(), firmware::sections(&elf(program))?));
-    let rows = bench::rows(&emulate::run(repo, part, &elf("bench"), "none")?)?;
+    let sizes = ["lockstep", "replay", "bench"].map(|program| {
+        let Sections { text, rodata, flash, ram } = sections(&elf(program))?;
+        Ok((program.to_string(), vec![text, rodata, flash, ram]))
+    });
+    let sizes = sizes.into_iter().collect::<Result<_, String>>()?;
+    let programs = Table { columns: &["program", "text", "rodata", "flash", "ram"], rows: sizes };
+    let cases = cases(&emulate::run(repo, part, &elf("bench"), "none", &[])?)?;
     let bytes = files::bytes(&elf("bench"))?;
     let program = reach::Program::read(&bytes)?;
-    let steps = reach::steps(&program);
-    let programs = programs.iter().map(sections).collect::<Result<Vec<_>, String>>()?;
-    let mut laws = laws::laws(number, &rows, &steps);
-    if let Some((_, Sections { text, rodata, ram, .. })) = programs.iter().find(|(name, _)| name == "lockstep") {
-        let stack = rows.iter().filter(|row| row.number == number).map(|row| row.stack).max().unwrap_or(0);
-        laws.push(laws::Law { law: "lockstep, all laws", text: *text, rodata: *rodata, ram: *ram, stack });
-    }
-    Ok(Measured { part: part.name, programs, laws, rows, steps, formats: reach::formats(&program) })
+    let (steps, formats) = (program.steps(), program.formats());
+    let laws = laws::laws(number, &programs, &cases, &steps);
+    Ok(Measured { programs, cases, laws, steps, formats })
 }
 
-impl Measured {
-    /// For people.
-    fn table(&self) -> String {
-        let mut text = format!("\n{:<24} {:>8} {:>8} {:>8} {:>8}\n", self.part, "text", "rodata", "flash", "RAM");
-        for (program, sections) in &self.programs {
-            let Sections { text: code, rodata, flash, ram } = sections;
-            text += &format!("{program:<24} {code:>8} {rodata:>8} {flash:>8} {ram:>8}\n");
+/// The output of `bench`: rows of case, kind of number (`-` for wire formats) and figures. The
+/// error names the first line of another form.
+fn cases(output: &str) -> Result<Table, String> {
+    const COLUMNS: [&str; 7] = ["case", "steps", "median", "worst", "stack", "agent", "workspace"];
+    let row = |line: &str| {
+        let (case, rest) = line.split_once(' ')?;
+        let (number, figures) = rest.split_once(' ')?;
+        let figures: Vec<u64> = figures.split(' ').map(|figure| figure.parse().ok()).collect::<Option<_>>()?;
+        (figures.len() == COLUMNS.len() - 1).then(|| (format!("{case} {number}"), figures))
+    };
+    let rows = output.lines().map(|line| row(line).ok_or_else(|| format!("`bench` printed `{line}`")));
+    let rows: Vec<_> = rows.collect::<Result<_, _>>()?;
+    if rows.is_empty() { Err(String::from("`bench` printed nothing")) } else { Ok(Table { columns: &COLUMNS, rows }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_bench_prints_is_read_and_nothing_else() {
+        let read = cases("route f32 256 11071 73154 1944 1296 2704\n").unwrap();
+        let figure = |column| read.get("route f32", column);
+        assert_eq!([figure("worst"), figure("stack"), figure("workspace")], [Some(73154), Some(1944), Some(2704)]);
+        assert_eq!(read.text().lines().nth(1).map(|head| head.split_whitespace().count()), Some(7));
+        assert_eq!(read.json()["route f32"]["agent"], 1296);
+        for bad in [
+            "",
+            "panicked at 3\n",
+            "route f32 256 11071 73154 1944 1296\n",
+            "route f32 256 11071 73154 1944 1296 2704 1\n",
+        ] {
+            assert!(cases(bad).is_err(), "{bad}");
         }
-        text += &format!(
-            "\n{:<26} {:>6} {:>6} {:>9} {:>9} {:>6} {:>6} {:>9}\n",
-            "bytes, instructions", "number", "steps", "median", "worst", "stack", "agent", "workspace"
-        );
-        for row in &self.rows {
-            text += &format!("{row}\n");
-        }
-        text +=
-            &format!("\n{:<24} {:>8} {:>8} {:>8} {:>8}\n", "law: bytes of an agent", "text", "rodata", "RAM", "stack");
-        for laws::Law { law, text: code, rodata, ram, stack } in &self.laws {
-            text += &format!("{law:<24} {code:>8} {rodata:>8} {ram:>8} {stack:>8}\n");
-        }
-        text += &format!(
-            "\n{:>8} {:>8}  step of a behaviour: number, guidance, safety, wire format, neighbours\n",
-            "text", "rodata"
-        );
-        for reach::Step { behaviour, reach } in &self.steps {
-            text += &format!("{:>8} {:>8}  {behaviour}\n", reach.text, reach.rodata);
-        }
-        text += &format!("\n{:>8} {:>8}  one frame of a wire format\n", "text", "rodata");
-        for reach::Step { behaviour, reach } in &self.formats {
-            text += &format!("{:>8} {:>8}  {behaviour}\n", reach.text, reach.rodata);
-        }
-        text
     }
 }

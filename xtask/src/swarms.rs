@@ -4,12 +4,12 @@ use crate::device::{PARTS, Part, STM32F405, parts};
 use crate::emulate::{self, on_part};
 use crate::files;
 use crate::firmware::Profile;
-use crate::repo::{Repo, output_of, run as run_command, shown};
+use crate::repo::{Repo, run_reading};
 use crate::session::Session;
 
 /// The golden rows: `case number commands bytes digest steps` in each line. The tests on the host
 /// compare it too, and write it.
-const TABLE: &str = "tests/golden/cases.txt";
+pub const TABLE: &str = "tests/golden/cases.txt";
 /// Steps of one agent in the worst company, with more neighbours than the small part has room for.
 const WORST: &str = "worst_";
 
@@ -17,11 +17,9 @@ const WORST: &str = "worst_";
 pub fn run(s: &mut Session) {
     s.report.step("canned swarms on the host, release", || {
         let example = ["--package", "staya-cases", "--example", "hashes"];
-        run_command(s.repo.cargo(&["build", "--quiet", "--locked", "--release"]).args(example))?;
+        let mut output = String::new();
         let mut host = s.repo.cargo(&["run", "--quiet", "--locked", "--release"]);
-        host.args(example);
-        println!("$ {}", shown(&host));
-        let output = output_of(&mut host).ok_or("does not run")?;
+        run_reading(host.args(example), |row| output += &format!("{row}\n"))?;
         compare(&s.repo, &output, |_| true)
     });
     for part in &PARTS {
@@ -33,7 +31,7 @@ pub fn run(s: &mut Session) {
 
 /// The programs that tests on emulated parts need, for these parts: devices in lockstep, canned
 /// swarms.
-pub fn run_short(s: &mut Session, parts: &[&'static Part]) {
+pub fn run_short(s: &mut Session, parts: &[Part]) {
     for part in parts {
         replay(s, part, Profile::Firmware, &["lockstep", "replay", "replay_mavlink"]);
     }
@@ -41,11 +39,12 @@ pub fn run_short(s: &mut Session, parts: &[&'static Part]) {
 
 /// The programs of `bins` (all if it names none), then the canned swarms.
 fn replay(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) {
-    let debug = if profile == Profile::Debug { ", debug" } else { "" };
-    on_part(s, &format!("canned swarms on the {}{debug}", part.name), part, (profile, bins), |repo| {
-        let mut output = emulate::run(repo, part, &profile.elf(repo, part, "replay"), "none")?;
+    let name = format!("canned swarms on the {}{}", part.name, profile.suffix());
+    on_part(s, &name, part, (profile, bins), |repo| {
+        let run = |bin| emulate::run(repo, part, &profile.elf(repo, part, bin), "none", &[]);
+        let mut output = run("replay")?;
         if is_small(part) {
-            output += &emulate::run(repo, part, &profile.elf(repo, part, "replay_mavlink"), "none")?;
+            output += &run("replay_mavlink")?;
         }
         compare(repo, &output, |row| is_for(part, row))
     });
@@ -57,7 +56,7 @@ pub fn faults(s: &mut Session, names: &[&str]) {
     for part in parts(names) {
         on_part(s, &format!("faults on the {}", part.name), part, (Profile::Firmware, &["faults"]), |repo| {
             // The program ends with 0 only at its third start.
-            let said = emulate::run(repo, part, &Profile::Firmware.elf(repo, part, "faults"), "stdio")?;
+            let said = emulate::run(repo, part, &Profile::Firmware.elf(repo, part, "faults"), "stdio", &[])?;
             misses(part, &said).map_or(Ok(()), |text| Err(format!("nothing of `{text}`")))
         });
     }
@@ -99,25 +98,14 @@ fn compare(repo: &Repo, output: &str, wanted: impl Fn(&str) -> bool) -> Result<(
     let wanted: Vec<&str> = table.lines().filter(|row| wanted(row)).collect();
     let faults = differences(&wanted, &output.lines().collect::<Vec<_>>());
     println!("{} rows, {} differ", wanted.len(), faults.len());
-    match faults.first() {
-        None => Ok(()),
-        Some(first) => {
-            for fault in &faults {
-                println!("{fault}");
-            }
-            Err(format!("{} rows differ, first: {first}", faults.len()))
-        }
-    }
+    faults.iter().for_each(|fault| println!("{fault}"));
+    faults.first().map_or(Ok(()), |first| Err(format!("{} rows differ, first: {first}", faults.len())))
 }
 
 fn differences(wanted: &[&str], got: &[&str]) -> Vec<String> {
-    let rows = wanted.len().max(got.len());
     let row = |table: &[&str], at: usize| table.get(at).copied().unwrap_or("(none)").to_string();
-    (0..rows)
-        .map(|at| (row(wanted, at), row(got, at)))
-        .filter(|(wanted, got)| wanted != got)
-        .map(|(wanted, got)| format!("wanted {wanted}, got {got}"))
-        .collect()
+    let rows = (0..wanted.len().max(got.len())).map(|at| (row(wanted, at), row(got, at)));
+    rows.filter(|(wanted, got)| wanted != got).map(|(wanted, got)| format!("wanted {wanted}, got {got}")).collect()
 }
 
 #[cfg(test)]

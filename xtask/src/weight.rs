@@ -5,11 +5,10 @@ use crate::files;
 use crate::options::Options;
 use crate::repo::{Repo, output_of, run};
 use crate::report::processor_time;
-use crate::session::{MAIN, Session, programs};
-use crate::source::{members, modules};
-use serde::Deserialize;
+use crate::session::{MAIN, Session, folders, programs};
+use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The records, one line each.
 const RECORDS: &str = "xtask/weight.csv";
@@ -27,14 +26,14 @@ fn measure(repo: &Repo, options: &Options<'_>) -> Result<(), String> {
     let folder = repo.target.join("weight");
     files::make_empty(&folder)?;
     run(&mut repo.cargo(&["fetch", "--locked"]))?;
-    let units = graph(repo, MAIN, MAIN)?.units.iter().filter(|unit| unit.mode == "build").count();
+    let units = plan(repo, MAIN, MAIN)?.len();
     let mut build = repo.cargo(&["build", "--release", "--locked", "--package", MAIN]);
     let processor_s = seconds(build.env("CARGO_TARGET_DIR", &folder))?;
     let bytes = files::bytes(&folder.join("release").join(files::name(&repo.program("release", MAIN))))?.len();
     let mut peer = repo.cargo(&PEER);
     peer.arg(folder.join("ripgrep")).env("CARGO_TARGET_DIR", folder.join("peer"));
     let peer_s = if options.has("--peer") { Some(seconds(&mut peer)?) } else { None };
-    let lines = code_lines(&repo.root)?;
+    let lines = code_lines(repo)?;
     lines.iter().for_each(|(member, lines)| println!("{lines:>7}  {member}"));
     let code_lines: usize = lines.iter().map(|(_, lines)| lines).sum();
     let figures = [Some(units as f64), Some(processor_s), peer_s, Some(bytes as f64), Some(code_lines as f64)];
@@ -85,58 +84,42 @@ fn table(records: &str, figures: &[Option<f64>; 5]) -> String {
     text
 }
 
-/// Lines of code in `src` of each crate of the workspace, tests, comments and blank lines left out.
-fn code_lines(root: &Path) -> Result<Vec<(String, usize)>, String> {
-    let count = |member: String| {
-        let modules = modules(&root.join(&member).join("src"))?;
-        Ok((member, modules.values().map(|module| module.lines.len()).sum()))
+/// Lines of code in the sources of each crate of the workspace. Blank lines and comments are left
+/// out, and tests: files of them, and modules of them at the end of other files.
+fn code_lines(repo: &Repo) -> Result<Vec<(String, usize)>, String> {
+    let count = |folder: &PathBuf| {
+        let is_code = |path: &Path| !["bin", "tests", "tests.rs"].contains(&files::name(path).as_str());
+        let is_rust = |path: &Path| path.is_dir() || files::has_extension(path, &["rs"]);
+        let sources = files::below(&folder.join("src"), &|path| is_code(path) && is_rust(path))?;
+        let texts = sources.iter().map(|file| files::read(file)).collect::<Result<Vec<_>, _>>()?;
+        let lines = texts.iter().flat_map(|text| text.lines().take_while(|line| *line != "mod tests {"));
+        let lines = lines.map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
+        Ok((folder.strip_prefix(&repo.root).unwrap_or(folder).display().to_string(), lines.count()))
     };
-    members(root)?.into_iter().map(count).collect()
+    folders(repo)?.iter().filter(|folder| folder.join("src").is_dir()).map(count).collect()
 }
 
 /// The name of the step in `cargo xtask check`.
 pub const SHARED: &str = "no library compiled twice for the programs";
 
-/// One call of the compiler or of a build script, as `cargo build --unit-graph` plans it.
-#[derive(Deserialize)]
-struct Unit {
-    pkg_id: String,
-    target: Target,
-    /// `build`, or `run-custom-build`.
-    mode: String,
-    /// Differs between a library of programs and the same library of build scripts and macros.
-    profile: serde_json::Value,
-    platform: Option<String>,
-    features: BTreeSet<String>,
-}
-
-#[derive(Deserialize)]
-struct Target {
-    name: String,
-    kind: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct Graph {
-    units: Vec<Unit>,
-}
-
-/// Cargo's plan for a program; nothing is compiled.
-fn graph(repo: &Repo, package: &str, program: &str) -> Result<Graph, String> {
+/// Cargo's plan for a program, `cargo build --unit-graph`: the calls of the compiler and of build
+/// scripts. Nothing is compiled.
+fn plan(repo: &Repo, package: &str, program: &str) -> Result<Vec<Value>, String> {
     let mut plan = repo.cargo(&["build", "--release", "--locked", "--package", package, "--bin", program]);
     // The option is stable enough to be read, and not stable.
     plan.args(["--unit-graph", "-Zunstable-options"]).env("RUSTC_BOOTSTRAP", "1");
     let text = output_of(&mut plan).ok_or_else(|| format!("cargo does not plan {program}"))?;
-    serde_json::from_str(&text).map_err(|error| format!("cargo's plan of {program}: {error}"))
+    let graph: Value = serde_json::from_str(&text).map_err(|error| format!("cargo's plan of {program}: {error}"))?;
+    let units = graph["units"].as_array().ok_or_else(|| format!("cargo's plan of {program} has no units"))?;
+    Ok(units.iter().filter(|unit| unit["mode"] == "build").cloned().collect())
 }
 
 /// Compares the plans of all programs: one folder has each library once if they want the same
 /// features of it.
 pub fn check_shared(repo: &Repo) -> Result<(), String> {
-    let graph = |(package, program): (String, &'static str)| Ok((program, graph(repo, &package, program)?));
-    let graphs = programs(repo)?.into_iter().map(graph).collect::<Result<Vec<_>, String>>()?;
-    println!("{}", graphs.iter().map(|(program, _)| *program).collect::<Vec<_>>().join(", "));
-    let faults = differences(&graphs);
+    let plan = |(package, program): (String, &'static str)| Ok((program, plan(repo, &package, program)?));
+    let plans = programs(repo)?.into_iter().map(plan).collect::<Result<Vec<_>, String>>()?;
+    let faults = differences(&plans);
     faults.iter().for_each(|fault| println!("{fault}"));
     match faults.len() {
         0 => Ok(()),
@@ -145,22 +128,24 @@ pub fn check_shared(repo: &Repo) -> Result<(), String> {
 }
 
 /// Each library of which programs want different features, with what differs.
-fn differences(graphs: &[(&str, Graph)]) -> Vec<String> {
-    let mut wanted: BTreeMap<_, BTreeMap<&BTreeSet<String>, BTreeSet<&str>>> = BTreeMap::new();
-    for (program, graph) in graphs {
-        let libraries = graph.units.iter().filter(|unit| unit.mode == "build");
+fn differences(plans: &[(&str, Vec<Value>)]) -> Vec<String> {
+    let mut wanted: BTreeMap<_, BTreeMap<BTreeSet<&str>, BTreeSet<&str>>> = BTreeMap::new();
+    for (program, units) in plans {
         for unit in
-            libraries.filter(|unit| !unit.target.kind.iter().any(|kind| kind == "bin" || kind == "custom-build"))
+            units.iter().filter(|unit| !["bin", "custom-build"].map(Value::from).contains(&unit["target"]["kind"][0]))
         {
-            let key = (&unit.pkg_id, &unit.target.name, unit.profile.to_string(), &unit.platform);
-            wanted.entry(key).or_default().entry(&unit.features).or_default().insert(program);
+            // The profile of a library for build scripts and macros differs.
+            let key = ["pkg_id", "target", "profile", "platform"].map(|field| unit[field].to_string());
+            let name = unit["target"]["name"].as_str().unwrap_or_default();
+            let features = unit["features"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+            wanted.entry((name, key)).or_default().entry(features).or_default().insert(program);
         }
     }
-    let faults = wanted.into_iter().filter(|(_, sets)| sets.len() > 1).map(|((_, name, ..), sets)| {
-        let common = sets.keys().copied().cloned().reduce(|a, b| &a & &b).unwrap_or_default();
-        let list = |set: &BTreeSet<String>| set.difference(&common).cloned().collect::<Vec<_>>().join(",");
-        let set = |(features, programs): (&&BTreeSet<String>, &BTreeSet<&str>)| {
-            format!("{{{}}} for {}", list(features), programs.iter().copied().collect::<Vec<_>>().join(", "))
+    let faults = wanted.into_iter().filter(|(_, sets)| sets.len() > 1).map(|((name, _), sets)| {
+        let common = sets.keys().cloned().reduce(|a, b| &a & &b).unwrap_or_default();
+        let set = |(features, programs): (&BTreeSet<&str>, &BTreeSet<&str>)| {
+            let [own, programs] = [features - &common, programs.clone()].map(Vec::from_iter);
+            format!("{{{}}} for {}", own.join(","), programs.join(", "))
         };
         format!("{name} with {}", sets.iter().map(set).collect::<Vec<_>>().join(" and with "))
     });
@@ -171,12 +156,11 @@ fn differences(graphs: &[(&str, Graph)]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn plan(features: &[&str], kind: &str, opt_level: &str) -> Graph {
-        let unit = serde_json::json!({
+    fn plan(features: &[&str], kind: &str, opt_level: &str) -> Vec<Value> {
+        vec![serde_json::json!({
             "pkg_id": "serde", "target": { "name": "serde", "kind": [kind] }, "mode": "build",
             "profile": { "opt_level": opt_level }, "platform": null, "features": features
-        });
-        Graph { units: vec![serde_json::from_value(unit).expect("a unit")] }
+        })]
     }
 
     #[test]

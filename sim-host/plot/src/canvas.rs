@@ -3,11 +3,23 @@
 //! Coordinates are in picture units (pixels of the SVG at its natural size), x to the right, y
 //! down. Later shapes cover earlier ones.
 
-use super::colour::Colour;
+use super::colour::{Colour, MUTED, WHITE};
 use super::font;
 
 /// A point of the picture, x and y.
 pub type Point = [f64; 2];
+
+/// Lowest and highest x and y of points, infinite without any; NaN does not count.
+pub(crate) fn extent(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
+    points.into_iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], at| {
+        [[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]]
+    })
+}
+
+/// The longer side of an extent.
+pub(crate) fn longest([low, high]: [Point; 2]) -> f64 {
+    (high[0] - low[0]).max(high[1] - low[1])
+}
 
 /// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +92,12 @@ impl Text {
             upwards: false,
             halo: None,
         }
+    }
+
+    /// Returns the text in the grey of numbers and notes.
+    #[must_use]
+    pub fn muted(self) -> Self {
+        Self { colour: MUTED, ..self }
     }
 
     /// Centres the capitals on [`Text::at`] vertically.
@@ -186,6 +204,13 @@ impl Canvas {
     /// Draws a circle.
     pub fn circle(&mut self, centre: Point, radius: f64, fill: Option<Colour>, stroke: Option<Stroke>) {
         self.shapes.push(Shape::Circle { centre, radius, stroke, fill });
+    }
+
+    /// Draws a diagonal cross with a white margin of that width.
+    pub fn cross(&mut self, [x, y]: Point, arm: f64, margin: f64, stroke: Stroke) {
+        let lines = vec![vec![[x - arm, y - arm], [x + arm, y + arm]], vec![[x - arm, y + arm], [x + arm, y - arm]]];
+        self.lines(lines.clone(), Stroke::new(WHITE, margin));
+        self.lines(lines, stroke);
     }
 
     /// Writes a line of text.

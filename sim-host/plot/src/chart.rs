@@ -17,23 +17,23 @@
 
 use super::colour::{Colour, MUTED};
 
-/// Values of a series; those that are not finite are skipped and leave gaps in lines.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Data {
-    /// x, y; joined in this order.
-    Line(Vec<[f64; 2]>),
-    Points(Vec<[f64; 2]>),
-    /// x, y, low, high.
-    Intervals(Vec<[f64; 4]>),
-    /// From x, to x, height.
-    Bars(Vec<[f64; 3]>),
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Line,
+    Points,
+    Intervals,
+    Bars,
 }
 
 /// A set of values with one style and one entry in the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     pub(super) name: String,
-    pub(super) data: Data,
+    pub(super) kind: Kind,
+    /// x, y, low, high, in the order in which they are joined; of bars from x, height, to x. Values
+    /// that are not finite are skipped and leave gaps in lines.
+    pub(super) values: Vec<[f64; 4]>,
     pub(super) colour: Option<Colour>,
     pub(super) dashed: bool,
     pub(super) joined: bool,
@@ -41,32 +41,33 @@ pub struct Series {
 }
 
 impl Series {
-    fn new(name: impl Into<String>, data: Data) -> Self {
-        Self { name: name.into(), data, colour: None, dashed: false, joined: false, like_previous: false }
+    fn new(name: impl Into<String>, kind: Kind, values: impl Iterator<Item = [f64; 4]>) -> Self {
+        let (name, values) = (name.into(), values.collect());
+        Self { name, kind, values, colour: None, dashed: false, joined: false, like_previous: false }
     }
 
     /// A line through `[x, y]` in this order. An empty name keeps it out of the legend.
     #[must_use]
     pub fn line(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
-        Self::new(name, Data::Line(points.into_iter().collect()))
+        Self::new(name, Kind::Line, points.into_iter().map(|[x, y]| [x, y, y, y]))
     }
 
     /// Marks at `[x, y]`.
     #[must_use]
     pub fn points(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
-        Self::new(name, Data::Points(points.into_iter().collect()))
+        Self::new(name, Kind::Points, points.into_iter().map(|[x, y]| [x, y, y, y]))
     }
 
     /// Marks with error bars at `[x, y, low, high]`, such as a mean and its 95 % interval.
     #[must_use]
     pub fn intervals(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 4]>) -> Self {
-        Self::new(name, Data::Intervals(points.into_iter().collect()))
+        Self::new(name, Kind::Intervals, points.into_iter())
     }
 
     /// Bars `[from x, to x, height]`, such as a histogram.
     #[must_use]
     pub fn bars(name: impl Into<String>, bars: impl IntoIterator<Item = [f64; 3]>) -> Self {
-        Self::new(name, Data::Bars(bars.into_iter().collect()))
+        Self::new(name, Kind::Bars, bars.into_iter().map(|[from, to, height]| [from, height, to, 0.0]))
     }
 
     /// A dashed grey line through `[x, y]`, for a goal or values from elsewhere.

@@ -23,7 +23,7 @@ mod frame;
 mod legend;
 mod marks;
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, extent, longest};
 use super::layout;
 use frame::Frame;
 use staya_sim::terrain::Terrain;
@@ -145,10 +145,8 @@ impl Snapshot {
         let obstacles = self.obstacles.iter().flat_map(Obstacle::corners);
         let trails = self.trails_m.iter().flatten().copied();
         let all = robots.chain(obstacles).chain(self.goals_m.iter().copied()).chain(trails);
-        all.filter(|at| at.iter().all(|c| c.is_finite())).fold(None, |extent: Option<[[f64; 2]; 2]>, at| {
-            let [low, high] = extent.unwrap_or([at; 2]);
-            Some([[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]])
-        })
+        let extent = extent(all.filter(|at| at.iter().all(|c| c.is_finite())));
+        longest(extent).is_finite().then_some(extent)
     }
 }
 
@@ -221,29 +219,12 @@ impl Sheet {
     /// Draws all snapshots as one picture.
     #[must_use]
     pub fn draw(&self) -> Canvas {
-        let most = |sides: &mut dyn Iterator<Item = f64>| sides.fold(0.0, f64::max);
         let sizes: Vec<[f64; 2]> = self.snapshots.iter().map(Snapshot::sound_size).collect();
-        let columns = self.columns.min(sizes.len().max(1));
-        let widths: Vec<f64> =
-            (0..columns).map(|column| most(&mut sizes.iter().skip(column).step_by(columns).map(|s| s[0]))).collect();
-        let heights: Vec<f64> = sizes.chunks(columns).map(|row| most(&mut row.iter().map(|size| size[1]))).collect();
-        let width = widths.iter().sum::<f64>().max(200.0);
-        let below_title = layout::headline_height(&self.title);
-        let top = below_title + if self.has_legend { 8.0 + legend::height(self, width) } else { 0.0 };
-        let height = (top + heights.iter().sum::<f64>()).max(150.0);
-        let mut canvas = Canvas::new(width, height, &self.title);
-        layout::headline(&mut canvas, &self.title, width);
-        if self.has_legend {
-            legend::draw(self, &mut canvas, below_title + 8.0, width);
-        }
-        let mut y = top;
-        for (row, height) in self.snapshots.chunks(columns).zip(heights) {
-            let mut x = 0.0;
-            for (snapshot, width) in row.iter().zip(&widths) {
-                snapshot.draw_into(&mut canvas, [x, y, *width, height]);
-                x += width;
-            }
-            y += height;
+        let (mut canvas, areas) = layout::sheet(&self.title, self.columns, &sizes, |canvas, top| {
+            if self.has_legend { legend::draw(self, canvas, top + 8.0) } else { top }
+        });
+        for (snapshot, area) in self.snapshots.iter().zip(areas) {
+            snapshot.draw_into(&mut canvas, area);
         }
         canvas
     }

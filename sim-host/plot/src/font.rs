@@ -19,6 +19,11 @@ pub fn width(text: &str, size: f64, bold: bool) -> f64 {
     f64::from(units) * size / f64::from(face.units_per_em())
 }
 
+/// Width of the widest text.
+pub fn widest<'a>(texts: impl IntoIterator<Item = &'a String>, size: f64) -> f64 {
+    texts.into_iter().map(|text| width(text, size, false)).fold(0.0, f64::max)
+}
+
 fn advance(face: &Face<'_>, letter: char) -> u16 {
     let glyph = face.glyph_index(letter).unwrap_or_default();
     face.glyph_hor_advance(glyph).unwrap_or(0)

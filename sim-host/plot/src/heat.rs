@@ -1,10 +1,10 @@
 //! Heat maps.
 
-use super::canvas::{Anchor, Canvas, Stroke, Text};
-use super::colour::{INK, MUTED, WHITE};
+use super::canvas::{Anchor, Canvas, Stroke, Text, extent};
+use super::colour::{INK, WHITE};
 use super::crowd::colour;
 use super::font;
-use super::layout::heading;
+use super::layout::{Numbers, heading};
 use super::ticks;
 
 const PAD: f64 = 14.0;
@@ -43,24 +43,18 @@ impl HeatMap {
         heading(&mut canvas, &self.title, TITLE, [PAD, PAD + TITLE], width - 2.0 * PAD);
         let (note, size) = font::fit(&self.note, SMALL, false, width - 2.0 * PAD);
         let below = PAD + TITLE + 7.0 + SMALL;
-        canvas.text(Text { colour: MUTED, ..Text::new([PAD, below], size, Anchor::Start, note) });
-        let found = self.values.iter().flatten().copied().filter(|value| value.is_finite());
-        let ends = found.fold(None, |ends: Option<[f64; 2]>, value| match ends {
-            None => Some([value; 2]),
-            Some([low, high]) => Some([f64::min(low, value), f64::max(high, value)]),
-        });
-        let Some([low, high]) = ends else {
+        canvas.text(Text::new([PAD, below], size, Anchor::Start, note).muted());
+        let found = self.values.iter().flatten().filter(|value| value.is_finite());
+        let [[low, _], [high, _]] = extent(found.map(|value| [*value; 2]));
+        if low > high {
             let middle = [width / 2.0, height / 2.0];
-            canvas.text(Text { colour: MUTED, ..Text::new(middle, LABEL, Anchor::Middle, "no data") });
+            canvas.text(Text::new(middle, LABEL, Anchor::Middle, "no data").muted());
             return canvas;
-        };
+        }
         let [low, high] = ticks::sound(low, high);
         let marks = ticks::linear(low, high, 6);
-        let widest = |labels: &mut dyn Iterator<Item = &String>| {
-            labels.map(|label| font::width(label, SMALL, false)).fold(0.0, f64::max)
-        };
-        let left = PAD + LABEL * 1.8 + widest(&mut self.rows.iter()).min(160.0) + 10.0;
-        let right = width - PAD - widest(&mut marks.iter().map(|mark| &mark.label)) - 10.0 - BAR - GAP;
+        let left = PAD + LABEL * 1.8 + font::widest(&self.rows, SMALL).min(160.0) + 10.0;
+        let right = width - PAD - font::widest(marks.iter().map(|mark| &mark.label), SMALL) - 10.0 - BAR - GAP;
         let (top, bottom) = (below + 14.0, height - PAD - LABEL * 1.6 - SMALL - 12.0);
         let plot = [left, top, right - left, bottom - top];
         let share = |value: f64| (value - low) / (high - low);
@@ -74,8 +68,7 @@ impl HeatMap {
         for mark in marks {
             let y = at(share(mark.value));
             canvas.line(vec![[right + GAP + BAR, y], [right + GAP + BAR + 4.0, y]], Stroke::new(INK, 1.0));
-            let place = [right + GAP + BAR + 8.0, y];
-            canvas.text(Text { colour: MUTED, ..Text::new(place, SMALL, Anchor::Start, mark.label) }.centred());
+            canvas.text(Text::new([right + GAP + BAR + 8.0, y], SMALL, Anchor::Start, mark.label).muted().centred());
         }
         canvas
     }
@@ -100,25 +93,27 @@ impl HeatMap {
     }
 
     /// Overlapping labels are skipped.
-    fn names(&self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4], picture: f64) {
-        let [across, up] = [width / self.columns.len() as f64, height / self.rows.len() as f64];
-        let widest = self.columns.iter().map(|label| font::width(label, SMALL, false)).fold(0.0, f64::max);
-        let every = ((widest + 10.0) / across).ceil().max(1.0) as usize;
-        for (index, label) in self.columns.iter().enumerate().step_by(every) {
-            let at = [left + (index as f64 + 0.5) * across, top + height + 7.0 + SMALL];
-            canvas.text(Text { colour: MUTED, ..Text::new(at, SMALL, Anchor::Middle, label) });
-        }
-        let every = ((SMALL + 3.0) / up).ceil().max(1.0) as usize;
-        for (index, label) in self.rows.iter().enumerate().step_by(every) {
-            let at = [left - 8.0, top + height - (index as f64 + 0.5) * up];
-            let (label, size) = font::fit(label, SMALL, false, 160.0);
-            canvas.text(Text { colour: MUTED, ..Text::new(at, size, Anchor::End, label) }.centred());
-        }
-        let (label, size) = font::fit(&self.x_label, LABEL, false, width);
-        canvas.text(Text::new([left + width / 2.0, picture - PAD - 1.0], size, Anchor::Middle, label));
-        let (label, size) = font::fit(&self.y_label, LABEL, false, height);
-        let at = [PAD + LABEL * 0.8, top + height / 2.0];
-        canvas.text(Text { upwards: true, ..Text::new(at, size, Anchor::Middle, label) });
+    fn names(&self, canvas: &mut Canvas, plot: [f64; 4], picture: f64) {
+        let [_, _, width, height] = plot;
+        let sides = [(&self.columns, width), (&self.rows, height)];
+        let needed = [font::widest(&self.columns, SMALL) + 10.0, SMALL + 3.0];
+        let marks = [0, 1].map(|axis| {
+            let (names, length) = sides[axis];
+            let side = length / names.len() as f64;
+            let every = (needed[axis] / side).ceil().max(1.0) as usize;
+            let names = names.iter().enumerate().step_by(every);
+            names.map(|(index, name)| (name.clone(), (index as f64 + 0.5) * side)).collect()
+        });
+        let numbers = Numbers {
+            marks,
+            labels: [&self.x_label, &self.y_label],
+            sizes: [SMALL, LABEL],
+            gaps: [7.0, 8.0],
+            ends: [f64::NEG_INFINITY, f64::INFINITY],
+            at: [PAD + LABEL * 0.8, picture - PAD - 1.0],
+            y_room: height,
+        };
+        numbers.draw(canvas, plot);
     }
 }
 

@@ -1,11 +1,11 @@
 //! Layout of a chart: title, note and legend above, axes around, data inside.
 
-use super::canvas::{Anchor, Canvas, Stroke, Text};
-use super::chart::{Chart, Data};
-use super::colour::{GRID, INK, MUTED};
+use super::canvas::{Anchor, Canvas, Point, Stroke, Text};
+use super::chart::{Chart, Kind};
+use super::colour::{GRID, INK};
 use super::font;
 use super::look::{Look, looks};
-use super::scale::{Axes, Axis};
+use super::scale::Axes;
 use super::series;
 
 const TITLE: f64 = 15.0;
@@ -18,13 +18,36 @@ const SAMPLE: f64 = 24.0;
 /// Largest ratio of the width of an SVG reader's sans-serif font to the measured one.
 pub const OTHER_FONTS: f64 = 1.15;
 
-pub fn headline_height(title: &str) -> f64 {
-    if title.is_empty() { 0.0 } else { PAD + HEADLINE * 1.3 }
-}
-
-pub fn headline(canvas: &mut Canvas, title: &str, width: f64) {
-    let baseline = PAD + HEADLINE;
-    heading(canvas, title, HEADLINE, [PAD, baseline], width - 2.0 * PAD);
+/// Lays out pictures of these sizes in rows of `columns`, below the title, which may be empty, and
+/// the drawing of `above`, which gets its upper end and returns its lower one. Returns the canvas
+/// and the area of each picture.
+pub fn sheet(
+    title: &str,
+    columns: usize,
+    sizes: &[[f64; 2]],
+    above: impl FnOnce(&mut Canvas, f64) -> f64,
+) -> (Canvas, Vec<[f64; 4]>) {
+    let most = |sides: &mut dyn Iterator<Item = f64>| sides.fold(0.0, f64::max);
+    let widths = (0..columns.min(sizes.len()))
+        .map(|column| most(&mut sizes.iter().skip(column).step_by(columns).map(|size| size[0])));
+    let widths: Vec<f64> = widths.collect();
+    let mut canvas = Canvas::new(widths.iter().sum::<f64>().max(200.0), 0.0, title);
+    let mut y = if title.is_empty() { 0.0 } else { PAD + HEADLINE * 1.3 };
+    let room = canvas.width - 2.0 * PAD;
+    heading(&mut canvas, title, HEADLINE, [PAD, PAD + HEADLINE], room);
+    y = above(&mut canvas, y);
+    let mut areas = Vec::with_capacity(sizes.len());
+    for row in sizes.chunks(columns) {
+        let height = most(&mut row.iter().map(|size| size[1]));
+        let mut x = 0.0;
+        for width in &widths[..row.len()] {
+            areas.push([x, y, *width, height]);
+            x += width;
+        }
+        y += height;
+    }
+    canvas.height = y.max(150.0);
+    (canvas, areas)
 }
 
 pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: f64) {
@@ -55,10 +78,14 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     if !chart.note.is_empty() {
         top += SMALL;
         let (note, size) = font::fit(&chart.note, SMALL, false, (width - 2.0 * PAD) / OTHER_FONTS);
-        canvas.text(Text { colour: MUTED, ..Text::new([x + PAD, top], size, Anchor::Start, note) });
+        canvas.text(Text::new([x + PAD, top], size, Anchor::Start, note).muted());
         top += 7.0;
     }
-    top = legend(&looks, canvas, [x + PAD, top], x + width - PAD) + 8.0;
+    let named = looks.iter().filter(|look| !look.series.name.is_empty());
+    let entries: Vec<Entry<'_>> = named
+        .map(|look| Entry::new(SAMPLE, look.series.name.as_str(), move |canvas, at| sample(look, canvas, at)))
+        .collect();
+    top = legend(canvas, &entries, [x + PAD, top], x + width - PAD, 16.0) + 8.0;
 
     let right = x + width - PAD - 12.0;
     let mut bottom = y + height - PAD - SMALL - 8.0;
@@ -71,7 +98,7 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     frame(chart, &axes, canvas, plot, y + height - PAD - 1.0, x + PAD);
     if axes.empty {
         let middle = [plot[0] + plot[2] / 2.0, plot[1] + plot[3] / 2.0];
-        canvas.text(Text { colour: MUTED, ..Text::new(middle, LABEL, Anchor::Middle, "no data") }.centred());
+        canvas.text(Text::new(middle, LABEL, Anchor::Middle, "no data").muted().centred());
     }
     series::draw(&looks, &axes, canvas, plot);
 }
@@ -79,93 +106,127 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
 fn frame(chart: &Chart, axes: &Axes, canvas: &mut Canvas, plot: [f64; 4], x_label_y: f64, y_label_x: f64) {
     let [left, top, width, height] = plot;
     let (right, bottom) = (left + width, top + height);
-    let (ticks_x, ticks_y) = if axes.empty { (&[][..], &[][..]) } else { (&axes.x.ticks[..], &axes.y.ticks[..]) };
-    let at_x = |axis: &Axis, value| left + width * axis.share(value);
-    let at_y = |axis: &Axis, value| bottom - height * axis.share(value);
-    let grid = ticks_x.iter().map(|tick| {
-        let x = at_x(&axes.x, tick.value);
-        vec![[x, top], [x, bottom]]
+    let marks = [(&axes.x, width), (&axes.y, height)].map(|(axis, length)| {
+        let ticks = axis.ticks.iter().filter(|_| !axes.empty);
+        ticks.map(|tick| (tick.label.clone(), length * axis.share(tick.value))).collect()
     });
-    let grid = grid.chain(ticks_y.iter().map(|tick| {
-        let y = at_y(&axes.y, tick.value);
-        vec![[left, y], [right, y]]
-    }));
-    canvas.lines(grid.collect(), Stroke::new(GRID, 0.8));
+    grid(canvas, plot, &marks, 0.8);
     let axis = Stroke::new(INK, 1.0);
     canvas.line(vec![[left, top], [left, bottom], [right, bottom]], axis);
-    let marks = ticks_x.iter().map(|tick| {
-        let x = at_x(&axes.x, tick.value);
-        vec![[x, bottom], [x, bottom + 4.0]]
-    });
-    let marks = marks.chain(ticks_y.iter().map(|tick| {
-        let y = at_y(&axes.y, tick.value);
-        vec![[left - 4.0, y], [left, y]]
-    }));
-    canvas.lines(marks.collect(), axis);
-    for tick in ticks_x {
-        // If even the fewest numbers are too wide, the outer ones move inwards.
-        let half = font::width(&tick.label, SMALL, false) / 2.0;
-        let ends = [y_label_x + half, right + PAD + 10.0 - half];
-        let x = at_x(&axes.x, tick.value).max(ends[0]).min(ends[1]);
-        canvas.text(number([x, bottom + 7.0 + SMALL], Anchor::Middle, &tick.label));
-    }
-    for tick in ticks_y {
-        let at = [left - 8.0, at_y(&axes.y, tick.value)];
-        canvas.text(number(at, Anchor::End, &tick.label).centred());
-    }
-    let (label, size) = font::fit(&chart.x_label, LABEL, false, width);
-    let middle = [left + width / 2.0, x_label_y];
-    canvas.text(Text::new(middle, size, Anchor::Middle, label));
-    let (label, size) = font::fit(&chart.y_label, LABEL, false, height * 1.15);
-    canvas.text(Text {
-        upwards: true,
-        ..Text::new([y_label_x + LABEL * 0.8, top + height / 2.0], size, Anchor::Middle, label)
-    });
+    let below = marks[0].iter().map(|(_, along)| vec![[left + along, bottom], [left + along, bottom + 4.0]]);
+    let beside = marks[1].iter().map(|(_, up)| vec![[left - 4.0, bottom - up], [left, bottom - up]]);
+    canvas.lines(below.chain(beside).collect(), axis);
+    let numbers = Numbers {
+        marks,
+        labels: [&chart.x_label, &chart.y_label],
+        sizes: [SMALL, LABEL],
+        gaps: [7.0, 8.0],
+        ends: [y_label_x, right + PAD + 10.0],
+        at: [y_label_x + LABEL * 0.8, x_label_y],
+        y_room: height * 1.15,
+    };
+    numbers.draw(canvas, plot);
 }
 
-fn number(at: [f64; 2], anchor: Anchor, label: &str) -> Text {
-    Text { colour: MUTED, ..Text::new(at, SMALL, anchor, label) }
+/// Labels of marks along x and y, each with its distance from the lower left corner of the plot.
+pub type Marks = [Vec<(String, f64)>; 2];
+
+/// Draws lines at the marks through the plot (left, top, width, height).
+pub fn grid(canvas: &mut Canvas, [left, top, width, height]: [f64; 4], [x, y]: &Marks, line: f64) {
+    let (right, bottom) = (left + width, top + height);
+    let upright = x.iter().map(|(_, along)| vec![[left + along, top], [left + along, bottom]]);
+    let level = y.iter().map(|(_, up)| vec![[left, bottom - up], [right, bottom - up]]);
+    canvas.lines(upright.chain(level).collect(), Stroke::new(GRID, line));
 }
 
-/// Returns the lower end of the legend.
-fn legend(looks: &[Look<'_>], canvas: &mut Canvas, at: [f64; 2], right: f64) -> f64 {
-    let [left, mut top] = at;
+/// Numbers and labels of two axes.
+pub struct Numbers<'a> {
+    pub marks: Marks,
+    pub labels: [&'a str; 2],
+    /// Font sizes of numbers and labels.
+    pub sizes: [f64; 2],
+    /// Distances of numbers from the axes.
+    pub gaps: [f64; 2],
+    /// If even the fewest numbers below are too wide, the outer ones move in between.
+    pub ends: [f64; 2],
+    /// x of the label of y, and y of the label of x.
+    pub at: [f64; 2],
+    /// Length of the label of y.
+    pub y_room: f64,
+}
+
+impl Numbers<'_> {
+    /// Draws them around the plot (left, top, width, height).
+    pub fn draw(self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4]) {
+        let (bottom, [small, large]) = (top + height, self.sizes);
+        let [x, y] = self.marks;
+        for (label, along) in x {
+            let half = font::width(&label, small, false) / 2.0;
+            let x = (left + along).max(self.ends[0] + half).min(self.ends[1] - half);
+            canvas.text(Text::new([x, bottom + self.gaps[0] + small], small, Anchor::Middle, label).muted());
+        }
+        for (label, up) in y {
+            let (label, size) = font::fit(&label, small, false, 160.0);
+            canvas.text(Text::new([left - self.gaps[1], bottom - up], size, Anchor::End, label).muted().centred());
+        }
+        let (label, size) = font::fit(self.labels[0], large, false, width);
+        canvas.text(Text::new([left + width / 2.0, self.at[1]], size, Anchor::Middle, label));
+        let (label, size) = font::fit(self.labels[1], large, false, self.y_room);
+        let label = Text::new([self.at[0], top + height / 2.0], size, Anchor::Middle, label);
+        canvas.text(Text { upwards: true, ..label });
+    }
+}
+
+/// Draws a sample of a legend.
+type Sample<'a> = dyn Fn(&mut Canvas, Point) + 'a;
+
+/// A sample with its name in a legend.
+pub struct Entry<'a> {
+    wide: f64,
+    name: String,
+    /// Draws the sample to the right of a point.
+    draw: Box<Sample<'a>>,
+}
+
+impl<'a> Entry<'a> {
+    /// Creates an entry with a sample of that width.
+    pub fn new(wide: f64, name: impl Into<String>, draw: impl Fn(&mut Canvas, Point) + 'a) -> Self {
+        Self { wide, name: name.into(), draw: Box::new(draw) }
+    }
+}
+
+/// Draws entries from left to right in as many rows as needed; returns the lower end of the legend.
+pub fn legend(canvas: &mut Canvas, entries: &[Entry<'_>], [left, mut top]: Point, right: f64, gap: f64) -> f64 {
     let mut x = left;
-    for look in looks.iter().filter(|look| !look.series.name.is_empty()) {
-        let room = right - left - SAMPLE - 6.0;
-        let (name, size) = font::fit(&look.series.name, SMALL, false, room / OTHER_FONTS);
-        let width = SAMPLE + 6.0 + font::width(&name, size, false) * OTHER_FONTS;
+    for Entry { wide, name, draw } in entries {
+        let room = right - left - wide - 6.0;
+        let (name, size) = font::fit(name, SMALL, false, room / OTHER_FONTS);
+        let width = wide + 6.0 + font::width(&name, size, false) * OTHER_FONTS;
         if x > left && x + width > right {
-            x = left;
-            top += ROW;
+            (x, top) = (left, top + ROW);
         }
         let middle = top + ROW / 2.0;
-        sample(look, canvas, [x, middle]);
-        let text = Text::new([x + SAMPLE + 6.0, middle], size, Anchor::Start, name);
-        canvas.text(text.centred());
-        x += width + 16.0;
+        draw(canvas, [x, middle]);
+        canvas.text(Text::new([x + wide + 6.0, middle], size, Anchor::Start, name).centred());
+        x += width + gap;
     }
-    if x > left { top + ROW } else { top }
+    if entries.is_empty() { top } else { top + ROW }
 }
 
-fn sample(look: &Look<'_>, canvas: &mut Canvas, [x, y]: [f64; 2]) {
+fn sample(look: &Look<'_>, canvas: &mut Canvas, [x, y]: Point) {
     let middle = [x + SAMPLE / 2.0, y];
     let ends = vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]];
-    match look.series.data {
-        Data::Line(_) => canvas.line(ends, look.stroke()),
-        Data::Points(_) | Data::Intervals(_) => {
+    match look.series.kind {
+        Kind::Line => canvas.line(ends, look.stroke()),
+        Kind::Points | Kind::Intervals => {
             if look.series.joined {
                 canvas.line(ends, look.joint());
             }
-            if matches!(look.series.data, Data::Intervals(_)) {
+            if look.series.kind == Kind::Intervals {
                 canvas.lines(series::whisker(middle[0], y - 7.0, y + 7.0), look.whiskers());
             }
             look.mark(canvas, middle);
         }
-        Data::Bars(_) => canvas.rectangle(
-            [x + 5.0, y - 5.0, SAMPLE - 10.0, 10.0],
-            Some(look.fill()),
-            Some(Stroke::new(look.colour, 0.8)),
-        ),
+        Kind::Bars => look.bar(canvas, [x + 5.0, y - 5.0, SAMPLE - 10.0, 10.0]),
     }
 }

@@ -1,7 +1,7 @@
 //! Style of series: colours, marks and lines.
 
 use super::canvas::{Canvas, Point, Stroke};
-use super::chart::{Chart, Data, Series};
+use super::chart::{Chart, Kind, Series};
 use super::colour::{self, Colour, WHITE};
 
 const MARK: f64 = 3.4;
@@ -17,7 +17,7 @@ pub struct Look<'a> {
 }
 
 pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
-    let is_interval = |series: &Series| matches!(series.data, Data::Intervals(_));
+    let is_interval = |series: &Series| series.kind == Kind::Intervals;
     let is_own = |series: &Series| is_interval(series) && !series.like_previous;
     let own = chart.series.iter().filter(|s| is_own(s)).count();
     let (mut used, mut shown) = (0, 0);
@@ -59,8 +59,8 @@ impl Look<'_> {
     }
 
     /// Transparent, so that items behind stay visible.
-    pub fn fill(&self) -> Colour {
-        self.colour.with_alpha(90)
+    pub fn bar(&self, canvas: &mut Canvas, area: [f64; 4]) {
+        canvas.rectangle(area, Some(self.colour.with_alpha(90)), Some(Stroke::new(self.colour, 0.8)));
     }
 
     pub fn mark(&self, canvas: &mut Canvas, [x, y]: Point) {

@@ -172,8 +172,18 @@ impl<'a> Map<'a> {
     }
 }
 
+/// The part of a terrain between two places, in cells from its south-west corner: at least one
+/// cell.
+pub fn part(terrain: &Terrain, low: Point, high: Point) -> Option<Terrain> {
+    let sides = [terrain.width(), terrain.height()].map(f64::from);
+    let first = [0, 1].map(|axis| libm::floor(low[axis]).clamp(0.0, sides[axis] - 1.0));
+    let size = [0, 1].map(|axis| (libm::ceil(high[axis]) - first[axis]).clamp(1.0, sides[axis] - first[axis]));
+    let [x, y, width, height] = [first[0], first[1], size[0], size[1]].map(|value| value as u16);
+    terrain.crop(x, y, width, height).ok()
+}
+
 /// One pixel per cell, or per square of cells on maps beyond [`MAX_PIXELS`].
-pub fn pixels(terrain: &Terrain) -> Pixels {
+fn pixels(terrain: &Terrain) -> Pixels {
     let (width, height, brightness) = terrain::render(terrain, 1);
     let Raster { columns, rows, cells: square } = Raster::new(terrain);
     let mut rgba = Vec::with_capacity(columns as usize * rows as usize);

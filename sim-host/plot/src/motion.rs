@@ -1,5 +1,6 @@
 //! Pictures of runs in the plane.
 
+use super::canvas::{extent, longest};
 use super::flock::{Obstacle, Sheet, Snapshot};
 use super::run::packets;
 use staya_sim::nearby::Space;
@@ -117,21 +118,12 @@ fn view<'a>(
     obstacles: &[Obstacle],
 ) -> Option<[[f64; 2]; 2]> {
     let places = frames.iter().flat_map(|frame| &frame.samples).map(|sample| sample.position_m);
-    let places = places.chain(goals_m.copied());
-    let around = |extent: [[f64; 2]; 2], [x, y]: [f64; 2]| {
-        let [low, high] = extent;
-        [[low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]]
-    };
-    let widest = |[low, high]: [[f64; 2]; 2]| (high[0] - low[0]).max(high[1] - low[1]);
-    let robots = places.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], around);
-    let most_m = LARGE * widest(robots).max(2.0 * radius_m);
+    let robots = extent(places.chain(goals_m.copied()));
+    let most_m = LARGE * longest(robots).max(2.0 * radius_m);
     let corners = obstacles.iter().map(Obstacle::corners);
-    let near = corners.filter(|corners| {
-        let own = corners.iter().copied().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], around);
-        widest(own) < most_m
-    });
-    let [low, high] = near.flatten().fold(robots, around);
-    let margin = 2.0 * radius_m + 0.05 * widest([low, high]);
+    let near = corners.filter(|corners| longest(extent(corners.iter().copied())) < most_m);
+    let [low, high] = extent(near.flatten().chain(robots));
+    let margin = 2.0 * radius_m + 0.05 * longest([low, high]);
     let is_sound = margin.is_finite();
     is_sound.then(|| [0, 1].map(|axis| [low[axis] - margin, high[axis] + margin]))
 }

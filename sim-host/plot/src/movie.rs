@@ -3,9 +3,10 @@
 mod frames;
 mod palette;
 
-use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text};
+use super::canvas::{Anchor, Canvas, Point, Stroke, Text, extent, longest};
 use super::colour::{self, Colour, INK, WHITE};
-use super::{map, raster};
+use super::map::{self, Map};
+use super::raster;
 use frames::Frames;
 use gif::{DisposalMethod, Encoder, Repeat};
 use palette::{CLEAR, Palette};
@@ -142,15 +143,9 @@ struct View {
 
 impl View {
     fn new(scenario: &Scenario, frames: &[Frame], width: u32) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let places = frames.iter().flat_map(|frame| &frame.samples).map(|sample| sample.position_m);
-        for place in places.chain(goals(scenario).into_iter().map(|(_, goal)| goal)) {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(place[axis]);
-                high[axis] = high[axis].max(place[axis]);
-            }
-        }
-        let mut longest = (high[0] - low[0]).max(high[1] - low[1]);
+        let [mut low, mut high] = extent(places.chain(goals(scenario).into_iter().map(|(_, goal)| goal)));
+        let mut longest = longest([low, high]);
         if !longest.is_finite() {
             (low, high, longest) = ([0.0; 2], [1.0; 2], 1.0);
         }
@@ -201,34 +196,20 @@ impl View {
         }
         let ends = ends(scenario, history);
         for (index, goal) in ends.into_iter().take(1000) {
-            let [x, y] = self.at(goal);
             let arm = self.radii.get(index).copied().unwrap_or(4.0).clamp(2.0, 6.0);
-            let cross =
-                vec![vec![[x - arm, y - arm], [x + arm, y + arm]], vec![[x - arm, y + arm], [x + arm, y - arm]]];
-            canvas.lines(cross.clone(), Stroke::new(WHITE, 3.6));
-            canvas.lines(cross, Stroke::new(colour_of(scenario, index), 1.8));
+            canvas.cross(self.at(goal), arm, 3.6, Stroke::new(colour_of(scenario, index), 1.8));
         }
         canvas
     }
 
     fn land(&self, terrain: &Terrain, canvas: &mut Canvas) {
-        let sides = [terrain.width(), terrain.height()].map(f64::from);
-        let seen_m = self.size.map(|side| side / self.scale);
-        let from: [f64; 2] = std::array::from_fn(|axis| {
-            libm::floor((self.low_m[axis] - terrain.origin_m[axis]) / terrain.cell_m).clamp(0.0, sides[axis] - 1.0)
-        });
-        let to: [f64; 2] = std::array::from_fn(|axis| {
-            let end = (self.low_m[axis] + seen_m[axis] - terrain.origin_m[axis]) / terrain.cell_m;
-            libm::ceil(end).clamp(from[axis] + 1.0, sides[axis])
-        });
-        let [x, y, width, height] = [from[0], from[1], to[0] - from[0], to[1] - from[1]].map(|value| value as u16);
-        let Ok(part) = terrain.crop(x, y, width, height) else {
-            return;
-        };
+        let cells = |metres: f64, axis: usize| (metres - terrain.origin_m[axis]) / terrain.cell_m;
+        let low = [0, 1].map(|axis| cells(self.low_m[axis], axis));
+        let high = [0, 1].map(|axis| cells(self.low_m[axis] + self.size[axis] / self.scale, axis));
+        let Some(part) = map::part(terrain, low, high) else { return };
         let [left, bottom] = self.at(part.origin_m);
         let cell = part.cell_m * self.scale;
-        let [wide, high] = [f64::from(width) * cell, f64::from(height) * cell];
-        canvas.shapes.push(Shape::Image { area: [left, bottom - high, wide, high], pixels: map::pixels(&part) });
+        Map::of_scale(&part, [left, bottom - f64::from(part.height()) * cell], cell).ground(canvas);
     }
 
     fn moving(&self, scenario: &Scenario, frame: &Frame) -> Canvas {

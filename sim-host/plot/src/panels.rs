@@ -57,25 +57,12 @@ impl Panels {
     /// Draws the charts.
     #[must_use]
     pub fn draw(&self) -> Canvas {
-        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let column = |index: usize| self.charts.iter().skip(index).step_by(self.columns);
-        let columns = self.columns.min(self.charts.len());
-        let widths: Vec<f64> = (0..columns).map(|index| most(&mut column(index).map(|chart| chart.size[0]))).collect();
-        let lefts: Vec<f64> = (0..columns).map(|index| most(&mut column(index).map(layout::left_margin))).collect();
-        let rows: Vec<&[Chart]> = self.charts.chunks(self.columns).collect();
-        let heights: Vec<f64> = rows.iter().map(|row| most(&mut row.iter().map(|chart| chart.size[1]))).collect();
-        let (width, top) = (widths.iter().sum::<f64>().max(200.0), layout::headline_height(&self.title));
-        let height = (top + heights.iter().sum::<f64>()).max(150.0);
-        let mut canvas = Canvas::new(width, height, &self.title);
-        layout::headline(&mut canvas, &self.title, width);
-        let mut y = top;
-        for (row, height) in rows.into_iter().zip(heights) {
-            let mut x = 0.0;
-            for ((chart, width), left) in row.iter().zip(&widths).zip(&lefts) {
-                layout::draw(chart, &mut canvas, [x, y, *width, height], *left);
-                x += width;
-            }
-            y += height;
+        let sizes: Vec<[f64; 2]> = self.charts.iter().map(|chart| chart.size).collect();
+        let (mut canvas, areas) = layout::sheet(&self.title, self.columns, &sizes, |_, top| top);
+        let lefts: Vec<f64> = self.charts.iter().map(layout::left_margin).collect();
+        for (index, (chart, area)) in self.charts.iter().zip(areas).enumerate() {
+            let column = lefts.iter().skip(index % self.columns).step_by(self.columns);
+            layout::draw(chart, &mut canvas, area, column.copied().fold(0.0, f64::max));
         }
         canvas
     }

@@ -17,7 +17,9 @@ pub const HALO: f64 = 0.25;
 
 /// Renders a picture on white; an error if it has no pixels or too many.
 pub fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
-    let pixmap = draw(canvas, SCALE, Some(WHITE))?;
+    let mut white = empty(canvas, SCALE)?;
+    white.fill(plain(WHITE));
+    let pixmap = onto(white, canvas, SCALE);
     let rgb: Vec<u8> = pixmap.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
     Ok(encode_png(pixmap.width(), pixmap.height(), png::ColorType::Rgb, &rgb)?)
 }
@@ -36,15 +38,9 @@ pub fn encode_rgba(pixels: &Pixels) -> io::Result<Vec<u8>> {
 
 /// Renders a picture without background, `scale` pixels per unit.
 pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
-    let pixmap = draw(canvas, scale, None)?;
-    let rgba = pixmap
-        .pixels()
-        .iter()
-        .map(|pixel| {
-            let plain = pixel.demultiply();
-            [plain.red(), plain.green(), plain.blue(), plain.alpha()]
-        })
-        .collect();
+    let pixmap = onto(empty(canvas, scale)?, canvas, scale);
+    let plain = pixmap.pixels().iter().map(|pixel| pixel.demultiply());
+    let rgba = plain.map(|pixel| [pixel.red(), pixel.green(), pixel.blue(), pixel.alpha()]).collect();
     Ok(Pixels { width: pixmap.width(), height: pixmap.height(), rgba })
 }
 
@@ -52,14 +48,6 @@ pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
 pub fn over(ground: Option<Pixmap>, canvas: &Canvas) -> io::Result<Pixmap> {
     let pixmap = ground.map_or_else(|| empty(canvas, 1.0), Ok)?;
     Ok(onto(pixmap, canvas, 1.0))
-}
-
-fn draw(canvas: &Canvas, scale: f64, ground: Option<Colour>) -> io::Result<Pixmap> {
-    let mut pixmap = empty(canvas, scale)?;
-    if let Some(ground) = ground {
-        pixmap.fill(plain(ground));
-    }
-    Ok(onto(pixmap, canvas, scale))
 }
 
 /// Of 4 bytes each.
@@ -177,13 +165,9 @@ impl Brush {
 }
 
 fn add_line(builder: &mut PathBuilder, points: &[Point], closed: bool) {
-    for (index, [x, y]) in points.iter().enumerate() {
-        let (x, y) = (*x as f32, *y as f32);
-        if index == 0 {
-            builder.move_to(x, y);
-        } else {
-            builder.line_to(x, y);
-        }
+    for (index, point) in points.iter().enumerate() {
+        let [x, y] = point.map(|value| value as f32);
+        if index == 0 { builder.move_to(x, y) } else { builder.line_to(x, y) }
     }
     match points {
         // A line of length 0: its round ends form a dot.

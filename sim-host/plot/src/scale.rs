@@ -1,6 +1,6 @@
 //! Ranges of axes, and positions of values on them.
 
-use super::chart::{Chart, Data};
+use super::chart::{Chart, Kind};
 use super::font;
 use super::look::Look;
 use super::ticks::{self, Tick};
@@ -28,7 +28,7 @@ impl Axis {
     }
 
     pub fn widest_label(&self, size: f64) -> f64 {
-        self.ticks.iter().map(|tick| font::width(&tick.label, size, false)).fold(0.0, f64::max)
+        font::widest(self.ticks.iter().map(|tick| &tick.label), size)
     }
 
     fn labels_fit(&self, length: f64) -> bool {
@@ -53,32 +53,17 @@ pub struct Axes {
 impl Axes {
     pub fn new(chart: &Chart, looks: &[Look<'_>], [width, height]: [f64; 2]) -> Self {
         let extent = Extent::new(chart, looks);
+        let axis = |range: [f64; 2], logarithmic: bool, most: usize| {
+            let ticks = if logarithmic { ticks::logarithmic } else { ticks::linear };
+            Axis { range, logarithmic, ticks: ticks(range[0], range[1], most) }
+        };
         let x_range = x_range(chart, &extent);
-        let logarithmic = chart.log_x;
-        let axis = |most: usize| Axis {
-            range: x_range,
-            logarithmic,
-            ticks: if logarithmic {
-                ticks::logarithmic(x_range[0], x_range[1], most)
-            } else {
-                ticks::linear(x_range[0], x_range[1], most)
-            },
-        };
+        let x = |most: usize| axis(x_range, chart.log_x, most);
         let most = ((width / 50.0) as usize).clamp(2, 14);
-        let x = (2..=most).rev().map(axis).find(|axis| axis.labels_fit(width)).unwrap_or_else(|| axis(2));
+        let x = (2..=most).rev().map(x).find(|axis| axis.labels_fit(width)).unwrap_or_else(|| x(2));
         let most = ((height / 36.0) as usize).clamp(2, 10);
-        let y_range = y_range(chart, &extent, most);
-        let y = Axis {
-            range: y_range,
-            logarithmic: chart.log_y,
-            ticks: if chart.log_y {
-                ticks::logarithmic(y_range[0], y_range[1], most)
-            } else {
-                ticks::linear(y_range[0], y_range[1], most)
-            },
-        };
-        let empty = extent.x.is_none();
-        Self { x, y, empty }
+        let y = axis(y_range(chart, &extent, most), chart.log_y, most);
+        Self { x, y, empty: extent.x.is_none() }
     }
 }
 
@@ -92,25 +77,15 @@ struct Extent {
 impl Extent {
     fn new(chart: &Chart, looks: &[Look<'_>]) -> Self {
         let mut this = Self { x: None, y: None, marks: false, bars: false };
-        for look in looks {
-            match &look.series.data {
-                Data::Line(points) => points.iter().for_each(|[x, y]| this.add(chart, *x, *y)),
-                Data::Points(points) => {
-                    this.marks = true;
-                    points.iter().for_each(|[x, y]| this.add(chart, *x, *y));
-                }
-                Data::Intervals(points) => {
-                    this.marks = true;
-                    for [x, y, low, high] in points {
-                        [y, low, high].iter().for_each(|value| this.add(chart, *x, **value));
-                    }
-                }
-                Data::Bars(bars) => {
-                    this.bars = true;
-                    for [from, to, height] in bars {
-                        this.add(chart, *from, *height);
-                        this.add(chart, *to, 0.0);
-                    }
+        for Look { series, .. } in looks {
+            this.marks |= [Kind::Points, Kind::Intervals].contains(&series.kind);
+            this.bars |= series.kind == Kind::Bars;
+            for [x, y, low, high] in &series.values {
+                if series.kind == Kind::Bars {
+                    this.add(chart, *x, *y);
+                    this.add(chart, *low, 0.0);
+                } else {
+                    [y, low, high].iter().for_each(|value| this.add(chart, *x, **value));
                 }
             }
         }

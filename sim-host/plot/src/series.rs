@@ -1,7 +1,7 @@
 //! Draws the data of a chart.
 
-use super::canvas::{Canvas, Point, Stroke};
-use super::chart::Data;
+use super::canvas::{Canvas, Point};
+use super::chart::Kind;
 use super::look::Look;
 use super::scale::Axes;
 use std::collections::BTreeSet;
@@ -24,77 +24,47 @@ pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]
     };
     // Lines at the edge keep their full width.
     canvas.clip(Some([left - 1.0, top - 1.0, width + 2.0, height + 2.0]));
-    for look in looks {
-        if let Data::Bars(bars) = &look.series.data {
-            draw_bars(look, bars, &|x, y| place(look, x, y), canvas, plot);
+    for look in looks.iter().filter(|look| look.series.kind == Kind::Bars) {
+        for [from, value, to, _] in &look.series.values {
+            let (Some([x, y]), Some([right, zero])) = (place(look, *from, *value), place(look, *to, 0.0)) else {
+                continue;
+            };
+            // If zero is not on the axis, bars start at its edge.
+            let zero = zero.clamp(top, bottom);
+            let (upper, lower) = (y.min(zero), y.max(zero));
+            let width = (right - x).abs();
+            let gap = (width * 0.06).min(1.0);
+            look.bar(canvas, [x.min(right) + gap / 2.0, upper, width - gap, lower - upper]);
         }
     }
-    for look in looks {
-        let place = |x: f64, y: f64| place(look, x, y);
-        match &look.series.data {
-            Data::Line(points) => {
-                let lines = connected(points.iter().map(|[x, y]| place(*x, *y)));
-                let most = (width * POINTS_PER_UNIT) as usize;
-                let lines = lines.into_iter().map(|line| thin(line, most)).collect();
-                canvas.lines(lines, look.stroke());
-            }
-            Data::Points(points) if look.series.joined => {
-                let lines = connected(points.iter().map(|[x, y]| place(*x, *y)));
-                canvas.lines(lines, look.joint());
-            }
-            Data::Intervals(points) => {
-                if look.series.joined {
-                    let lines = connected(points.iter().map(|[x, y, ..]| place(*x, *y)));
-                    canvas.lines(lines, look.joint());
-                }
-                let bars = points.iter().filter_map(|[x, _, low, high]| {
-                    let ([x, bottom], [_, top]) = (place(*x, *low)?, place(*x, *high)?);
-                    Some(whisker(x, top, bottom))
-                });
-                canvas.lines(bars.flatten().collect(), look.whiskers());
-            }
-            Data::Points(_) | Data::Bars(_) => {}
+    let others = || looks.iter().filter(|look| look.series.kind != Kind::Bars);
+    for look in others() {
+        let lines = || connected(look.series.values.iter().map(|[x, y, ..]| place(look, *x, *y)));
+        if look.series.kind == Kind::Line {
+            let most = (width * POINTS_PER_UNIT) as usize;
+            canvas.lines(lines().into_iter().map(|line| thin(line, most)).collect(), look.stroke());
+        } else if look.series.joined {
+            canvas.lines(lines(), look.joint());
+        }
+        if look.series.kind == Kind::Intervals {
+            let bars = look.series.values.iter().filter_map(|[x, _, low, high]| {
+                let ([x, bottom], [_, top]) = (place(look, *x, *low)?, place(look, *x, *high)?);
+                Some(whisker(x, top, bottom))
+            });
+            canvas.lines(bars.flatten().collect(), look.whiskers());
         }
     }
     canvas.clip(None);
     let inside =
         |[x, y]: &Point| (left - 0.5..=left + width + 0.5).contains(x) && (top - 0.5..=bottom + 0.5).contains(y);
-    for look in looks {
-        let points: Vec<Point> = match &look.series.data {
-            Data::Points(points) => points.iter().filter_map(|[x, y]| place(look, *x, *y)).collect(),
-            Data::Intervals(points) => points.iter().filter_map(|[x, y, ..]| place(look, *x, *y)).collect(),
-            Data::Line(_) | Data::Bars(_) => continue,
-        };
+    for look in others().filter(|look| look.series.kind != Kind::Line) {
+        let points = look.series.values.iter().filter_map(|[x, y, ..]| place(look, *x, *y));
         let mut taken = BTreeSet::new();
-        for point in points.into_iter().filter(inside) {
+        for point in points.filter(inside) {
             if taken.insert(point.map(|value| (value * 2.0) as i32)) {
                 look.mark(canvas, point);
             }
         }
-    }
-}
-
-fn draw_bars(
-    look: &Look<'_>,
-    bars: &[[f64; 3]],
-    place: &dyn Fn(f64, f64) -> Option<Point>,
-    canvas: &mut Canvas,
-    [_, top, _, height]: [f64; 4],
-) {
-    for [from, to, value] in bars {
-        let (Some([x, y]), Some([right, zero])) = (place(*from, *value), place(*to, 0.0)) else {
-            continue;
-        };
-        // If zero is not on the axis, bars start at its edge.
-        let zero = zero.clamp(top, top + height);
-        let (upper, lower) = (y.min(zero), y.max(zero));
-        let width = (right - x).abs();
-        let gap = (width * 0.06).min(1.0);
-        canvas.rectangle(
-            [x.min(right) + gap / 2.0, upper, width - gap, lower - upper],
-            Some(look.fill()),
-            Some(Stroke::new(look.colour, 0.8)),
-        );
     }
 }
 

@@ -1,9 +1,9 @@
 //! Trajectories: the map, a line per robot, and the formation from early to late.
 
-use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text};
-use super::colour::{self, Colour, INK, MUTED, WHITE};
+use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text, extent, longest};
+use super::colour::{self, Colour, INK, WHITE};
 use super::crowd::{self, Density};
-use super::layout::{OTHER_FONTS, heading};
+use super::layout::{Entry, OTHER_FONTS, heading, legend};
 use super::map::{self, Map};
 use super::{font, raster, ticks};
 use staya_controller::grid::Cell;
@@ -26,7 +26,6 @@ const MOMENTS: usize = 8;
 const PAD: f64 = 16.0;
 const MIN_WIDTH: f64 = 460.0;
 const SMALL: f64 = 11.5;
-const ROW: f64 = 19.0;
 
 /// Points closer to the previous one are skipped; units.
 const NEAR: f64 = 0.25;
@@ -54,17 +53,17 @@ pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u
     let mut canvas = Canvas::new(width, 0.0, &title);
     heading(&mut canvas, &title, 16.0, [PAD, PAD + 15.0], room);
     let (note, size) = font::fit(&note(terrain, &view, ways.len()), SMALL, false, room / OTHER_FONTS);
-    let mut line = Text::new([PAD, PAD + 34.0], size, Anchor::Start, note);
-    line.colour = MUTED;
-    canvas.text(line);
-    let mut keys = match &crowd {
-        Some(density) => crowd_keys(density, ways.len()),
-        None => keys(&ways, with_edges),
+    canvas.text(Text::new([PAD, PAD + 34.0], size, Anchor::Start, note).muted());
+    let mut entries = match &crowd {
+        Some(density) => crowd_entries(density, ways.len()),
+        None => entries(&ways, with_edges),
     };
     if !changing.is_empty() {
-        keys.push((Key::Changing, "land that changes".into()));
+        entries.push(Entry::new(12.0, "land that changes", |canvas, [x, y]| {
+            canvas.rectangle([x, y - 6.0, 12.0, 12.0], Some(CHANGING), None);
+        }));
     }
-    let top = legend(&mut canvas, &keys, PAD + 42.0, width - PAD) + 8.0;
+    let top = legend(&mut canvas, &entries, [PAD, PAD + 42.0], width - PAD, 14.0) + 8.0;
 
     let map = Map::new(&view, [PAD, top]);
     canvas.height = top + map.area[3] + map::FOOTER + 6.0;
@@ -126,7 +125,7 @@ fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
     for frame in frames {
         for sample in &frame.samples {
             let way = ways.entry(sample.id).or_default();
-            way.target_m = middle_m(terrain, sample.target);
+            way.target_m = terrain.index(sample.target).map(|_| terrain.center_m(sample.target));
             if sample.position_m.iter().all(|value| value.is_finite()) {
                 way.positions_m.push(sample.position_m);
             }
@@ -137,39 +136,17 @@ fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
 
 fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain> {
     let sides = [terrain.width(), terrain.height()].map(f64::from);
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for way in ways.values() {
-        let cells = way.positions_m.iter().chain(&way.target_m).map(|place_m| {
-            let at = |axis: usize| (place_m[axis] - terrain.origin_m[axis]) / terrain.cell_m;
-            [at(0), at(1)]
-        });
-        for place in cells {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(place[axis]);
-                high[axis] = high[axis].max(place[axis]);
-            }
-        }
-    }
-    let reach = (high[0] - low[0]).max(high[1] - low[1]);
+    let places = ways.values().flat_map(|way| way.positions_m.iter().chain(&way.target_m));
+    let cells = places.map(|at| [0, 1].map(|axis| (at[axis] - terrain.origin_m[axis]) / terrain.cell_m));
+    let [low, high] = extent(cells);
+    let reach = longest([low, high]);
     if !reach.is_finite() || sides[0].max(sides[1]) <= SMALL_MAP {
         return Cow::Borrowed(terrain);
     }
     let margin = (reach * 0.2).max(6.0);
-    let first: [f64; 2] = std::array::from_fn(|axis| libm::floor(low[axis] - margin).clamp(0.0, sides[axis] - 1.0));
-    let size: [f64; 2] = std::array::from_fn(|axis| {
-        (libm::ceil(high[axis] + margin) - first[axis]).clamp(1.0, sides[axis] - first[axis])
-    });
-    if size[0] * size[1] > 0.4 * sides[0] * sides[1] {
-        return Cow::Borrowed(terrain);
-    }
-    let [x, y, width, height] = [first[0], first[1], size[0], size[1]].map(|value| value as u16);
-    terrain.crop(x, y, width, height).map_or(Cow::Borrowed(terrain), Cow::Owned)
-}
-
-fn middle_m(terrain: &Terrain, cell: Cell) -> Option<[f64; 2]> {
-    terrain.index(cell)?;
-    let [x, y] = terrain.origin_m;
-    Some([x + (f64::from(cell.x) + 0.5) * terrain.cell_m, y + (f64::from(cell.y) + 0.5) * terrain.cell_m])
+    let part = map::part(terrain, low.map(|low| low - margin), high.map(|high| high + margin));
+    let is_small = |part: &Terrain| f64::from(part.width()) * f64::from(part.height()) <= 0.4 * sides[0] * sides[1];
+    part.filter(is_small).map_or(Cow::Borrowed(terrain), Cow::Owned)
 }
 
 fn look(index: usize, robots: usize) -> Stroke {
@@ -263,14 +240,12 @@ fn draw_lines(canvas: &mut Canvas, lines: Vec<Vec<Point>>, lane: f64) {
 }
 
 fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
-    let mut starts = ways.values().filter_map(|way| way.positions_m.first());
-    let mut targets = ways.values().filter_map(|way| way.target_m.as_ref());
-    let dots = |places: &mut dyn Iterator<Item = &[f64; 2]>| -> Vec<Vec<Point>> {
-        places.map(|place| vec![map.place(*place)]).collect()
-    };
+    let places = |ends: Vec<&[f64; 2]>| ends.into_iter().map(|end| vec![map.place(*end)]).collect();
+    let starts = ways.values().filter_map(|way| way.positions_m.first()).collect();
+    let targets = ways.values().filter_map(|way| way.target_m.as_ref()).collect();
     let size = (map.cell * 0.6).clamp(1.2, 4.0);
-    for (key, dots) in CROWD_ENDS.into_iter().zip([dots(&mut starts), dots(&mut targets)]) {
-        canvas.lines(dots, Stroke::new(key.0, size));
+    for ((colour, _), ends) in CROWD_ENDS.into_iter().zip([starts, targets]) {
+        canvas.lines(places(ends), Stroke::new(colour, size));
     }
 }
 
@@ -295,11 +270,8 @@ fn ring(canvas: &mut Canvas, at: Point, radius: f64, colour: Colour) {
     canvas.circle(at, radius, None, Some(Stroke::new(colour, radius * 0.4)));
 }
 
-fn cross(canvas: &mut Canvas, [x, y]: Point, size: f64, colour: Colour) {
-    let lines =
-        vec![vec![[x - size, y - size], [x + size, y + size]], vec![[x - size, y + size], [x + size, y - size]]];
-    canvas.lines(lines.clone(), Stroke::new(WHITE, size * 0.8));
-    canvas.lines(lines, Stroke::new(colour, size * 0.4));
+fn cross(canvas: &mut Canvas, at: Point, size: f64, colour: Colour) {
+    canvas.cross(at, size, size * 0.8, Stroke::new(colour, size * 0.4));
 }
 
 fn moment_colour(share: f64) -> Colour {
@@ -355,84 +327,46 @@ fn draw_formation(
     }
 }
 
-enum Key {
-    Way(Stroke),
-    Start,
-    Target,
-    Formation,
-    Density,
-    Dot(Colour),
-    Changing,
-}
-
-fn keys(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<(Key, String)> {
+fn entries(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<Entry<'static>> {
     let robots = ways.len();
-    let mut keys = Vec::new();
+    let mut entries = Vec::new();
     if robots == 0 {
-        return keys;
+        return entries;
     }
     if robots <= NAMED {
         for (index, id) in ways.keys().enumerate() {
             let name = if index == 0 { format!("robot {id}") } else { id.to_string() };
-            keys.push((Key::Way(look(index, robots)), name));
+            entries.push(Entry::new(22.0, name, move |canvas, [x, y]| {
+                canvas.line(vec![[x + 1.0, y], [x + 21.0, y]], look(index, robots));
+            }));
         }
     }
-    keys.push((Key::Start, "start".into()));
-    keys.push((Key::Target, "target".into()));
+    entries.push(Entry::new(12.0, "start", |canvas, [x, y]| ring(canvas, [x + 6.0, y], 4.5, INK)));
+    entries.push(Entry::new(12.0, "target", |canvas, [x, y]| cross(canvas, [x + 6.0, y], 4.5, INK)));
     if with_edges {
-        keys.push((Key::Formation, "formation, early to late".into()));
+        entries.push(Entry::new(50.0, "formation, early to late", |canvas, [x, y]| {
+            for part in 0..5 {
+                let from = x + f64::from(part) * 10.0;
+                let stroke = Stroke::new(moment_colour(f64::from(part) / 4.0), 1.6);
+                canvas.line(vec![[from + 1.0, y], [from + 8.0, y]], stroke);
+            }
+        }));
     }
-    keys
+    entries
 }
 
-fn crowd_keys(density: &Density, robots: usize) -> Vec<(Key, String)> {
+fn crowd_entries(density: &Density, robots: usize) -> Vec<Entry<'static>> {
     let most = ticks::grouped(density.most().into());
-    let mut keys = vec![(Key::Density, format!("times a cell was entered, 1 to {most}"))];
+    let mut entries = vec![Entry::new(50.0, format!("times a cell was entered, 1 to {most}"), |canvas, [x, y]| {
+        for part in 0..10 {
+            let area = [x + f64::from(part) * 5.0, y - 5.0, 5.0, 10.0];
+            canvas.rectangle(area, Some(crowd::colour(f64::from(part) / 9.0)), None);
+        }
+    })];
     if robots <= MAX_ENDS {
-        let ends = CROWD_ENDS.map(|(colour, name)| (Key::Dot(colour), name.to_owned()));
-        keys.extend(ends);
+        entries.extend(CROWD_ENDS.map(|(colour, name)| {
+            Entry::new(12.0, name, move |canvas, [x, y]| canvas.circle([x + 6.0, y], 3.0, Some(colour), None))
+        }));
     }
-    keys
-}
-
-fn legend(canvas: &mut Canvas, keys: &[(Key, String)], top: f64, right: f64) -> f64 {
-    let (mut x, mut top) = (PAD, top);
-    for (key, name) in keys {
-        let sample = match key {
-            Key::Way(_) => 22.0,
-            Key::Start | Key::Target | Key::Dot(_) | Key::Changing => 12.0,
-            Key::Formation | Key::Density => 50.0,
-        };
-        let width = sample + 6.0 + font::width(name, SMALL, false) * OTHER_FONTS;
-        if x > PAD && x + width > right {
-            x = PAD;
-            top += ROW;
-        }
-        let y = top + ROW / 2.0;
-        let middle = [x + sample / 2.0, y];
-        match key {
-            Key::Way(stroke) => canvas.line(vec![[x + 1.0, y], [x + sample - 1.0, y]], *stroke),
-            Key::Changing => canvas.rectangle([x, y - 6.0, sample, 12.0], Some(CHANGING), None),
-            Key::Start => ring(canvas, middle, 4.5, INK),
-            Key::Target => cross(canvas, middle, 4.5, INK),
-            Key::Dot(colour) => canvas.circle(middle, 3.0, Some(*colour), None),
-            Key::Density => {
-                for part in 0..10 {
-                    let area = [x + f64::from(part) * 5.0, y - 5.0, 5.0, 10.0];
-                    canvas.rectangle(area, Some(crowd::colour(f64::from(part) / 9.0)), None);
-                }
-            }
-            Key::Formation => {
-                for part in 0..5 {
-                    let from = x + f64::from(part) * 10.0;
-                    let stroke = Stroke::new(moment_colour(f64::from(part) / 4.0), 1.6);
-                    canvas.line(vec![[from + 1.0, y], [from + 8.0, y]], stroke);
-                }
-            }
-        }
-        let text = Text::new([x + sample + 6.0, y], SMALL, Anchor::Start, name);
-        canvas.text(text.centred());
-        x += width + 14.0;
-    }
-    if keys.is_empty() { top } else { top + ROW }
+    entries
 }

@@ -1,9 +1,7 @@
 //! The minimal firmware of each law: an agent with one law and one safety layer, measured in
 //! `bench` under its heaviest load.
 
-use super::bench::Row;
-use super::reach::Step;
-use serde::Serialize;
+use super::Table;
 
 /// Each law with its case in `bench`, its guidance and its safety layer in numbers `#` with at most
 /// `K` half-planes.
@@ -20,39 +18,28 @@ const LAWS: [(&str, &str, &str, &str); 10] = [
     ("negotiation", "worst_negotiation", "NegotiationGuidance", "Unguarded"),
 ];
 
-/// The measurements of one law.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Law {
-    /// Guidance and safety layer.
-    pub law: &'static str,
-    /// Machine code of a step, bytes.
-    pub text: u64,
-    /// Its constants.
-    pub rodata: u64,
-    /// The agent and its workspace.
-    pub ram: u64,
-    /// The deepest step.
-    pub stack: u64,
-}
-
-/// The laws in one kind of number, as far as they were measured.
-pub fn laws(number: &str, rows: &[Row], steps: &[Step]) -> Vec<Law> {
-    let law = |(law, case, guidance, safety): &(&'static str, &str, &str, &str)| {
-        let row = rows.iter().find(|row| row.case == *case && row.number == number)?;
-        let step = steps.iter().find(|step| {
+/// The laws in one kind of number, as far as they were measured, and `lockstep`.
+pub fn laws(number: &str, programs: &Table, cases: &Table, steps: &Table) -> Table {
+    let law = |(law, case, guidance, safety): &(&str, &str, &str, &str)| {
+        let case = |column| cases.get(&format!("{case} {number}"), column);
+        let (step, _) = steps.rows.iter().find(|(step, _)| {
             // Twice as many half-planes as neighbours.
-            let neighbors = step.behaviour.rsplit(", ").next().and_then(|it| it.parse::<u32>().ok());
+            let neighbors = step.rsplit(", ").next().and_then(|it| it.parse::<u32>().ok());
             let safety = safety.replace('#', number).replace('K', &(2 * neighbors.unwrap_or(0)).to_string());
-            let mut arguments = arguments(&step.behaviour).into_iter();
-            arguments.next() == Some(number)
-                && arguments.next().is_some_and(|it| it == *guidance || it.starts_with(&format!("{guidance}<")))
-                && arguments.next().is_some_and(|it| it == safety || it.starts_with(&format!("{safety}<")))
-                && arguments.next() == Some("Postcard")
+            let is_type = |name: &str, wanted: &str| name == wanted || name.starts_with(&format!("{wanted}<"));
+            matches!(arguments(step)[..], [kind, one, other, "Postcard", ..]
+                if kind == number && is_type(one, guidance) && is_type(other, &safety))
         })?;
-        let (text, rodata) = (step.reach.text, step.reach.rodata);
-        Some(Law { law, text, rodata, ram: row.agent + row.workspace, stack: row.stack })
+        let step = |column| steps.get(step, column);
+        let figures = vec![step("text")?, step("rodata")?, case("agent")? + case("workspace")?, case("stack")?];
+        Some((law.to_string(), figures))
     };
-    LAWS.iter().filter_map(law).collect()
+    let stack = cases.rows.iter().filter(|(case, _)| case.ends_with(&format!(" {number}")));
+    let stack = stack.filter_map(|(case, _)| cases.get(case, "stack")).max();
+    let lockstep = ["text", "rodata", "ram"].into_iter().filter_map(|column| programs.get("lockstep", column));
+    let lockstep = ("lockstep, all laws".to_string(), lockstep.chain(stack).collect());
+    let rows = LAWS.iter().filter_map(law).chain([lockstep]).collect();
+    Table { columns: &["agent of a law", "text", "rodata", "ram", "stack"], rows }
 }
 
 /// The arguments of a generic type, split at the commas between them.
@@ -67,30 +54,25 @@ fn arguments(text: &str) -> Vec<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::reach::Reach;
     use super::*;
 
     #[test]
     fn step_of_a_law_is_found_by_its_types() {
-        let row = |case: &str| Row {
-            case: case.to_string(),
-            number: String::from("f32"),
-            steps: 1,
-            median: 1,
-            worst: 1,
-            stack: 30,
-            agent: 20,
-            workspace: 1,
+        let row = |case: &str, figures: &[u64]| (case.to_string(), figures.to_vec());
+        let cases = Table {
+            columns: &["case", "stack", "agent", "workspace"],
+            rows: vec![row("worst_orca_found f32", &[30, 20, 1]), row("worst_push_out f32", &[40, 20, 1])],
         };
-        let step = |behaviour: &str, text| Step { behaviour: behaviour.to_string(), reach: Reach { text, rodata: 2 } };
-        let rows = [row("worst_orca_found"), row("worst_push_out")];
-        let steps = [
-            step("Q16, WaypointGuidance<Q16>, OrcaSafety<Q16, 32>, Postcard, 16", 1),
-            step("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32, VoxelTable2k>, Postcard, 16", 2),
-            step("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32>, Postcard, 16", 3),
-            step("f32, WaypointGuidance<f32>, PushOutSafety<f32>, Mavlink, 16", 4),
+        let rows = vec![
+            row("Q16, WaypointGuidance<Q16>, OrcaSafety<Q16, 32>, Postcard, 16", &[1, 2]),
+            row("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32, VoxelTable2k>, Postcard, 16", &[2, 2]),
+            row("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32>, Postcard, 16", &[3, 2]),
+            row("f32, WaypointGuidance<f32>, PushOutSafety<f32>, Mavlink, 16", &[4, 2]),
         ];
-        let law = Law { law: "waypoint_orca", text: 3, rodata: 2, ram: 21, stack: 30 };
-        assert_eq!(laws("f32", &rows, &steps), [law]);
+        let steps = Table { columns: &["step", "text", "rodata"], rows };
+        let programs =
+            Table { columns: &["program", "text", "rodata", "ram"], rows: vec![row("lockstep", &[7, 8, 9])] };
+        let expected = [row("waypoint_orca", &[3, 2, 21, 30]), row("lockstep, all laws", &[7, 8, 9, 40])];
+        assert_eq!(laws("f32", &programs, &cases, &steps).rows, expected);
     }
 }

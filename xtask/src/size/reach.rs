@@ -5,17 +5,9 @@
 //! refers to what. Calls through pointers are followed where the pointer is stored. Constants
 //! without a name reach up to the next thing with a reference to it.
 
+use super::Table;
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Bytes that are reached.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Reach {
-    /// Machine code.
-    pub text: u64,
-    /// Constants.
-    pub rodata: u64,
-}
 
 /// The references between functions and constants of a program.
 pub struct Program {
@@ -56,15 +48,9 @@ impl Program {
                     let from = usize::try_from(place.checked_sub(start)? + offset).ok()?;
                     Some(u16::from_le_bytes(data.get(from..from + 2)?.try_into().ok()?))
                 };
-                let object::RelocationTarget::Symbol(index) = relocation.target() else {
-                    continue;
-                };
-                let Ok(symbol) = file.symbol_by_index(index) else {
-                    continue;
-                };
-                let RelocationFlags::Elf { r_type } = relocation.flags() else {
-                    continue;
-                };
+                let object::RelocationTarget::Symbol(index) = relocation.target() else { continue };
+                let Ok(symbol) = file.symbol_by_index(index) else { continue };
+                let RelocationFlags::Elf { r_type } = relocation.flags() else { continue };
                 let is_section = symbol.kind() == SymbolKind::Section;
                 let target = match r_type {
                     // The linker has written the sum of symbol and addend there.
@@ -102,32 +88,47 @@ impl Program {
         Ok(program)
     }
 
-    /// The functions whose name holds `part`.
-    pub fn functions<'a>(&'a self, part: &'a str) -> impl Iterator<Item = (&'a str, u64)> {
-        let named = self.names.iter().filter(move |(name, _)| name.contains(part));
-        named.map(|(name, at)| (name.as_str(), *at))
+    /// The flash that each step of an agent in `bench` needs, of those with most neighbours.
+    pub fn steps(&self) -> Table {
+        let neighbors = |step: &str| step.rsplit(", ").next().and_then(|number| number.parse::<u32>().ok());
+        let mut rows = self.needs("step");
+        let most = rows.iter().map(|(step, _)| neighbors(step)).max();
+        rows.retain(|(step, _)| Some(neighbors(step)) == most);
+        const NAME: &str = "step of a behaviour: number, guidance, safety, wire format, neighbours";
+        Table { columns: &[NAME, "text", "rodata"], rows }
     }
 
-    /// All that is reached from the function at `root`.
-    pub fn reach(&self, root: u64) -> Reach {
+    /// The flash that one frame of each wire format needs. Formats share some constants and code.
+    pub fn formats(&self) -> Table {
+        let needs = |way| self.needs(way).into_iter().map(move |(format, needs)| (format!("{way}, {format}"), needs));
+        let rows = ["decode", "encode"].into_iter().flat_map(needs).collect();
+        Table { columns: &["frame of a wire format", "text", "rodata"], rows }
+    }
+
+    /// The types of each function of `bench` by this name, without paths and sorted, and the
+    /// machine code and constants that it needs.
+    fn needs(&self, function: &str) -> Vec<(String, Vec<u64>)> {
+        let start = format!("bench::program::{function}::<");
+        let needs = self.names.iter().filter_map(|(name, at)| {
+            let types = name.strip_prefix(&start)?.strip_suffix('>')?;
+            Some((without_paths(types), self.reach(*at).to_vec()))
+        });
+        let mut needs: Vec<_> = needs.collect();
+        needs.sort();
+        needs
+    }
+
+    /// Bytes of machine code and of constants that are reached from the function at `root`.
+    fn reach(&self, root: u64) -> [u64; 2] {
         let mut seen = BTreeSet::new();
         let mut open = vec![root];
-        let mut reach = Reach::default();
+        let (mut text, mut rodata) = (0, 0);
         while let Some(target) = open.pop() {
-            let Some((at, size, is_code)) = self.thing(target) else {
-                continue;
-            };
-            if !seen.insert(at) {
-                continue;
-            }
-            if is_code {
-                reach.text += size;
-            } else {
-                reach.rodata += size;
-            }
+            let Some((at, size, is_code)) = self.thing(target).filter(|(at, ..)| seen.insert(*at)) else { continue };
+            *(if is_code { &mut text } else { &mut rodata }) += size;
             open.extend(self.references.range(at..at + size).map(|(_, target)| *target));
         }
-        reach
+        [text, rodata]
     }
 
     /// The thing that an address lies in.
@@ -135,50 +136,6 @@ impl Program {
         let (at, (size, is_code)) = self.things.range(..=address).next_back()?;
         (address < at + size).then_some((*at, *size, *is_code))
     }
-}
-
-/// The step of one behaviour and its needs.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Step {
-    /// Kind of number, guidance, safety layer, neighbours.
-    pub behaviour: String,
-    /// Bytes.
-    pub reach: Reach,
-}
-
-/// The functions of `bench` that are one step of an agent each, those with most neighbours, and
-/// what they need.
-pub fn steps(program: &Program) -> Vec<Step> {
-    const ROOT: &str = "bench::program::step::<";
-    let roots = program.functions(ROOT).filter_map(|(name, at)| {
-        let arguments = name.strip_prefix(ROOT)?.strip_suffix('>')?;
-        let neighbors: u32 = arguments.rsplit(", ").next()?.parse().ok()?;
-        Some((neighbors, without_paths(arguments), at))
-    });
-    let roots: Vec<_> = roots.collect();
-    let most = roots.iter().map(|(neighbors, ..)| *neighbors).max();
-    let largest = roots.into_iter().filter(|(neighbors, ..)| Some(*neighbors) == most);
-    let mut steps: Vec<Step> = largest.map(|(_, behaviour, at)| Step { behaviour, reach: program.reach(at) }).collect();
-    steps.sort_by(|one, other| one.behaviour.cmp(&other.behaviour));
-    steps
-}
-
-/// The functions of `bench` that write or read one frame of a wire format, and their needs.
-/// Formats share some constants and code.
-pub fn formats(program: &Program) -> Vec<Step> {
-    let mut formats = Vec::new();
-    for direction in ["encode", "decode"] {
-        let root = format!("bench::program::{direction}::<");
-        for (name, at) in program.functions(&root) {
-            let format = name.strip_prefix(&root).and_then(|it| it.strip_suffix('>'));
-            formats.extend(format.map(|format| Step {
-                behaviour: format!("{direction}, {}", without_paths(format)),
-                reach: program.reach(at),
-            }));
-        }
-    }
-    formats.sort_by(|one, other| one.behaviour.cmp(&other.behaviour));
-    formats
 }
 
 /// `a::b::C<d::E>` as `C<E>`.
@@ -205,23 +162,18 @@ fn move_wide((first, second): (u16, u16)) -> (u16, u64) {
 mod tests {
     use super::*;
 
-    fn program(references: &[(u64, u64)]) -> Program {
-        let things = [(0, (10, true)), (10, (20, true)), (30, (5, true)), (100, (8, false))];
-        Program {
-            things: things.into_iter().collect(),
-            names: vec![(String::from("a::step::<f32>"), 0)],
-            references: references.iter().copied().collect(),
-        }
-    }
-
     #[test]
     fn what_is_reached_counts_once_and_nothing_else_counts() {
-        let program = program(&[(4, 10), (12, 103), (14, 0), (16, 100), (18, 5000)]);
-        let roots: Vec<u64> = program.functions("step").map(|(_, at)| at).collect();
-        assert_eq!(roots, [0]);
-        assert_eq!(program.reach(0), Reach { text: 30, rodata: 8 });
-        assert_eq!(program.reach(30), Reach { text: 5, rodata: 0 });
-        assert_eq!(program.reach(50), Reach::default());
+        let things = [(0, (10, true)), (10, (20, true)), (30, (5, true)), (100, (8, false))];
+        let references = [(4, 10), (12, 103), (14, 0), (16, 100), (18, 5000)];
+        let program = Program {
+            things: things.into_iter().collect(),
+            names: vec![(String::from("bench::program::encode::<a::F>"), 0)],
+            references: references.into_iter().collect(),
+        };
+        assert_eq!(program.formats().rows, [(String::from("encode, F"), vec![30, 8])]);
+        assert_eq!(program.reach(30), [5, 0]);
+        assert_eq!(program.reach(50), [0, 0]);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Title, axes and scale of a snapshot.
 
 use super::Snapshot;
-use crate::canvas::{Anchor, Canvas, Stroke, Text};
-use crate::colour::{GRID, INK, MUTED};
+use crate::canvas::{Canvas, Stroke, longest};
+use crate::colour::INK;
+use crate::font;
+use crate::layout::{self, Numbers};
 use crate::ticks::{self, Tick};
-use crate::{font, layout};
 
 const PAD: f64 = 12.0;
 const TITLE: f64 = 13.5;
@@ -33,7 +34,7 @@ impl Frame {
         let chosen = snapshot.view_m.map(|[x, y]| [[x[0], y[0]], [x[1], y[1]]]);
         let [low, high] = chosen.filter(is_range).unwrap_or_else(|| {
             let [low, high] = snapshot.extent().unwrap_or([[0.0; 2], [1.0; 2]]);
-            let margin = ((high[0] - low[0]).max(high[1] - low[1]) * MARGIN).max(1e-6);
+            let margin = (longest([low, high]) * MARGIN).max(1e-6);
             [low.map(|c| c - margin), high.map(|c| c + margin)]
         });
         // Ranges too wide for ticks are replaced.
@@ -42,7 +43,7 @@ impl Frame {
         let bottom = y + height - PAD - LABEL - SMALL - 14.0;
         // The left margin depends on the widest number, which depends little on the exact ticks.
         let rough = ticks::linear(y_range[0], y_range[1], marks(bottom - top, 34.0));
-        let widest = rough.iter().map(|tick| font::width(&tick.label, SMALL, false)).fold(0.0, f64::max);
+        let widest = font::widest(rough.iter().map(|tick| &tick.label), SMALL);
         let left = x + PAD + LABEL * 1.5 + widest * layout::OTHER_FONTS + 6.0;
         let right = x + width - PAD - 10.0;
         let room = [(right - left).max(20.0), (bottom - top).max(20.0)];
@@ -66,39 +67,27 @@ impl Frame {
     }
 
     pub fn draw(&self, snapshot: &Snapshot, canvas: &mut Canvas) {
-        let [left, top, width, height] = self.plot;
-        let (right, bottom) = (left + width, top + height);
         let [x, y, area_width, area_height] = self.area;
         if !snapshot.title.is_empty() {
             let at = [x + PAD, y + PAD + TITLE];
             layout::heading(canvas, &snapshot.title, TITLE, at, area_width - 2.0 * PAD);
         }
-        let places = |axis: usize| {
+        let marks = [0, 1].map(|axis| {
             let ticks = self.ticks[axis].iter();
-            ticks.map(move |tick| (tick, (tick.value - self.low[axis]) * self.scale))
-        };
-        let vertical = places(0).map(|(_, along)| vec![[left + along, top], [left + along, bottom]]);
-        let level = places(1).map(|(_, up)| vec![[left, bottom - up], [right, bottom - up]]);
-        canvas.lines(vertical.chain(level).collect(), Stroke::new(GRID, 0.7));
-        canvas.rectangle(self.plot, None, Some(Stroke::new(INK, 0.9)));
-        let number = |at, anchor, label: &str| Text { colour: MUTED, ..Text::new(at, SMALL, anchor, label) };
-        for (tick, along) in places(0) {
-            let half = font::width(&tick.label, SMALL, false) / 2.0;
-            let at = (left + along).min(x + area_width - half - 2.0);
-            canvas.text(number([at, bottom + SMALL + 4.0], Anchor::Middle, &tick.label));
-        }
-        for (tick, up) in places(1) {
-            let text = number([left - 6.0, bottom - up], Anchor::End, &tick.label);
-            canvas.text(text.centred());
-        }
-        let (label, size) = font::fit(&snapshot.labels[0], LABEL, false, width);
-        let at = [left + width / 2.0, y + area_height - PAD + 2.0];
-        canvas.text(Text::new(at, size, Anchor::Middle, label));
-        let (label, size) = font::fit(&snapshot.labels[1], LABEL, false, height);
-        canvas.text(Text {
-            upwards: true,
-            ..Text::new([x + PAD + LABEL * 0.8, top + height / 2.0], size, Anchor::Middle, label)
+            ticks.map(|tick| (tick.label.clone(), (tick.value - self.low[axis]) * self.scale)).collect()
         });
+        layout::grid(canvas, self.plot, &marks, 0.7);
+        canvas.rectangle(self.plot, None, Some(Stroke::new(INK, 0.9)));
+        let numbers = Numbers {
+            marks,
+            labels: [&snapshot.labels[0], &snapshot.labels[1]],
+            sizes: [SMALL, LABEL],
+            gaps: [4.0, 6.0],
+            ends: [f64::NEG_INFINITY, x + area_width - 2.0],
+            at: [x + PAD + LABEL * 0.8, y + area_height - PAD + 2.0],
+            y_room: self.plot[3],
+        };
+        numbers.draw(canvas, self.plot);
     }
 }
 

@@ -29,7 +29,7 @@ pub fn draw(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
         canvas.lines(edges(&snapshot.positions_m, range, frame), Stroke::new(EDGE, 0.7));
     }
     for at in snapshot.goals_m.iter().filter_map(|&goal| frame.at(goal)) {
-        cross(at, canvas);
+        goal(at, canvas);
     }
     robots(snapshot, frame, canvas);
 }
@@ -98,11 +98,8 @@ fn edges(positions: &[[f64; 2]], range: f64, frame: &Frame) -> Vec<Vec<Point>> {
     lines
 }
 
-pub fn cross([x, y]: Point, canvas: &mut Canvas) {
-    let arm = 5.0;
-    let lines = vec![vec![[x - arm, y - arm], [x + arm, y + arm]], vec![[x - arm, y + arm], [x + arm, y - arm]]];
-    canvas.lines(lines.clone(), Stroke::new(WHITE, 4.2));
-    canvas.lines(lines, Stroke::new(GOAL, 2.2));
+pub fn goal(at: Point, canvas: &mut Canvas) {
+    canvas.cross(at, 5.0, 4.2, Stroke::new(GOAL, 2.2));
 }
 
 fn colour_of(snapshot: &Snapshot, robot: usize) -> Colour {
