@@ -22,7 +22,7 @@ pub struct Figure {
     pub place: String,
     /// Short name; results go to `out/NAME`.
     pub name: String,
-    /// What it shows.
+    /// Title of the plan; may be empty.
     pub title: String,
 }
 

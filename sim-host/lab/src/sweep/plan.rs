@@ -32,7 +32,7 @@ const FORMAT: u64 = 1;
 pub struct Plan {
     /// Name of the plan; results go to `out/NAME`.
     pub name: String,
-    /// What the plan shows, in one line; may be empty.
+    /// Description in one line; may be empty.
     pub title: String,
     path: PathBuf,
     bases: Vec<Base>,
@@ -46,7 +46,7 @@ pub struct Plan {
     pictures: Vec<Choice>,
     /// Values of a paper.
     pub reference: Option<Reference>,
-    /// What the runs must show.
+    /// Conditions on the measures.
     pub accept: Vec<Acceptance>,
     fingerprint: u64,
 }
@@ -58,7 +58,7 @@ struct Base {
     table: toml::Table,
 }
 
-/// What the command line changes in a plan.
+/// Changes of a plan by the command line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
     /// Values of axes and of other fields.

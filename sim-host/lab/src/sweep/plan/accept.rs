@@ -1,4 +1,4 @@
-//! What the runs of a plan must show: limits of measures, and values of a paper.
+//! Conditions on the measures of a plan, and values of a paper to compare with.
 
 use super::table::AcceptTable;
 use super::{LIST, Plan};

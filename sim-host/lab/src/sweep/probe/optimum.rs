@@ -1,4 +1,4 @@
-//! Travel times on the grid over those of the fastest routes on the whole map, without other robots.
+//! Travel times on the grid over those of the fastest routes on the whole map, for a robot alone.
 
 use super::{Kind, Probe};
 use crate::optimal::Planner;
