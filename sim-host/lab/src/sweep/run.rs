@@ -62,9 +62,14 @@ fn simulated(plan: &Plan, number: u64, watch: &mut dyn FnMut(u32) -> bool) -> Re
             rows.clear();
             rows.extend(robots);
         }
-        let seen = probes.iter_mut().map(|(_, probe)| probe.tick(moment, &rows));
-        // All of them see the tick.
-        seen.fold(ControlFlow::Continue(()), |all, one| if all.is_break() { all } else { one })
+        // All of them see the tick, also after one that ends the run.
+        let mut course = ControlFlow::Continue(());
+        for (_, probe) in &mut probes {
+            if probe.tick(moment, &rows).is_break() {
+                course = ControlFlow::Break(());
+            }
+        }
+        course
     });
     let outcome = outcome.map_err(|error| format!("the robots cannot be placed: {error}"))?;
     let summary = Summary::new(&scenario, &outcome, Vec::new());
