@@ -16,8 +16,11 @@ use std::ops::ControlFlow;
 
 /// An observer of one run. It sees the start as tick 0, then each tick.
 pub trait Probe {
-    /// Sees a tick with all robots; may end the run.
-    fn tick(&mut self, moment: &Moment<'_>, robots: &[RobotRow]) -> ControlFlow<()>;
+    /// Sees a tick with all robots; may end the run. By default does neither.
+    fn tick(&mut self, moment: &Moment<'_>, robots: &[RobotRow]) -> ControlFlow<()> {
+        let _ = (moment, robots);
+        ControlFlow::Continue(())
+    }
 
     /// Values in the order of the probe's measures.
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>>;

@@ -2,9 +2,8 @@
 
 use super::{Kind, Probe};
 use staya_controller::shuffle::Sharpness;
-use staya_sim::engine::{Moment, Outcome, simulate};
+use staya_sim::engine::{Outcome, simulate};
 use staya_sim::radio::RadioParams;
-use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
 use std::ops::ControlFlow;
 
@@ -20,10 +19,6 @@ pub const KIND: Kind = Kind {
 struct Alone;
 
 impl Probe for Alone {
-    fn tick(&mut self, _: &Moment<'_>, _: &[RobotRow]) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>> {
         let mut alone = scenario.clone();
         alone.formations.clear();

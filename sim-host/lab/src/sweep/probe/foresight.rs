@@ -7,14 +7,12 @@
 
 use super::{Kind, Probe};
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
-use staya_sim::engine::{Moment, Outcome};
-use staya_sim::record::RobotRow;
+use staya_sim::engine::Outcome;
 use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
 use staya_sim::terrain::change::{LandChange, change};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::ops::ControlFlow;
 
 pub const KIND: Kind = Kind {
     name: "foresight",
@@ -28,10 +26,6 @@ pub const KIND: Kind = Kind {
 struct Least;
 
 impl Probe for Least {
-    fn tick(&mut self, _: &Moment<'_>, _: &[RobotRow]) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>> {
         let (robot, time) = (scenario.robots.first(), outcome.arrival_times.first().copied().flatten());
         let loss = robot.zip(time).map(|(robot, time)| {

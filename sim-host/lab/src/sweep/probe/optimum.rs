@@ -3,10 +3,8 @@
 use super::{Kind, Probe};
 use crate::optimal::Planner;
 use staya_controller::grid::UNIT;
-use staya_sim::engine::{Moment, Outcome};
-use staya_sim::record::RobotRow;
+use staya_sim::engine::Outcome;
 use staya_sim::scenario::{Robot, Scenario};
-use std::ops::ControlFlow;
 
 pub const KIND: Kind = Kind {
     name: "optimum",
@@ -21,10 +19,6 @@ pub const KIND: Kind = Kind {
 struct Optimum;
 
 impl Probe for Optimum {
-    fn tick(&mut self, _: &Moment<'_>, _: &[RobotRow]) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>> {
         let mut planner = Planner::default();
         let loss = |(robot, time): (&Robot, &Option<u64>)| {
