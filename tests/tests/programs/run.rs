@@ -192,8 +192,7 @@ fn numbers_out_of_range_are_errors_with_a_remedy() {
         (&["route", "--obstacles", "99999999"], "give fewer obstacles"),
         (&["route", "--size", "65535"], "its side must be 4..=2000"),
         (&["formation", "--set", "radio.loss=-1"], "radio.loss: -1 is not a probability"),
-        (&["formation", "--set", "radio.loss=nan"], "nan is not a value"),
-        (&["formation", "--set", "formation.rho=0"], "formation.rho: 0"),
+        (&["formation", "--set", "formation.rho=0"], "formation.rho: with rho = 0 no robot knows its neighbours"),
         (&["formation", "--set", "formation.halt_cells=-1"], "formation.halt_cells: -1"),
     ] {
         let refused = refusal(&[&["experiment"], arguments].concat());
