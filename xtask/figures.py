@@ -15,11 +15,11 @@ SEEDS = range(7001, 7006)
 # Small versions of the experiments, with the first seeds.
 EXPERIMENTS = [
     "route --runs 10",
-    "scouting --runs 5",
-    "formation --runs 3",
-    "swap --robots 4,8,16,32 --noise 0.05",
-    "doorway --robots 8",
-    "crossing",
+    "scouting --seeds 5",
+    "formation --seeds 3",
+    "swap --axis count=4,8,16,32 --axis radius_m=2,2,2,3.2 --set plane.robots.circle.noise_m=0.05",
+    "doorway",
+    "crossing --seeds 3",
     "flock --seeds 1 --robots 30",
     "goals --seeds 1 --robots 25",
 ]

@@ -9,7 +9,7 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("boids", "not all robots arrive", "boids have no goals"),
     (
         "crossing-intruder",
-        "seed 2: robots overlap",
+        "seed 1: robots overlap",
         "the intruder is as fast as the robots and drives into one that gives way to others",
     ),
     ("experiment-flock", "fragment: more than one component", "without a reference a flock breaks up, as in the paper"),

@@ -1,75 +1,83 @@
-//! Golden tables of swaps, doorways and other crossings, as printed by the commands.
+//! Golden tables of swaps, doorways and other crossings: the figures of `papers/orca`.
 
-use staya_controller::agent::SafetyKind;
-use staya_lab::crossing::cases::{self, Case};
-use staya_lab::crossing::{Conditions, doorway, swap};
-use staya_lab::experiment::Experiment as _;
+use staya_lab::figure;
+use staya_lab::sweep::Plan;
+use staya_lab::sweep::plan::Changes;
+use staya_lab::sweep::run::perform;
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{golden, root, run};
 use std::fs;
 
-/// Gaps in the story of one run, from its seed, arrived robots, all robots, and overlaps.
-fn lacks(seed: u64, arrived: usize, robots: usize, overlaps: u64) -> impl Iterator<Item = String> {
-    let late = (arrived < robots).then(|| format!("seed {seed}: not all robots arrive"));
-    late.into_iter().chain((overlaps > 0).then(|| format!("seed {seed}: robots overlap")))
-}
-
-fn golden_swaps(name: &str, plan: &swap::Plan) {
-    let report = plan.measure().expect("a sound plan");
-    let gaps = report.runs.iter().flat_map(|run| lacks(run.seed, run.arrived, run.robots as usize, run.overlaps));
-    golden(name, &report.to_string(), &gaps.collect::<Vec<_>>());
+/// Makes all runs of a figure with these changes and compares a table of them. A run lacks its
+/// story if not all robots arrive or robots overlap.
+fn golden_figure(name: &str, figure: &str, changes: &[&str], seeds: u32) {
+    let fields = changes.iter().map(|change| change.parse().expect("a change")).collect();
+    let changes = Changes { fields, seeds: Some(seeds), ..Changes::default() };
+    let path = root().join("papers/orca").join(figure).join("figure.toml");
+    let plan = Plan::load(&path, &changes).expect("a sound plan");
+    let column = |measure: &str| plan.measures().iter().position(|name| name == measure);
+    let times = column("free.worst_ratio").expect("a measure");
+    let overlaps = ["collisions", "intruder_overlaps"].map(column);
+    let mut text =
+        format!("{}, seed, {}, trace\n", plan.axes().collect::<Vec<_>>().join(", "), plan.measures().join(", "));
+    let mut gaps = Vec::new();
+    for number in 0..plan.runs() {
+        let row = perform(&plan, number, || true).expect("a run that is not stopped").row;
+        let seed = plan.run(number).seed;
+        let figures: Vec<_> = row.figures.iter().map(ToString::to_string).collect();
+        text += &format!("{}, {seed}, {}, {}\n", plan.values_of(number).join(", "), figures.join(", "), row.trace_hash);
+        if row.figures[times].0.is_none() && name != "crossing-flock" {
+            gaps.push(format!("seed {seed}: not all robots arrive"));
+        }
+        if overlaps.into_iter().flatten().any(|column| row.figures[column].0 != Some(0.0)) {
+            gaps.push(format!("seed {seed}: robots overlap"));
+        }
+    }
+    golden(name, &text, &gaps);
 }
 
 #[test]
 fn golden_swap() {
-    let plan = swap::Plan { robots: vec![2, 3, 4, 8, 12, 16, 24, 32], ..swap::Plan::default() };
-    golden_swaps("swap", &plan);
+    let [count, radius] = ["count=2,3,4,8,12,16,24,32", "radius_m=2,2,2,2,2,2,2.4,3.2"];
+    golden_figure("swap", "swap", &[count, radius], 1);
 }
 
 #[test]
 fn golden_swap_by_template_with_noise_and_losses() {
-    let plan = swap::Plan {
-        robots: vec![6, 12],
-        noise_m: 0.05,
-        seeds: 3,
-        conditions: Conditions { safety: SafetyKind::Template2k, loss: 0.1, ..Conditions::default() },
-        ..swap::Plan::default()
-    };
-    golden_swaps("swap-template", &plan);
+    let changes = [
+        "count=6,12",
+        "radius_m=2,2",
+        "plane.robots.circle.noise_m=0.05",
+        "plane.safety=template_2k",
+        "radio.loss=0.1",
+    ];
+    golden_figure("swap-template", "swap", &changes, 3);
 }
 
 #[test]
 fn golden_doorway() {
-    let plan = doorway::Plan { widths_m: vec![0.8, 1.3], robots: 6, ..doorway::Plan::default() };
-    let report = plan.measure().expect("a sound plan");
-    let gaps = report.runs.iter().flat_map(|run| lacks(run.seed, run.arrived, run.robots, run.overlaps));
-    golden("doorway-experiment", &report.to_string(), &gaps.collect::<Vec<_>>());
-}
-
-/// Small enough for a debug build.
-const fn few(case: Case) -> u32 {
-    match case {
-        Case::DeadEnd => 2,
-        Case::FourWays | Case::Tee | Case::Corridor => 3,
-        Case::Blocks => 4,
-        Case::Door | Case::Doors | Case::ParkedDoor | Case::Parked => 6,
-        Case::Mixed | Case::Intruder | Case::Blackout => 8,
-        Case::Flock => 9,
-        Case::Sphere => 12,
-    }
+    golden_figure("doorway-experiment", "doorway", &["door_m=0.8,1.3"], 1);
 }
 
 #[test]
 fn golden_crossing_of_each_kind() {
-    for case in Case::ALL {
-        let plan = cases::Plan { cases: vec![case], robots: Some(few(case)), seeds: 2, ..cases::Plan::default() };
-        let report = plan.measure().expect("a sound plan");
-        let gaps = report.runs.iter().flat_map(|run| {
-            let parts = run.parts.filter(|parts| *parts > 1).map(|_| format!("seed {}: more than one flock", run.seed));
-            lacks(run.seed, run.arrived, run.robots, run.overlaps + run.intruder_overlaps).chain(parts)
-        });
-        golden(&format!("crossing-{}", case.name()), &report.to_string(), &gaps.collect::<Vec<_>>());
+    let cases = ["blocks", "four_ways", "tee", "door", "doors", "parked_door", "corridor", "parked", "mixed"];
+    for case in cases.into_iter().chain(["intruder", "dead_end", "sphere", "blackout", "flock"]) {
+        golden_figure(&format!("crossing-{case}"), "crossing", &[&format!("scenario={case}")], 1);
     }
+}
+
+#[test]
+fn each_figure_is_found_by_name_and_by_place() {
+    let figures = figure::all().expect("the figures of the checkout");
+    assert!(figures.len() >= 3);
+    for known in figures {
+        for name in [&known.name, &known.place] {
+            assert_eq!(figure::find(name).expect("a figure").path, known.path);
+        }
+    }
+    let error = figure::find("doorwya").expect_err("no such figure").to_string();
+    assert_eq!(error, "doorwya: there is no such experiment; did you mean doorway?");
 }
 
 /// Seeds in which robots once met in a narrow corridor, or met one that had arrived there. Of the

@@ -116,7 +116,7 @@ fn maps(count: u32) {
 /// The first run of an accepted plan begins.
 fn plans(count: u32) {
     check("plans", &seeds("sweeps", &["toml"], &[]), count, 0.3, &|path, bytes| {
-        let plan = Plan::parse(&text(bytes), path).map_err(|error| error.to_string())?;
+        let plan = Plan::parse(&text(bytes), path, &Default::default()).map_err(|error| error.to_string())?;
         assert!(plan.runs() > 0 && perform(&plan, 0, || false).is_none_or(|run| run.refusal.is_some()));
         Ok(())
     });
@@ -194,7 +194,7 @@ fn rows(count: u32) {
     let folder = TempDir::new().expect("a folder");
     let plan = fs::read_to_string(root().join("sweeps/swap-loss.toml")).expect("a plan");
     let plan = plan.replace("seeds = 5", "seeds = 1");
-    let plan = Plan::parse(&plan, &root().join("sweeps/small.toml")).expect("a plan");
+    let plan = Plan::parse(&plan, &root().join("sweeps/small.toml"), &Default::default()).expect("a plan");
     let job = |_: &mut (), number| perform(&plan, number, || true);
     perform_shard(&plan, Shard::default(), folder.path(), Existing::Refuse, job, |_, _| {}).expect("rows");
     let whole = files(folder.path()).expect("a folder");

@@ -4,7 +4,6 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Command};
 use staya_controller::agent::SafetyKind;
 use staya_controller::cost::Gain;
-use staya_controller::formation::{Prediction, Recovery};
 use staya_controller::grid::Norm;
 use staya_controller::names::Named;
 use staya_controller::push_out::{Evasion, Model};
@@ -46,11 +45,6 @@ pub fn safety() -> impl TypedValueParser<Value = SafetyKind> {
     ])
 }
 
-/// Safety layer of crossing robots: ORCA, computed or from a table.
-pub fn crossing_safety() -> impl TypedValueParser<Value = SafetyKind> {
-    one_of(&[(SafetyKind::Orca, ""), (SafetyKind::Template2k, ""), (SafetyKind::None, "")])
-}
-
 /// Reaction of push-out in a step.
 pub fn model() -> impl TypedValueParser<Value = Model> {
     one_of(&[(Model::Radial, "1: along the radius"), (Model::Tangential, "2: turned aside")])
@@ -59,19 +53,6 @@ pub fn model() -> impl TypedValueParser<Value = Model> {
 /// Number of robots that push-out avoids at once.
 pub fn evasion() -> impl TypedValueParser<Value = Evasion> {
     one_of(&[(Evasion::Single, "The nearest in the way"), (Evasion::Multiple, "All")])
-}
-
-/// Prediction of other robots in a formation.
-pub fn prediction() -> impl TypedValueParser<Value = Prediction> {
-    one_of(&[
-        (Prediction::Constant, "Others continue as announced"),
-        (Prediction::Reflexive, "Others do what this robot would do in their place"),
-    ])
-}
-
-/// Behaviour of the top leader while a robot is too far behind.
-pub fn recovery() -> impl TypedValueParser<Value = Recovery> {
-    one_of(&[(Recovery::Wait, "The leader stops"), (Recovery::Def, "The leader follows the others (def)")])
 }
 
 /// Norm of the plane.

@@ -1,17 +1,16 @@
 //! The commands `staya sweep` and `staya experiment`. A module converts options that are not simply
 //! the fields of a plan.
 
-mod crossing;
+mod figure;
 mod flock;
-mod formation;
 mod goals;
 mod movingai;
 mod route;
 mod sweep;
 
+use crate::boids;
 use crate::experiment::Experiment as _;
 use crate::experiment::rows::RowRetention;
-use crate::{boids, scale, scouting};
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global, Stop};
@@ -38,11 +37,14 @@ impl Command {
     }
 }
 
-/// Rerun experiments from papers, and benchmarks.
+/// Rerun experiments from papers, and benchmarks; without a name, list them.
 #[derive(Args, Clone, Debug)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct ExperimentArgs {
     #[command(subcommand)]
-    experiment: Experiment,
+    experiment: Option<Experiment>,
+    #[command(flatten)]
+    figure: figure::FigureArgs,
     #[command(flatten)]
     keeping: RowRetention,
 }
@@ -51,16 +53,6 @@ pub struct ExperimentArgs {
 enum Experiment {
     /// Windowed routing against the global optimum on random land (Kuznetsov, figures 2 to 4).
     Route(Box<route::RouteArgs>),
-    /// Value of a map, partly blank or wrong, on changing land.
-    Scouting(Box<scouting::Plan>),
-    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, figure 6).
-    Formation(Box<formation::FormationArgs>),
-    /// Robots on a circle with opposite goals: arrivals, delays, gaps.
-    Swap(crossing::SwapArgs),
-    /// Two crowds pass one gap in opposite directions.
-    Doorway(crossing::DoorwayArgs),
-    /// Fourteen scenes of conflicts: crossings, doors, corridors, intruders, dead ends, space.
-    Crossing(Box<crossing::CrossingArgs>),
     /// Queries of a Moving AI benchmark: arrivals, and lengths compared with the optimal ones.
     Movingai(movingai::MovingAiArgs),
     /// Boids on a torus: cost of five neighbour searches (Starovoitova, section 2.3).
@@ -69,8 +61,6 @@ enum Experiment {
     Flock(Box<flock::FlockArgs>),
     /// Group order of 225 robots with three goals, and tuned gains (Pavlovsky and Pavlovsky).
     Goals(Box<goals::GoalsArgs>),
-    /// Time and memory per robot in swarms of a thousand to a million.
-    Scale(Box<scale::Plan>),
 }
 
 impl ExperimentArgs {
@@ -81,20 +71,12 @@ impl ExperimentArgs {
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let stop = Stop::on_ctrl_c()?;
         let keeping = &self.keeping;
-        match &self.experiment {
-            Experiment::Route(args) => match args.share() {
-                Some(plan) => plan.command(&args.out.join("share"), keeping, global, &stop),
-                None => args.plan().command(&args.out, keeping, global, &stop),
-            },
-            Experiment::Scouting(plan) => plan.command(&plan.out, keeping, global, &stop),
-            Experiment::Formation(args) => args.plan()?.command(&args.out, keeping, global, &stop),
-            Experiment::Swap(args) => args.plan().command(&args.out(), keeping, global, &stop),
-            Experiment::Doorway(args) => args.plan().command(&args.out(), keeping, global, &stop),
-            Experiment::Crossing(args) => args.plan().command(&args.out, keeping, global, &stop),
-            Experiment::Movingai(args) => match args.share()? {
-                Some(plan) => plan.command(&args.out.join("share"), keeping, global, &stop),
-                None => args.plan()?.command(&args.out, keeping, global, &stop),
-            },
+        let Some(experiment) = &self.experiment else {
+            return self.figure.run(keeping, global, &stop);
+        };
+        match experiment {
+            Experiment::Route(args) => args.plan().command(&args.out, keeping, global, &stop),
+            Experiment::Movingai(args) => args.plan()?.command(&args.out, keeping, global, &stop),
             Experiment::Boids(plan) => plan.command(&plan.out, keeping, global, &stop),
             Experiment::Flock(args) => match args.closing() {
                 Some(closing) => closing.command(&args.plan.out.join("closing"), keeping, global, &stop),
@@ -104,7 +86,6 @@ impl ExperimentArgs {
                 Some(tuning) => tuning.command(&args.plan.out.join("tuned"), keeping, global, &stop),
                 None => args.plan.command(&args.plan.out, keeping, global, &stop),
             },
-            Experiment::Scale(plan) => plan.command(&plan.out, keeping, global, &stop),
         }
     }
 }

@@ -6,10 +6,8 @@
 //! window, by learned travel costs ([`Learning`]) and finally by following the wall. Maps too large
 //! for the router's search are answered by the planner ([`optimal`]).
 
-mod groups;
 mod report;
 
-pub use groups::{GroupPlan, GroupPoint, GroupReport};
 pub use report::{Answer, Report};
 
 use crate::experiment::Experiment;

@@ -1,9 +1,9 @@
 //! The programs of Staya at the command line.
 
 mod checkpoint;
-mod crossing;
 mod crowd;
 mod errors;
+mod figures;
 mod orca;
 mod recordings;
 mod run;

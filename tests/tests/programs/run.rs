@@ -170,9 +170,9 @@ fn invalid_usage_differs_from_failure() {
         &["terrain", "metrics", "a.map", "--crop", "-1,0,2,2"],
         &["terrain", "draw", "a.map"],
         &["terrain", "generate"],
-        &["experiment"],
+        &["experiment", "route", "--radius", "x"],
         &["experiment", "route", "--radius", "0"],
-        &["experiment", "formation", "--footprint", "17"],
+        &["experiment", "formation", "--seeds", "0"],
         &["experiment", "movingai"],
     ] {
         let ended = staya(arguments).output().expect("staya starts");
@@ -189,13 +189,11 @@ fn numbers_out_of_range_are_errors_with_a_remedy() {
     for (arguments, expected) in [
         (&["route", "--runs", "0"][..], "make 1 or more"),
         (&["route", "--runs", "4294967295"], "4294967295 runs; make at most"),
-        (&["formation", "--runs", "4294967295"], "make at most"),
         (&["route", "--obstacles", "99999999"], "give fewer obstacles"),
         (&["route", "--size", "65535"], "its side must be 4..=2000"),
-        (&["formation", "--loss", "-1"], "a loss of -1; it must be"),
-        (&["formation", "--loss", "nan"], "a loss of NaN; it must be"),
-        (&["formation", "--rho", "0"], "rho of 0; give 1, 2 or 3"),
-        (&["formation", "--halt", "-1"], "--halt -1; give 0 to"),
+        (&["formation", "--set", "radio.loss=-1"], "radio.loss: -1 is not a probability"),
+        (&["formation", "--set", "formation.rho=0"], "formation.rho: with rho = 0 no robot knows its neighbours"),
+        (&["formation", "--set", "formation.halt_cells=-1"], "formation.halt_cells: -1"),
     ] {
         let refused = refusal(&[&["experiment"], arguments].concat());
         assert!(refused.contains(expected), "{refused}");
@@ -239,10 +237,9 @@ fn experiments_check_their_output_folder_first() {
     let in_the_way = dir.path().join("file");
     fs::write(&in_the_way, "mine").expect("write");
     let way = in_the_way.to_str().expect("UTF-8");
-    for experiment in ["route", "formation"] {
-        // A million runs would take hours.
-        let most = ["experiment", experiment, "--runs", "1000000", "--out", way];
-        let refused = refusal(&most);
+    // A million runs would take hours.
+    for many in [&["route", "--runs", "1000000"][..], &["formation", "--set", "obstacles=9", "--seeds", "100000"]] {
+        let refused = refusal(&[&["experiment"], many, &["--out", way]].concat());
         assert!(refused.contains(way) && refused.contains("choose another output directory"), "{refused}");
         assert_eq!(refused.matches("os error").count(), 1, "{refused}");
     }
@@ -259,12 +256,13 @@ fn every_json_command_prints_one_object_and_leaves_no_probe_file() {
     let (land, picture, answers) = (path("land.yaml"), path("land.png"), path("answers"));
     let scen = format!("{MAPS}random-32-32-20-random-1.scen");
     let small = ["--runs", "2", "--obstacles", "5", "--size", "30", "--out", &out];
+    let (formation, figure) = ("experiment formation --quick --set scenario=staya --set obstacles=5", path("figure"));
     let commands: [Vec<&str>; 6] = [
         vec!["terrain", "generate", "--out", &land],
         vec!["terrain", "metrics", &land],
         vec!["terrain", "draw", &land, "--out", &picture],
         [&["experiment", "route"], &small[..]].concat(),
-        [&["experiment", "formation", "--only"], &small[..]].concat(),
+        formation.split(' ').chain(["--out", &figure]).collect(),
         vec!["experiment", "movingai", &scen, "--out", &answers],
     ];
     for command in commands {

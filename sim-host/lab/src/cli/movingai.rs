@@ -1,6 +1,6 @@
 //! `staya experiment movingai`.
 
-use crate::movingai::{Benchmark, GroupPlan, Learning, Memory, Plan, Robots, Sight};
+use crate::movingai::{Benchmark, Learning, Memory, Plan, Robots, Sight};
 use anyhow::Result;
 use clap::Args;
 use staya_console::options::RouteOptions;
@@ -25,21 +25,6 @@ pub struct MovingAiArgs {
     learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
-    /// Instead, run groups with and without shared maps; results go to the folder's `share`.
-    #[arg(long, conflicts_with_all = ["visits", "learned", "replan", "exit"])]
-    share: bool,
-    /// Robots per group.
-    #[arg(long, value_name = "ROBOTS,...", value_delimiter = ',', default_value = "6,20", requires = "share")]
-    group: Vec<u32>,
-    /// Losses of packets, 0 to 1.
-    #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0,0.3,0.6", requires = "share")]
-    losses: Vec<f64>,
-    /// Groups of each size.
-    #[arg(long, default_value_t = 50, requires = "share")]
-    runs: u32,
-    /// Seed; equal seeds give equal results. Shared maps were developed on seed 1.
-    #[arg(long, default_value_t = 3, requires = "share")]
-    seed: u64,
     /// Folder for the rows.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-movingai")]
     pub out: PathBuf,
@@ -56,14 +41,6 @@ fn sight(word: &str) -> Result<Sight, String> {
 }
 
 impl MovingAiArgs {
-    pub fn share(&self) -> Result<Option<GroupPlan>> {
-        if !self.share {
-            return Ok(None);
-        }
-        let (groups, losses) = (self.group.clone(), self.losses.clone());
-        Ok(Some(GroupPlan { robots: self.plan()?, groups, losses, runs: self.runs, seed: self.seed }))
-    }
-
     pub fn plan(&self) -> Result<Plan> {
         Ok(Plan {
             benchmark: Benchmark::load(&self.scen, self.map.as_deref())?,

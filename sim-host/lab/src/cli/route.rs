@@ -1,7 +1,6 @@
 //! `staya experiment route`.
 
 use crate::route::{Coefficient, Land, MAX_RADIUS, Plan};
-use crate::share::{self, Starts};
 use clap::{Args, ValueEnum};
 use staya_console::options::{self, RouteOptions, gain};
 use staya_controller::cost::Gain;
@@ -50,16 +49,10 @@ pub struct RouteArgs {
     #[arg(long, value_enum, default_value = "natural")]
     terrain: LandArg,
     /// Numbers of obstacles, one point of the figures each.
-    #[arg(
-        long,
-        value_name = "N,N,...",
-        value_delimiter = ',',
-        default_value = "10,40,70,100,130,160",
-        default_value_if("share", "true", "70,100,130,160")
-    )]
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "10,40,70,100,130,160")]
     obstacles: Vec<u32>,
     /// Landscapes per point.
-    #[arg(long, default_value_t = 1000, default_value_if("share", "true", "50"))]
+    #[arg(long, default_value_t = 1000)]
     runs: u32,
     /// Radius of the robot's window, cells.
     #[arg(long, default_value_t = RouteParams::default().radius, value_parser = clap::value_parser!(u8).range(1..=i64::from(MAX_RADIUS)))]
@@ -91,7 +84,7 @@ pub struct RouteArgs {
     #[arg(long, value_name = "ROBOTS", default_value_t = 0)]
     parked: u32,
     /// Seed; equal seeds give equal results. Parameters were tuned on seed 1.
-    #[arg(long, default_value_t = 2, default_value_if("share", "true", "3"))]
+    #[arg(long, default_value_t = 2)]
     seed: u64,
     /// Coefficients to vary, one at a time, on the same landscapes.
     #[arg(long, value_enum, value_name = "a0,a1,a2,a3", value_delimiter = ',')]
@@ -99,55 +92,12 @@ pub struct RouteArgs {
     /// Values of the varied coefficients [default: a selection for each].
     #[arg(long, value_name = "V,V,...", value_delimiter = ',', value_parser = gain, requires = "sweep")]
     values: Vec<Gain>,
-    /// Instead, run groups of robots that share maps over the radio; results go to the folder's
-    /// `share`. Defaults: 50 landscapes per point, 70,100,130,160 obstacles, seed 3. Only radius,
-    /// size, classes, hills and coefficients apply.
-    #[arg(long, conflicts_with_all = ["sweep", "parked", "terrain", "shuffle", "replan", "exit"])]
-    share: bool,
-    /// Robots per group.
-    #[arg(long, value_name = "ROBOTS,...", value_delimiter = ',', default_value = "6,20", requires = "share")]
-    group: Vec<u32>,
-    /// Arrangements of starts and goals.
-    #[arg(
-        long,
-        value_name = "WORD,...",
-        value_delimiter = ',',
-        default_value = "anywhere,together,in-turn",
-        value_enum,
-        requires = "share"
-    )]
-    starts: Vec<Starts>,
-    /// Losses of packets, 0 to 1.
-    #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0,0.3,0.6", requires = "share")]
-    losses: Vec<f64>,
-    /// Ticks between two departures with `in-turn`.
-    #[arg(long, value_name = "TICKS", default_value_t = 100, requires = "share")]
-    interval: u32,
     /// Folder for rows and pictures.
     #[arg(long, value_name = "DIR", default_value = "out/experiment-route")]
     pub out: PathBuf,
 }
 
 impl RouteArgs {
-    pub fn share(&self) -> Option<share::Plan> {
-        let route =
-            RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };
-        self.share.then(|| share::Plan {
-            obstacles: self.obstacles.clone(),
-            groups: self.group.clone(),
-            starts: self.starts.clone(),
-            losses: self.losses.clone(),
-            runs: self.runs,
-            size: self.size,
-            classes: self.classes,
-            hills: self.hills,
-            hill_norm: self.hill_norm,
-            interval: self.interval,
-            route,
-            seed: self.seed,
-        })
-    }
-
     pub fn plan(&self) -> Plan {
         let params =
             RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };

@@ -1,28 +1,18 @@
 //! `staya sweep PLAN`.
 
-use crate::sweep::aggregate::{self, Point};
 use crate::sweep::merge::Merged;
-use crate::sweep::plan::PlotTable;
-use crate::sweep::run::{estimate, perform};
+use crate::sweep::plan::{Changes, PlotTable};
+use crate::sweep::report::{ROWS, Report};
+use crate::sweep::run::estimate;
 use crate::sweep::script::{self, Job};
-use crate::sweep::shard::{Course, Existing, files, perform_shard};
-use crate::sweep::{Plan, Shard, SweepError, pictures, schema};
+use crate::sweep::shard::{Existing, files};
+use crate::sweep::{Plan, Shard, SweepError, pictures};
 use anyhow::Result;
 use clap::{Args, Subcommand};
-use serde::Serialize;
-use staya_console::{Ended, Global, Progress, Stop, print, print_json};
-use staya_sim::record::{make_dir, write_atomically};
-use staya_stats::Summary;
+use staya_console::{Ended, Global, Stop, print, print_json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
-
-const ROWS: &str = "rows.csv";
-const AGGREGATES: &str = "aggregates.csv";
-const SCHEMA: &str = "rows.schema.json";
-const SHOWN: usize = 40;
-const FIGURES: usize = 4;
 
 #[derive(Args, Clone, Debug)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -125,7 +115,7 @@ struct ParallelArgs {
 
 impl TargetArgs {
     fn load(&self) -> Result<(Plan, PathBuf)> {
-        let plan = Plan::load(self.plan.as_deref().unwrap_or(Path::new("")))?;
+        let plan = Plan::load(self.plan.as_deref().unwrap_or(Path::new("")), &Changes::default())?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&plan.name));
         Ok((plan, out))
     }
@@ -199,37 +189,10 @@ impl SweepArgs {
             (_, true) => Existing::Forget,
             _ => Existing::Refuse,
         };
-        let since = Instant::now();
-        let mut bar = Progress::new("runs", 0, global);
-        let progress = |done, total| {
-            bar.of(total);
-            bar.set(done, String::new);
-        };
-        let may_continue = || !stop.is_requested();
-        let job = |(): &mut (), run| perform(&plan, run, may_continue);
-        let course = perform_shard(&plan, self.shard, &out, existing, job, progress);
-        bar.finish();
-        let course = course?;
-        tell(&course);
-        let mut report = Report::new(&plan, &out);
-        report.wall_seconds = Some(since.elapsed().as_secs_f64());
-        (report.runs, report.done_before, report.done_now) = (course.runs, course.found, course.done);
-        report.interrupted = stop.is_requested();
-        if self.shard.is_whole() && course.missing() == 0 {
-            let merged = Merged::read(&plan, &files(&out)?)?;
-            report.take(&merged)?;
-        }
+        let report = Report::make(&plan, &out, (self.shard, existing), global, &stop)?;
         report.print(global)?;
-        Ok(if course.missing() > 0 { Ended::by(&stop) } else { Ended::Done })
-    }
-}
-
-fn tell(course: &Course) {
-    if course.torn > 0 {
-        eprintln!("{} bytes of a row that had been cut off are gone; its run was done again", course.torn);
-    }
-    if let Some((count, why)) = &course.impossible {
-        eprintln!("{count} runs are impossible and have no figures; the first: {why}");
+        report.judge()?;
+        Ok(if report.is_partial() { Ended::by(&stop) } else { Ended::Done })
     }
 }
 
@@ -286,130 +249,6 @@ impl ScriptArgs {
         let (file, out) = (absolute(plan.path())?, absolute(&out)?);
         let job = Job { program: &program, plan: &file, out: &out, tasks: self.tasks, at_once: self.at_once };
         Ok(make(&plan, &job)?)
-    }
-}
-
-#[derive(Debug, Serialize)]
-struct Report<'a> {
-    plan: &'a str,
-    fingerprint: String,
-    runs: u64,
-    done_before: u64,
-    done_now: u64,
-    /// Rows in two files, identically.
-    doubles: u64,
-    interrupted: bool,
-    wall_seconds: Option<f64>,
-    points: Vec<PointFigures>,
-    files: Vec<PathBuf>,
-    #[serde(skip)]
-    out: &'a Path,
-    #[serde(skip)]
-    source: &'a Plan,
-}
-
-#[derive(Debug, Serialize)]
-struct PointFigures {
-    runs: usize,
-    axes: BTreeMap<String, String>,
-    figures: BTreeMap<String, Option<Summary>>,
-    #[serde(skip)]
-    values: Vec<String>,
-}
-
-impl<'a> Report<'a> {
-    fn new(plan: &'a Plan, out: &'a Path) -> Self {
-        Self {
-            plan: &plan.name,
-            fingerprint: plan.fingerprint(),
-            runs: 0,
-            done_before: 0,
-            done_now: 0,
-            doubles: 0,
-            interrupted: false,
-            wall_seconds: None,
-            points: Vec::new(),
-            files: Vec::new(),
-            out,
-            source: plan,
-        }
-    }
-
-    fn take(&mut self, merged: &Merged) -> Result<()> {
-        let (plan, out) = (self.source, self.out);
-        make_dir(out)?;
-        let points = aggregate::points(plan, merged);
-        let aggregates = aggregate::text(plan, &points);
-        for (name, text) in [(ROWS, merged.text(plan)), (SCHEMA, schema(plan)), (AGGREGATES, aggregates)] {
-            write_atomically(&out.join(name), text.as_bytes())?;
-            self.files.push(out.join(name));
-        }
-        for plot in pictures::plots(plan) {
-            self.files.extend(pictures::draw(plan, merged, &plot, &out.join("plots"))?);
-        }
-        let of = |point: &Point| PointFigures {
-            runs: point.runs,
-            axes: plan.axes().map(str::to_owned).zip(point.values.iter().cloned()).collect(),
-            figures: plan.measures().iter().cloned().zip(point.figures.iter().copied()).collect(),
-            values: point.values.clone(),
-        };
-        self.points = points.iter().map(of).collect();
-        Ok(())
-    }
-
-    fn print(&self, global: &Global) -> Result<()> {
-        if global.json { print_json(self) } else { print(&self.table()?) }
-    }
-
-    fn table(&self) -> Result<String, std::fmt::Error> {
-        let (plan, out) = (self.source, self.out.display());
-        let mut text = String::new();
-        let done = self.done_before + self.done_now;
-        write!(text, "{} ({}): {done} of {} runs", self.plan, self.fingerprint, self.runs)?;
-        if let Some(seconds) = self.wall_seconds {
-            write!(text, ", {} of them now, in {seconds:.1} s", self.done_now)?;
-        }
-        text.push('\n');
-        if self.doubles > 0 {
-            writeln!(text, "{} rows stood in two files, alike", self.doubles)?;
-        }
-        if done < self.runs {
-            let file = plan.path().display();
-            writeln!(text, "stopped early; `staya sweep {file} --out {out} --resume` does the others")?;
-        }
-        if !self.points.is_empty() && self.points.len() <= SHOWN {
-            self.points_table(&mut text)?;
-        }
-        if self.files.is_empty() {
-            return Ok(text);
-        }
-        writeln!(text, "written to {out}")?;
-        for file in &self.files {
-            writeln!(text, "  {}", file.strip_prefix(self.out).unwrap_or(file).display())?;
-        }
-        Ok(text)
-    }
-
-    fn points_table(&self, text: &mut String) -> std::fmt::Result {
-        let plan = self.source;
-        let measures = &plan.measures()[..plan.measures().len().min(FIGURES)];
-        let mut lines = vec![plan.axes().map(str::to_owned).chain(measures.iter().cloned()).collect::<Vec<_>>()];
-        for point in &self.points {
-            let figures = measures.iter().map(|name| match point.figures.get(name).copied().flatten() {
-                None => "-".to_owned(),
-                Some(Summary { mean, mean_error95: Some(error), .. }) => format!("{mean:.4} +- {error:.4}"),
-                Some(summary) => format!("{:.4}", summary.mean),
-            });
-            lines.push(point.values.iter().cloned().chain(figures).collect());
-        }
-        let columns = lines[0].len();
-        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..columns).map(width).collect();
-        for line in &lines {
-            let cells = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}"));
-            writeln!(text, "  {}", cells.collect::<Vec<_>>().join("  "))?;
-        }
-        Ok(())
     }
 }
 

@@ -116,7 +116,7 @@ pub struct RowRetention {
 impl RowRetention {
     /// Rows of a completed sweep are replaced like any results. Rows of an interrupted sweep may be
     /// hours of work, so they are kept.
-    fn existing(&self, out: &Path) -> Existing {
+    pub(crate) fn existing(&self, out: &Path) -> Existing {
         let is_whole = || self.shard.is_whole() && out.join(ROWS).is_file();
         match (self.resume, self.restart) {
             (true, _) => Existing::Resume,

@@ -30,10 +30,7 @@ pub trait Design: Sync {
     fn figures(&self) -> Vec<String>;
 
     /// Meaning of a figure.
-    fn meaning(&self, figure: &str) -> String {
-        let _ = figure;
-        String::from("a figure of summary.json")
-    }
+    fn meaning(&self, figure: &str) -> String;
 
     /// Most parallel runs on a machine; 1 for timed runs.
     fn at_once(&self) -> usize {

@@ -5,6 +5,8 @@
 //! | [`design`] | numbered runs: sweep plans and experiments |
 //! | [`plan`] | varied fields, values, seeds and measures |
 //! | [`run`] | one run, a function of plan and number only |
+//! | [`probe`] | observers that measure more than the summary |
+//! | [`report`] | table, verdicts and files of a complete plan |
 //! | [`row`] | the record of a run |
 //! | [`shard`] | the part of a plan that one process does, and its file of rows |
 //! | [`merge`] | the rows of all shards in order, and their consistency |
@@ -20,6 +22,8 @@ pub mod jobs;
 pub mod merge;
 pub mod pictures;
 pub mod plan;
+pub mod probe;
+pub mod report;
 pub mod row;
 pub mod run;
 mod sample;

@@ -1,20 +1,25 @@
 //! Sweep plans: fields of a scenario that vary between runs, and their values.
 
+mod accept;
 mod axes;
 mod check;
 mod table;
 
 use crate::sweep::SweepError;
 use crate::sweep::design::Design;
+use crate::sweep::probe;
 use crate::sweep::value::Value;
-use axes::Axis;
+use accept::Choice;
+pub use accept::{Acceptance, Reference, Verdict};
+pub use axes::Change;
+use axes::{Axis, SCENARIO};
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
 use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source, nearest};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 pub use table::PlotTable;
-use table::{PlanFile, SeedRange, Seeds};
+use table::{Files, PictureTable, PlanFile, SeedRange, Seeds};
 
 const LIST: &str = "docs/sweeps.md";
 /// Some hundred megabytes of rows.
@@ -27,9 +32,10 @@ const FORMAT: u64 = 1;
 pub struct Plan {
     /// Name of the plan; results go to `out/NAME`.
     pub name: String,
+    /// Description in one line; may be empty.
+    pub title: String,
     path: PathBuf,
-    scenario: PathBuf,
-    base: toml::Table,
+    bases: Vec<Base>,
     axes: Vec<Axis>,
     /// Axes that advance together, as ranges of `axes`; groups are crossed with each other.
     groups: Vec<Range<usize>>,
@@ -37,7 +43,32 @@ pub struct Plan {
     measures: Vec<String>,
     /// Requested pictures; empty for the default.
     pub plots: Vec<PlotTable>,
+    pictures: Vec<Choice>,
+    /// Values of a paper.
+    pub reference: Option<Reference>,
+    /// Conditions on the measures.
+    pub accept: Vec<Acceptance>,
     fingerprint: u64,
+}
+
+/// A scenario with the fields that all runs share.
+#[derive(Clone, Debug)]
+struct Base {
+    path: PathBuf,
+    table: toml::Table,
+}
+
+/// Changes of a plan by the command line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Changes {
+    /// Values of axes and of other fields.
+    pub fields: Vec<Change>,
+    /// The first seed.
+    pub seed: Option<u64>,
+    /// Number of seeds.
+    pub seeds: Option<u32>,
+    /// As few seeds as the plan allows.
+    pub is_quick: bool,
 }
 
 /// One run of a plan.
@@ -58,16 +89,26 @@ impl Plan {
     ///
     /// # Errors
     /// Names file, line and field, with cause and remedy.
-    pub fn load(path: &Path) -> Result<Self, SweepError> {
+    pub fn load(path: &Path, changes: &Changes) -> Result<Self, SweepError> {
         let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
-        Self::parse(&text, path)
+        Self::parse(&text, path, changes)
+    }
+
+    /// Name and title of a plan, which is not checked further.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a field is missing or unknown.
+    pub fn title(path: &Path) -> Result<(String, String), SweepError> {
+        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
+        let PlanFile { name, title, .. } = Source::new(path, &text)?.read(LIST)?;
+        Ok((name, title))
     }
 
     /// Like [`Plan::load`], for the text of a file `path` that need not exist.
     ///
     /// # Errors
     /// See [`Plan::load`].
-    pub fn parse(text: &str, path: &Path) -> Result<Self, SweepError> {
+    pub fn parse(text: &str, path: &Path, changes: &Changes) -> Result<Self, SweepError> {
         let source = Source::new(path, text)?;
         let file: PlanFile = source.read(LIST)?;
         let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
@@ -75,45 +116,43 @@ impl Plan {
             let what = format!("{:?} cannot name a folder of results", file.name);
             return Err(source.error("name", what, "use 1 to 100 letters, digits, - and _").into());
         }
-        let scenario = source.file(&file.scenario);
-        let scenario_text = read_text(&scenario, TEXT).map_err(|error| {
-            source.error(
-                "scenario",
-                format!("{}: {error}", scenario.display()),
-                "names are relative to the plan's file",
-            )
-        })?;
-        let mut base: toml::Table = match scenario_text.parse() {
-            Ok(base) => base,
-            Err(_) => {
-                return Err(Scenario::parse(&scenario_text, &scenario, &Overrides::default())
-                    .map(drop)
-                    .err()
-                    .map_or_else(|| source.error("scenario", "it is not TOML", "name a scenario").into(), Into::into));
-            }
+        let mut bases = match &file.scenario {
+            Files::One(name) => vec![Base::read(&source, "scenario", name)?],
+            Files::List(names) => (0..)
+                .zip(names)
+                .map(|(index, name): (usize, _)| Base::read(&source, &format!("scenario[{index}]"), name))
+                .collect::<Result<_, _>>()?,
         };
-        let axes::Axes { axes, groups, set } = axes::read(&source, &file)?;
+        if bases.is_empty() {
+            return Err(source.error("scenario", "there is none", "give the name of a file").into());
+        }
+        let mut all = axes::read(&source, &file, bases.iter().map(Base::name).collect())?;
+        all.change(&changes.fields)?;
+        let axes::Axes { axes, groups, set } = all;
         for (field, value, span) in set {
             let wrong = |what| source.error_at(span.clone(), field.name(), what, "name a field of the scenario");
-            field.set(&mut base, value.toml()).map_err(wrong)?;
+            bases.iter_mut().try_for_each(|base| field.set(&mut base.table, value.toml()).map_err(wrong))?;
         }
-        for axis in &axes {
-            axes::check_kind(&source, axis, axis.field.get(&base))?;
+        for (axis, base) in axes.iter().flat_map(|axis| bases.iter().map(move |base| (axis, base))) {
+            axes::check_kind(&source, axis, axis.field.get(&base.table))?;
         }
-        let seeds = match file.seeds {
-            None => vec![base.get("seed").and_then(toml::Value::as_integer).map_or(0, i64::unsigned_abs)],
-            Some(seeds) => check_seeds(&source, &seeds)?,
+        let seeds = match &file.seeds {
+            None => vec![bases[0].table.get("seed").and_then(toml::Value::as_integer).map_or(0, i64::unsigned_abs)],
+            Some(seeds) => check_seeds(&source, seeds)?,
         };
         let mut plan = Self {
             name: file.name,
+            title: file.title,
             path: path.to_owned(),
-            scenario,
-            base,
+            bases,
             axes,
             groups,
-            seeds,
+            seeds: changes.seeds(seeds, file.seeds.as_ref()),
             measures: Vec::new(),
             plots: Vec::new(),
+            pictures: Vec::new(),
+            reference: None,
+            accept: Vec::new(),
             fingerprint: 0,
         };
         if plan.count().is_none_or(|count| count > MOST) {
@@ -125,6 +164,23 @@ impl Plan {
         let known = check::check(&plan, &source)?;
         plan.measures = check_measures(&source, file.measures, known)?;
         plan.plots = check_plots(&source, &plan, file.plot)?;
+        let reference = file.reference.map(|name| Reference::load(&plan, &source.file(&name)));
+        plan.reference = reference.transpose()?;
+        for (index, PictureTable { at }) in file.picture.iter().enumerate() {
+            match Choice::read(&plan, at, &source, &format!("picture[{index}].where")) {
+                Ok(choice) => plan.pictures.push(choice),
+                // The point is not among those of a changed plan.
+                Err(_) if !changes.fields.is_empty() => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        // Limits are those of the unchanged plan; a changed one is another study.
+        if changes.fields.is_empty() {
+            for (index, accept) in file.accept.into_iter().enumerate() {
+                let field = format!("accept[{index}]");
+                plan.accept.push(Acceptance::read(&plan, accept, &source, &field)?);
+            }
+        }
         plan.fingerprint = plan.digest();
         Ok(plan)
     }
@@ -163,10 +219,26 @@ impl Plan {
         self.find(axis).map(|index| &self.axes[index].values[..])
     }
 
-    /// Index of an axis.
+    /// Index of an axis, by its name or the end of it after a dot.
     #[must_use]
     pub fn find(&self, axis: &str) -> Option<usize> {
-        self.axes().position(|name| name == axis)
+        let names: Vec<&str> = self.axes().collect();
+        axes::find(names.into_iter(), axis)
+    }
+
+    /// Points of which a picture is wanted.
+    pub(crate) fn pictured(&self) -> impl Iterator<Item = u64> {
+        let points = 0..self.runs() / self.seeds();
+        points.filter(|point| {
+            let values = self.values_of(point * self.seeds());
+            self.pictures.iter().any(|choice| choice.has(&values))
+        })
+    }
+
+    /// Values of the axes of a run, as table cells.
+    #[must_use]
+    pub fn values_of(&self, run: u64) -> Vec<String> {
+        self.run(run).values.iter().map(ToString::to_string).collect()
     }
 
     /// Whether the values of axis `index` form a geometric sequence.
@@ -236,19 +308,25 @@ impl Plan {
     }
 
     pub(crate) fn scenario(&self, run: &Run<'_>) -> Result<Scenario, ScenarioError> {
-        let mut table = self.base.clone();
-        for (axis, value) in self.axes.iter().zip(&run.values) {
+        let base = self.base(run);
+        let mut table = base.table.clone();
+        for (axis, value) in self.axes.iter().zip(&run.values).filter(|(axis, _)| axis.field.name() != SCENARIO) {
             axis.field.set(&mut table, value.toml()).map_err(|what| ScenarioError::Field {
                 path: self.path.clone(),
-                line: axis.line,
+                line: axis.line.max(1),
                 field: axis.field.name().to_owned(),
                 what,
                 remedy: "name a field of the scenario".to_owned(),
             })?;
         }
         let text = toml::to_string(&table).unwrap_or_default();
-        Scenario::parse(&text, &self.scenario, &Overrides { seed: Some(run.seed), ticks: None })
+        Scenario::parse(&text, &base.path, &Overrides { seed: Some(run.seed), ticks: None })
             .map_err(|error| self.said_of_plan(run, error))
+    }
+
+    fn base(&self, run: &Run<'_>) -> &Base {
+        let name = self.axes.first().filter(|axis| axis.field.name() == SCENARIO).map(|_| run.values[0]);
+        name.and_then(|name| self.bases.iter().find(|base| base.name() == *name)).unwrap_or(&self.bases[0])
     }
 
     /// Converts an error of a generated scenario to places in the user's files.
@@ -260,7 +338,7 @@ impl Plan {
             |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
         let is_meant = |axis: &&Axis| {
             let name = axis.field.name();
-            !field.is_empty() && (is_below(name, &field) || is_below(&field, name))
+            axis.line > 0 && !field.is_empty() && (is_below(name, &field) || is_below(&field, name))
         };
         if let Some(axis) = self.axes.iter().find(is_meant) {
             let field = axis.field.name().to_owned();
@@ -271,8 +349,9 @@ impl Plan {
         let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
         let values = values.join(", ");
         let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
-        let text = read_text(&self.scenario, TEXT).unwrap_or_default();
-        match Source::new(&self.scenario, &text) {
+        let path = &self.base(run).path;
+        let text = read_text(path, TEXT).unwrap_or_default();
+        match Source::new(path, &text) {
             Ok(source) => source.error(&field, what, remedy),
             Err(error) => error,
         }
@@ -280,8 +359,8 @@ impl Plan {
 
     /// Covers everything that rows depend on: fields, values, seeds, figures, the scenario's files.
     fn digest(&self) -> u64 {
-        let scenario = toml::to_string(&self.base).unwrap_or_default();
-        let mut all = chained(FORMAT, digest(scenario.as_bytes()));
+        let text = |base: &Base| toml::to_string(&base.table).unwrap_or_default();
+        let mut all = self.bases.iter().fold(FORMAT, |all, base| chained(all, digest(text(base).as_bytes())));
         let mut add = |bytes: &[u8]| all = chained(all, digest(bytes));
         for (axis, index) in self.axes.iter().zip(0u64..) {
             add(axis.field.name().as_bytes());
@@ -296,16 +375,18 @@ impl Plan {
     }
 
     fn files(&self) -> Vec<PathBuf> {
-        let mut words = Vec::new();
-        collect_words(&toml::Value::Table(self.base.clone()), &mut words);
-        for value in self.axes.iter().flat_map(|axis| &axis.values) {
-            if let Value::Word(word) = value {
-                words.push(word.clone());
+        let mut files = Vec::new();
+        for Base { path, table } in &self.bases {
+            let mut words = Vec::new();
+            collect_words(&toml::Value::Table(table.clone()), &mut words);
+            for value in self.axes.iter().flat_map(|axis| &axis.values) {
+                if let Value::Word(word) = value {
+                    words.push(word.clone());
+                }
             }
+            let folder = path.parent().unwrap_or(Path::new(""));
+            files.extend(words.iter().map(|word| folder.join(word)).filter(|path| path.is_file()));
         }
-        let folder = self.scenario.parent().unwrap_or(Path::new(""));
-        let mut files: Vec<PathBuf> =
-            words.iter().map(|word| folder.join(word)).filter(|path| path.is_file()).collect();
         // A ROS map consists of two files.
         let images = files.iter().filter(|path| path.extension().is_some_and(|ext| ext == "yaml")).filter_map(|path| {
             let text = read_text(path, TEXT).ok()?;
@@ -315,6 +396,41 @@ impl Plan {
         let images: Vec<_> = images.collect();
         files.extend(images);
         files
+    }
+}
+
+impl Base {
+    fn read(source: &Source<'_>, field: &str, name: &Path) -> Result<Self, ScenarioError> {
+        let path = source.file(name);
+        let text = read_text(&path, TEXT).map_err(|error| {
+            source.error(field, format!("{}: {error}", path.display()), "names are relative to the plan's file")
+        })?;
+        match text.parse() {
+            Ok(table) => Ok(Self { path, table }),
+            // The reader of scenarios finds the line.
+            Err(_) => Err(Scenario::parse(&text, &path, &Overrides::default())
+                .err()
+                .unwrap_or_else(|| source.error(field, "it is not TOML", "name a scenario"))),
+        }
+    }
+
+    /// Value of the axis of scenarios.
+    fn name(&self) -> Value {
+        Value::Word(self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
+    }
+}
+
+impl Changes {
+    fn seeds(&self, mut seeds: Vec<u64>, file: Option<&Seeds>) -> Vec<u64> {
+        if self.is_quick {
+            let quick = if let Some(Seeds::Range(range)) = file { range.quick } else { None };
+            seeds.truncate(quick.unwrap_or(1).max(1) as usize);
+        }
+        if self.seed.is_some() || self.seeds.is_some() {
+            let count = self.seeds.map_or(seeds.len(), |count| count as usize);
+            seeds = (self.seed.unwrap_or(seeds[0])..).take(count).collect();
+        }
+        seeds
     }
 }
 
@@ -340,7 +456,7 @@ impl Design for Plan {
     }
 
     fn values(&self, run: u64) -> Vec<String> {
-        self.run(run).values.iter().map(ToString::to_string).collect()
+        self.values_of(run)
     }
 
     fn seed(&self, run: u64) -> u64 {
@@ -349,6 +465,16 @@ impl Design for Plan {
 
     fn figures(&self) -> Vec<String> {
         self.measures.clone()
+    }
+
+    /// Times are measured on a machine that does nothing else.
+    fn at_once(&self) -> usize {
+        if self.measures.iter().any(|name| name.starts_with("cost.")) { 1 } else { usize::MAX }
+    }
+
+    fn meaning(&self, figure: &str) -> String {
+        let of_probe = probe::measures().find(|(name, _)| name == figure);
+        of_probe.map_or("a figure of summary.json", |(_, meaning)| meaning).to_owned()
     }
 }
 
@@ -365,7 +491,7 @@ fn check_seeds(source: &Source<'_>, seeds: &Seeds) -> Result<Vec<u64>, ScenarioE
     let most = MOST as usize;
     let seeds: Vec<u64> = match *seeds {
         Seeds::Count(count) => (1..=u64::from(count)).take(most + 1).collect(),
-        Seeds::Range(SeedRange { from, count }) => (from..).take((count as usize).min(most + 1)).collect(),
+        Seeds::Range(SeedRange { from, count, .. }) => (from..).take((count as usize).min(most + 1)).collect(),
         Seeds::List(ref seeds) => seeds.clone(),
     };
     let mut sorted = seeds.clone();
@@ -390,10 +516,11 @@ fn check_measures(
     let Some(measures) = measures else {
         return Ok(known.into_iter().filter(|name| !name.starts_with("waits.")).collect());
     };
+    let known: Vec<String> = known.into_iter().chain(probe::measures().map(|(name, _)| name)).collect();
     for (index, name) in measures.iter().enumerate() {
         let field = format!("measures[{index}]");
         if !known.contains(name) {
-            let what = format!("{name} is not a figure of summary.json");
+            let what = format!("{name} is neither a figure of summary.json nor of a probe");
             let remedy = match nearest(name, known.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("give some of {}", known.join(", ")),

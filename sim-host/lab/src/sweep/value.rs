@@ -122,6 +122,12 @@ impl Display for Figure {
     }
 }
 
+/// A number with at most four decimals.
+#[must_use]
+pub fn short(number: f64) -> String {
+    Figure(format!("{number:.4}").parse().ok()).to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

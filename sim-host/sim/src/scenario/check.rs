@@ -195,7 +195,7 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
         }
         (None, None, Some(t), None) => {
             let plan = plan(t.width, t.height, t.classes, t.seed);
-            let made = generate::natural(&plan, t.obstacles, t.norm);
+            let made = generate::natural_by(&plan, t.obstacles, t.norm, t.hills);
             ("terrain.natural", made)
         }
         (None, None, None, Some(t)) => {

@@ -422,7 +422,8 @@ fn scattered(
                 low + rng.below((high - low + 1) as u32) as i32
             };
             let goal = (0..TRIES).map(|_| Cell::new(draw(x, width) as i16, draw(y, height) as i16)).find(|&goal| {
-                let at = terrain.index(goal).filter(|_| terrain.is_passable(goal));
+                let is_far = goal.chebyshev(Cell::new(x as i16, y as i16)) >= u32::from(entry.least);
+                let at = terrain.index(goal).filter(|_| is_far && terrain.is_passable(goal));
                 at.is_some_and(|at| !std::mem::replace(&mut taken[at], true))
             });
             let Some(goal) = goal else {

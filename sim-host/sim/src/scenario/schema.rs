@@ -13,6 +13,7 @@ use super::plausibility::PlausibilityTable;
 use super::robots::RobotsTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
+use crate::terrain::generate::Hills;
 use serde::Deserialize;
 use staya_controller::grid::Norm;
 use std::path::PathBuf;
@@ -196,6 +197,9 @@ pub struct NaturalTable {
     /// Shape of a hill: `"euclidean"` (round; the default) or `"chebyshev"` (square).
     #[serde(default)]
     pub norm: Norm,
+    /// Slopes of hills: `"even"` (the default), `"rounded"`, `"wide"`, `"added"` or `"rough"`.
+    #[serde(default)]
+    pub hills: Hills,
 }
 
 /// `terrain.entropy`.

@@ -245,6 +245,23 @@ fn only_the_top_leader_of_a_formation_needs_a_free_goal() {
 }
 
 #[test]
+fn scattered_goals_are_far_enough_and_hills_have_a_shape() {
+    let land = |rest: &str| {
+        format!("name = 't'\nticks = 5\n[terrain.natural]\nwidth = 30\nheight = 30\nobstacles = 9\n{rest}")
+    };
+    let far = parse(&land("[robots.scattered]\ncount = 40\nleast = 12\n")).expect("good");
+    assert!(far.robots.iter().all(|robot| robot.start.chebyshev(robot.goal) >= 12));
+    let error = parse(&land("[robots.scattered]\ncount = 4\nleast = 40\n")).expect_err("too far").to_string();
+    assert!(error.contains("no free goal is left within reach"), "{error}");
+    let cells = |hills: &str| {
+        let text = land(&format!("hills = '{hills}'\n[robots.scattered]\ncount = 1\n"));
+        parse(&text).expect("good").terrain.cells().to_vec()
+    };
+    let even = parse(&land("[robots.scattered]\ncount = 1\n")).expect("good").terrain.cells().to_vec();
+    assert!(cells("even") == even && cells("rough") != even && cells("wide") != even);
+}
+
+#[test]
 fn scattered_robots_fill_even_a_full_map_and_keep_within_travel() {
     let scenario = parse(&with_robots("scattered = { count = 11 }")).expect("good");
     assert_eq!(scenario.robots.len(), 11);

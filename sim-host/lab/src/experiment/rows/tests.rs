@@ -1,14 +1,13 @@
 use super::*;
-use crate::crossing::{cases, doorway, swap};
 use crate::flock::{self, closing::Closing};
-use crate::{boids, formation, goals, route};
+use crate::route::{self, Land};
+use crate::{boids, goals};
 use staya_console::{Ended, Global, Stop};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-fn plan() -> swap::Plan {
-    let conditions = crate::crossing::Conditions { loss: 0.2, ..Default::default() };
-    swap::Plan { robots: vec![3, 4], seeds: 4, noise_m: 0.02, patience: 2.0, conditions, ..swap::Plan::default() }
+fn plan() -> route::Plan {
+    route::Plan { lands: [5, 9].map(Land::Natural).to_vec(), runs: 4, size: 20, ..route::Plan::default() }
 }
 
 fn quiet() -> Global {
@@ -35,19 +34,17 @@ fn rows_contain_parameters_and_figures() {
         let at = lines[0].iter().position(|cell| *cell == name).unwrap_or_else(|| panic!("{name}"));
         lines[1..].iter().map(|cells| cells[at]).collect::<Vec<_>>()
     };
-    assert_eq!(column("robots"), ["3", "3", "3", "3", "4", "4", "4", "4"]);
-    assert_eq!(column("seed"), ["1", "2", "3", "4", "1", "2", "3", "4"]);
-    assert_eq!(column("loss"), ["0.2"; 8]);
-    assert!(column("trace_hash").iter().all(|hash| hash.len() == 16));
+    assert_eq!(column("obstacles"), ["5", "5", "5", "5", "9", "9", "9", "9"]);
+    assert_eq!(column("side_cells"), ["20"; 8]);
     assert!(column("version").iter().all(|version| version.starts_with(env!("CARGO_PKG_VERSION"))));
-    let report = plan().measure().expect("a report");
-    let ratios: Vec<String> = report.runs.iter().map(|run| Figure(run.time_ratio).to_string()).collect();
-    assert_eq!(column("time_ratio"), ratios);
+    let runs = plan().carry_out(|_| true).expect("all runs").concat();
+    let costs: Vec<String> = runs.iter().map(|run| run.walks[0].cost.to_string()).collect();
+    assert_eq!(column("cost"), costs);
     let schema: serde_json::Value = serde_json::from_str(&text(dir.path(), "rows.schema.json")).expect("JSON");
     let names: Vec<&str> =
         schema["columns"].as_array().expect("columns").iter().filter_map(|c| c["name"].as_str()).collect();
     assert_eq!(names, lines[0]);
-    assert_eq!(text(dir.path(), AGGREGATES).lines().count(), 1 + 2 * 5);
+    assert_eq!(text(dir.path(), AGGREGATES).lines().count(), 1 + 2 * 8);
 }
 
 #[test]
@@ -82,7 +79,7 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     );
     command(&out("cut"), &RowRetention::default()).expect("done");
     same("cut");
-    let other = swap::Plan { noise_m: 0.01, ..plan() };
+    let other = route::Plan { parked: 1, ..plan() };
     let refused =
         other.command(&out("cut"), &resume, &quiet(), &Stop::default()).expect_err("another plan").to_string();
     assert!(refused.contains("it is of another plan"), "{refused}");
@@ -92,7 +89,7 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
 fn early_end_keeps_finished_runs() {
     let dir = tempfile::tempdir().expect("a folder");
     let (asked, keeping, plan) = (AtomicUsize::new(0), RowRetention::default(), plan());
-    let may_continue = |_: usize| asked.fetch_add(1, Ordering::Relaxed) < 700;
+    let may_continue = |_: usize| asked.fetch_add(1, Ordering::Relaxed) < 6;
     let jobs = Jobs::new(&plan, &may_continue, Some((dir.path(), &keeping)));
     let some = plan.perform(&jobs).expect("no error");
     let course = jobs.course().expect("rows are kept");
@@ -142,10 +139,6 @@ fn check<E: Experiment>(plan: &E, other: &E) {
 
 #[test]
 fn rows_of_all_experiments_are_valid() {
-    check(&plan(), &swap::Plan { patience: 3.0, ..plan() });
-    check(&doorway::Plan::default(), &doorway::Plan { robots: 3, ..doorway::Plan::default() });
-    check(&cases::Plan::default(), &cases::Plan { seed: 77, ..cases::Plan::default() });
-    check(&formation::Plan::default(), &formation::Plan { loss: 0.25, ..formation::Plan::default() });
     check(&route::Plan::default(), &route::Plan { parked: 3, ..route::Plan::default() });
     check(&goals::Plan::default(), &goals::Plan { k3: vec![1.0], ..goals::Plan::default() });
     check(&flock::Plan::default(), &flock::Plan { loss: 0.1, ..flock::Plan::default() });

@@ -1,19 +1,24 @@
 //! Fields and their values: `axes`, `zip`, `sample` and `set` of a plan.
 
 use super::table::{PlanFile, RangeTable, SampleTable};
+use crate::sweep::SweepError;
 use crate::sweep::sample::shares;
 use crate::sweep::value::Value;
 use staya_sim::scenario::Field;
 use staya_sim::scenario::{ScenarioError, Source};
 use std::ops::Range;
+use std::str::FromStr;
 use toml::de::{DeTable, DeValue};
 
+/// Name of the axis of several scenarios.
+pub const SCENARIO: &str = "scenario";
 const MOST: u32 = 1_000_000;
 
 #[derive(Clone, Debug)]
 pub struct Axis {
     pub field: Field,
     pub values: Vec<Value>,
+    /// Line of the plan; 0 if the values are from the command line.
     pub line: usize,
     pub is_log: bool,
     /// Values come from a range, which is invalid for text fields.
@@ -30,14 +35,100 @@ pub struct Axes {
     pub set: Vec<(Field, Value, Range<usize>)>,
 }
 
+/// A field's values on the command line, instead of the plan's: `radio.loss=0,0.3` or `count=2..64`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    field: Field,
+    values: Vec<Value>,
+}
+
+impl FromStr for Change {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, list) = text.split_once('=').ok_or("give FIELD=VALUE,..., as in radio.loss=0,0.3")?;
+        let field = Field::read(name.trim());
+        let field = field.ok_or_else(|| format!("{name:?} names no field; give one as in radio.loss"))?;
+        let mut values = Vec::new();
+        for word in list.split(',').map(str::trim) {
+            let ends = word.split_once("..").map(|(from, to)| (from.parse::<u32>(), to.parse::<u32>()));
+            if let Some((Ok(from), Ok(to))) = ends
+                && from <= to
+                && to - from < MOST
+            {
+                values.extend((from..=to).map(Value::from));
+                continue;
+            }
+            let table = format!("value = {word}").parse::<toml::Table>().ok();
+            let value = table.filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
+            values.push(Value::read(&value.unwrap_or_else(|| toml::Value::String(word.to_owned())))?);
+        }
+        Ok(Self { field, values })
+    }
+}
+
+impl Axes {
+    /// Replaces the values of axes; other fields become further axes. An axis may be named by the
+    /// end of its name.
+    pub fn change(&mut self, changes: &[Change]) -> Result<(), SweepError> {
+        let place = |change: &Change| format!("{}=...", change.field);
+        for change in changes {
+            let Change { field, values } = change.clone();
+            match find(self.axes.iter().map(|axis| axis.field.name()), field.name()) {
+                Some(index) => {
+                    let of_file = &self.axes[index];
+                    if of_file.field.name() == SCENARIO && values.iter().any(|value| !of_file.values.contains(value)) {
+                        let names: Vec<_> = of_file.values.iter().map(ToString::to_string).collect();
+                        let remedy = format!("give some of {}", names.join(", "));
+                        return Err(SweepError::new(place(change), "the plan has no such scenario", remedy));
+                    }
+                    (self.axes[index].values, self.axes[index].line) = (values, 0);
+                }
+                None => {
+                    self.groups.push(self.axes.len()..self.axes.len() + 1);
+                    self.axes.push(Axis { field, values, line: 0, is_log: false, is_range: false, span: 0..0 });
+                }
+            }
+        }
+        for group in &self.groups {
+            let [first, others @ ..] = &self.axes[group.clone()] else { continue };
+            let is_changed = first.span == (0..0) || changes.iter().any(|change| change.values == first.values);
+            if let Some(twice) = twice(&first.values).filter(|_| others.is_empty() && is_changed) {
+                let place = format!("{}=...", first.field);
+                return Err(SweepError::new(place, format!("{twice} is listed twice"), "leave one out"));
+            }
+            if let Some(other) = others.iter().find(|other| other.values.len() != first.values.len()) {
+                let [a, b] = [first, other].map(|axis| format!("{} values of {}", axis.values.len(), axis.field));
+                let what = format!("{a} cannot advance with {b}");
+                return Err(SweepError::new("--axis", what, "give as many values of each of them"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The name, or the only name that ends in `.part`.
+pub fn find<'a>(names: impl Iterator<Item = &'a str> + Clone, part: &str) -> Option<usize> {
+    let is_end = |name: &str| name.strip_suffix(part).is_some_and(|rest| rest.ends_with('.'));
+    names.clone().position(|name| name == part).or_else(|| {
+        let mut ends = names.enumerate().filter(|(_, name)| is_end(name)).map(|(index, _)| index);
+        ends.next().filter(|_| ends.next().is_none())
+    })
+}
+
 struct Entry<'a> {
     field: Field,
     span: Range<usize>,
     value: &'a toml::Value,
 }
 
-pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError> {
+/// `scenarios`: names of the scenarios if there are several; they are the first axis.
+pub fn read(source: &Source<'_>, file: &PlanFile, scenarios: Vec<Value>) -> Result<Axes, ScenarioError> {
     let mut all = Axes::default();
+    if let Some(field) = Field::read(SCENARIO).filter(|_| scenarios.len() > 1) {
+        all.groups.push(0..1);
+        all.axes.push(Axis { field, values: scenarios, line: 1, is_log: false, is_range: false, span: 0..0 });
+    }
     let root = source.root();
     for entry in entries(source, table(root, "axes", None), &file.axes)? {
         let axis = axis(source, entry)?;

@@ -9,7 +9,11 @@ use std::path::PathBuf;
 pub struct PlanFile {
     /// Letters, digits, `-` and `_`; results go to `out/<name>`.
     pub name: String,
-    pub scenario: PathBuf,
+    /// One line.
+    #[serde(default)]
+    pub title: String,
+    /// Several scenarios are the first axis.
+    pub scenario: Files,
     /// Default: the scenario's own seed.
     pub seeds: Option<Seeds>,
     /// Figures of `summary.json`. Default: all except the reasons for waiting.
@@ -28,6 +32,20 @@ pub struct PlanFile {
     /// Default: each recorded figure over the first axes.
     #[serde(default)]
     pub plot: Vec<PlotTable>,
+    /// Points of which the first run is drawn.
+    #[serde(default)]
+    pub picture: Vec<PictureTable>,
+    /// A CSV file with values of a paper: columns of axes, then of measures.
+    pub reference: Option<PathBuf>,
+    #[serde(default)]
+    pub accept: Vec<AcceptTable>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged, expecting = "invalid scenario, expected the name of a file, or a list of names")]
+pub enum Files {
+    One(PathBuf),
+    List(Vec<PathBuf>),
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -43,6 +61,8 @@ pub enum Seeds {
 pub struct SeedRange {
     pub from: u64,
     pub count: u32,
+    /// Number with `--quick`. Default: 1.
+    pub quick: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -83,4 +103,32 @@ pub struct PlotTable {
     pub over: String,
     /// The second axis: curves if it has a few values, else a map.
     pub and: Option<String>,
+}
+
+/// `[[picture]]`: moments of the first run of some points.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PictureTable {
+    /// Values of axes; a list for several. Default: all points.
+    #[serde(default, rename = "where")]
+    pub at: toml::Table,
+}
+
+/// `[[accept]]`: what the runs must show.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AcceptTable {
+    /// A figure that the plan records.
+    pub measure: String,
+    /// Values of axes; a list for several. Default: all points.
+    #[serde(default, rename = "where")]
+    pub at: toml::Table,
+    pub equals: Option<f64>,
+    pub at_most: Option<f64>,
+    pub at_least: Option<f64>,
+    /// Relative distance of the mean from the reference.
+    pub within: Option<f64>,
+    /// Whether limits are those of the mean, not of each run. Default: false.
+    #[serde(default)]
+    pub mean: bool,
 }

@@ -15,7 +15,7 @@ fn folder() -> TempDir {
 fn parse(folder: &TempDir, text: &str) -> Result<Plan, String> {
     let text = format!("name = 'p'\nscenario = 'duel.toml'\n{text}");
     let path = folder.path().join("plan.toml");
-    Plan::parse(&text, &path).map_err(|error| {
+    Plan::parse(&text, &path, &Changes::default()).map_err(|error| {
         let said = error.to_string();
         said.strip_prefix(&folder.path().display().to_string())
             .map_or_else(|| said.clone(), |rest| rest[1..].to_owned())
@@ -172,7 +172,7 @@ fn errors_name_the_plan_the_line_and_the_field() {
         (error("seeds = 'all'"), "plan.toml:3: seeds: invalid seeds, expected a number"),
         (
             error("measures = ['arrivd']"),
-            "plan.toml:3: measures[0]: arrivd is not a figure of summary.json; did you mean arrived?",
+            "plan.toml:3: measures[0]: arrivd is neither a figure of summary.json nor of a probe; did you mean arrived?",
         ),
         (error("measures = ['arrived', 'arrived']"), "plan.toml:3: measures[1]: arrived is listed twice"),
         (error("measures = []"), "plan.toml:3: measures: there is none"),
@@ -303,5 +303,81 @@ proptest! {
             prop_assert_eq!(run.number, number);
             prop_assert!(seen.insert((run.values.iter().map(|v| v.to_string()).collect::<Vec<_>>(), run.seed)));
         }
+    }
+}
+
+fn changed(text: &str, changes: &Changes) -> Result<Plan, String> {
+    let folder = folder();
+    let text = format!("name = 'p'\nscenario = 'duel.toml'\n{text}");
+    Plan::parse(&text, &folder.path().join("plan.toml"), changes).map_err(|error| error.to_string())
+}
+
+fn fields(texts: &[&str]) -> Changes {
+    let fields = texts.iter().map(|text| text.parse().expect("a change")).collect();
+    Changes { fields, ..Changes::default() }
+}
+
+#[test]
+fn the_command_line_changes_axes_seeds_and_other_fields() {
+    let text =
+        "seeds = { from = 5, count = 9, quick = 2 }\n[axes]\nradio.loss = [0, 1]\nplane.robots.circle.count = [4]\n";
+    let plan = changed(text, &fields(&["loss=0.5", "count=2..4", "plane.safety=none"])).expect("a plan");
+    assert_eq!(plan.axes().collect::<Vec<_>>(), ["radio.loss", "plane.robots.circle.count", "plane.safety"]);
+    assert_eq!((values(&plan, "loss").join(" "), values(&plan, "count").join(" ")), ("0.5".into(), "2 3 4".into()));
+    let seeds = |changes: Changes| {
+        let plan = changed(text, &changes).expect("a plan");
+        (plan.run(0).seed, plan.seeds())
+    };
+    assert_eq!(seeds(Changes::default()), (5, 9));
+    assert_eq!(seeds(Changes { is_quick: true, ..Changes::default() }), (5, 2));
+    assert_eq!(seeds(Changes { seed: Some(7), ..Changes::default() }), (7, 9));
+    assert_eq!(seeds(Changes { seeds: Some(20), ..Changes::default() }), (5, 20));
+    for (change, expected) in [
+        ("loss=0,0", "radio.loss=...: 0 is listed twice"),
+        ("radio.los=1", "duel.toml:6: radio.los: unknown field `los`"),
+        ("loss=2", "duel.toml:6: radio.loss: 2 is not a probability"),
+    ] {
+        let error = changed(text, &fields(&[change])).expect_err(change);
+        assert!(error.contains(expected), "{error}");
+    }
+    assert!("loss".parse::<Change>().is_err() && "a b=1".parse::<Change>().is_err());
+}
+
+#[test]
+fn several_scenarios_are_the_first_axis() {
+    let folder = folder();
+    fs::write(folder.path().join("six.toml"), SCENARIO.replace("count = 4", "count = 6")).expect("room");
+    let text = "name = 'p'\nscenario = ['duel.toml', 'six.toml']\n[axes]\nradio.loss = [0, 0.5]\n";
+    let load = |changes: &Changes| Plan::parse(text, &folder.path().join("plan.toml"), changes).expect("a plan");
+    let plan = load(&Changes::default());
+    assert_eq!((plan.runs(), plan.values_of(3)), (4, vec!["six".into(), "0.5".into()]));
+    let robots = |plan: &Plan, run| plan.scenario(&plan.run(run)).expect("a scenario").robots.len();
+    assert_eq!((robots(&plan, 0), robots(&plan, 3)), (4, 6));
+    assert_eq!(robots(&load(&fields(&["scenario=six"])), 0), 6);
+}
+
+#[test]
+fn wrong_acceptances_and_references_are_refused() {
+    let accept = |text: &str| error(&format!("measures = ['arrived']\n[axes]\nradio.loss = [0]\n[[accept]]\n{text}\n"));
+    for (said, expected) in [
+        (accept("measure = 'collisions'\nequals = 0"), "plan.toml:7: accept[0].measure: collisions is not measured"),
+        (accept("measure = 'arrived'"), "plan.toml:6: accept[0]: it has no limit"),
+        (accept("measure = 'arrived'\nat_least = 2\nat_most = 1"), "accept[0]: it has no limit"),
+        (accept("measure = 'arrived'\nwithin = 0.1"), "plan.toml:8: accept[0].within: there is no reference"),
+        (accept("measure = 'arrived'\nequals = 4\nwhere = { losses = 0 }"), "losses is not an axis"),
+        (accept("measure = 'arrived'\nequals = 4\nwhere = { loss = 0.5 }"), "0.5 is not a value of loss"),
+    ] {
+        assert!(said.contains(expected), "{said}");
+    }
+    let folder = folder();
+    for (table, expected) in [
+        ("losses,arrived\n0,4\n", "paper.csv:1: \"losses\" is neither an axis nor a measure"),
+        ("# comment\nloss,arrived\n0\n", "paper.csv:3: it does not fit the header"),
+        ("loss,arrived\n0,four\n", "paper.csv:2: it does not fit the header"),
+    ] {
+        fs::write(folder.path().join("paper.csv"), table).expect("room");
+        let text = "reference = 'paper.csv'\nmeasures = ['arrived']\n[axes]\nradio.loss = [0]\n";
+        let said = parse(&folder, text).expect_err(table);
+        assert!(said.contains(expected), "{said}");
     }
 }

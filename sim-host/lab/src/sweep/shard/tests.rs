@@ -1,6 +1,7 @@
 use super::*;
 use crate::sweep::aggregate;
 use crate::sweep::merge::Merged;
+use crate::sweep::plan::Changes;
 use crate::sweep::plan::Plan;
 use crate::sweep::row::checked;
 use crate::sweep::run::perform;
@@ -16,7 +17,8 @@ const PLAN: &str =
 fn folder() -> (TempDir, Plan) {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("duel.toml"), SCENARIO).expect("room");
-    let plan = Plan::parse(PLAN, &folder.path().join("plan.toml")).unwrap_or_else(|what| panic!("{what}"));
+    let plan = Plan::parse(PLAN, &folder.path().join("plan.toml"), &Changes::default())
+        .unwrap_or_else(|what| panic!("{what}"));
     (folder, plan)
 }
 
@@ -122,7 +124,7 @@ fn existing_rows_are_kept_unless_an_option_permits_it() {
         );
     }
     let text = PLAN.replace("0.25", "0.3");
-    let changed = Plan::parse(&text, &folder.path().join("plan.toml")).expect("a plan");
+    let changed = Plan::parse(&text, &folder.path().join("plan.toml"), &Changes::default()).expect("a plan");
     let before = fs::read(out.join("shards/1-of-2.csv")).expect("rows");
     for existing in [Existing::Refuse, Existing::Resume] {
         let ended = done(&changed, shard("1/2"), &out, existing, &|| true);
@@ -287,7 +289,8 @@ fn impossible_run_has_a_row_and_is_tried_again() {
         "name = 'walk'\nticks = 5\n[terrain]\nfile = 'land.map'\n[[robots.list]]\nstart = [0, 0]\ngoal = [2, 0]\n";
     fs::write(folder.path().join("duel.toml"), walk).expect("room");
     let text = "name = 'p'\nscenario = 'duel.toml'\n[axes]\nradio.loss = [0, 1]\n";
-    let plan = Plan::parse(text, &folder.path().join("plan.toml")).unwrap_or_else(|what| panic!("{what}"));
+    let plan = Plan::parse(text, &folder.path().join("plan.toml"), &Changes::default())
+        .unwrap_or_else(|what| panic!("{what}"));
     fs::remove_file(&map).expect("mine");
     let course = perform_all(&plan, &out, &["1/1"], Existing::Refuse);
     let (count, why) = course.impossible.expect("no land");

@@ -262,7 +262,7 @@ pub(super) fn build(
         match (spec.guidance == GuidanceKind::Formation, &group.robots, land) {
             (
                 true,
-                PlaneRobots { formation: Some(entry), list: None, circle: None, cloud: None, scattered: None },
+                PlaneRobots { formation: Some(entry), list: None, circle: None, cloud: None, scattered: None, .. },
                 Some(land),
             ) => {
                 let field = format!("{}.robots.formation", spec.table());
@@ -331,6 +331,22 @@ fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, S
     Ok(intruders)
 }
 
+fn wall_with_door(
+    source: &Source<'_>,
+    field: &str,
+    wall: &WallEntry,
+    door_m: f64,
+) -> Result<[Solid; 2], ScenarioError> {
+    let [from, to] = wall.points_m[..] else {
+        return Err(source.error(field, "only a wall of two points has a door", "give two points in points_m"));
+    };
+    let length_m = libm::hypot(to[0] - from[0], to[1] - from[1]);
+    within(source, field, door_m, 0.0, length_m, "metres, the length of the wall")?;
+    let at =
+        |along_m: f64| [0, 1].map(|axis| (from[axis] + to[axis] + (to[axis] - from[axis]) / length_m * along_m) / 2.0);
+    Ok([Solid::Wall([from, at(-door_m)]), Solid::Wall([at(door_m), to])])
+}
+
 fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
     let mut solids = Vec::new();
     for (index, wall) in table.wall.iter().enumerate() {
@@ -338,6 +354,10 @@ fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Resul
         if wall.points_m.len() < 2 || !is_sound {
             let field = format!("plane.wall[{index}].points_m");
             return Err(source.error(&field, "this is not a wall", "give two or more points in metres"));
+        }
+        if let Some(door_m) = wall.door_m {
+            solids.extend(wall_with_door(source, &format!("plane.wall[{index}].door_m"), wall, door_m)?);
+            continue;
         }
         let pairs = wall.points_m.windows(2).map(|pair| [pair[0], pair[1]]);
         solids.extend(pairs.map(Solid::Wall));

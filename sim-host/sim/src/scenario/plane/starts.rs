@@ -51,7 +51,8 @@ impl Placing<'_> {
         let mut placed = match (&robots.list, &robots.circle, &robots.cloud, &robots.scattered) {
             (Some(list), None, None, None) => {
                 checks::list(source, spec, list)?;
-                return self.list(spec, group, list);
+                within(source, &format!("{table}.noise_m"), robots.noise_m, 0.0, 1e6, "metres")?;
+                return self.list(spec, group, list, robots.noise_m);
             }
             (None, Some(circle), None, None) => {
                 count(source, &format!("{table}.circle.count"), circle.count)?;
@@ -87,13 +88,22 @@ impl Placing<'_> {
     }
 
     /// A robot whose body differs gets its own group.
-    fn list(&mut self, spec: &Spec, group: Option<usize>, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
+    fn list(
+        &mut self,
+        spec: &Spec,
+        group: Option<usize>,
+        list: &[PlaneRobotEntry],
+        noise_m: f64,
+    ) -> Result<(), ScenarioError> {
         let fixed = |place: Place| Target { position_m: place.0, velocity_mps: [0.0; 3] };
         for (index, entry) in list.iter().enumerate() {
             let own = spec.entry(&format!("{}.robots.list[{index}]", spec.table()), entry);
             let group = own.map(|own| self.add(&own)).transpose()?.or(group);
+            let mut rng = Rng::keyed(self.file.seed, STARTS, self.starts.len() as u32, 2);
+            let [x, y, z] = entry.start_m.0;
+            let mut noise = || (2.0 * unit(&mut rng) - 1.0) * noise_m;
             self.starts.push(Start {
-                position_m: entry.start_m.0,
+                position_m: [x + noise(), y + noise(), z],
                 velocity_mps: entry.velocity_mps.0,
                 places: entry.via_m.iter().copied().chain(entry.goal_m).map(fixed).collect(),
                 group,

@@ -136,6 +136,9 @@ const fn four() -> f64 {
 pub struct PlaneRobots {
     /// Individual robots.
     pub list: Option<Vec<PlaneRobotEntry>>,
+    /// Largest random offset of a listed start along each axis, metres. Default: 0.
+    #[serde(default)]
+    pub noise_m: f64,
     /// Robots evenly spaced on a circle, with goals on the opposite side.
     pub circle: Option<CircleEntry>,
     /// Robots at random places with the same goals.
@@ -309,6 +312,8 @@ pub struct WallEntry {
     /// Whether the last point is joined to the first: a polygon. Default: false.
     #[serde(default)]
     pub closed: bool,
+    /// Width of a door in the middle of a wall of two points, metres. Default: no door.
+    pub door_m: Option<f64>,
 }
 
 /// `[[plane.ball]]`.

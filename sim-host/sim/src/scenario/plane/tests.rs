@@ -258,6 +258,14 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             "s.toml:9: plane.wall[0].points_m: this is not a wall",
         ),
         (
+            after("[[plane.wall]]\npoints_m = [[1, 2], [3, 2], [3, 4]]\ndoor_m = 1\n"),
+            "s.toml:10: plane.wall[0].door_m: only a wall of two points has a door",
+        ),
+        (
+            after("[[plane.wall]]\npoints_m = [[1, 2], [3, 2]]\ndoor_m = 3\n"),
+            "s.toml:10: plane.wall[0].door_m: 3 is out of range; give 0 to 2 metres",
+        ),
+        (
             after("[[plane.ball]]\ncenter_m = [1, 2]\nradius_m = 0\n"),
             "s.toml:10: plane.ball[0].radius_m: 0 is out of range",
         ),
@@ -369,6 +377,25 @@ fn walls_are_chains_and_polygons() {
     let polygon = solids("closed = true\n");
     assert_eq!(polygon[..2], open[..]);
     assert_eq!(polygon[2], Solid::Wall([[3.0, 4.0], [1.0, 2.0]]));
+}
+
+#[test]
+fn a_door_is_in_the_middle_of_its_wall() {
+    let text = format!("{HEAD}{PLANE}{TWO}[[plane.wall]]\npoints_m = [[0, -5], [0, 5]]\ndoor_m = 0.8\n");
+    let walls = [[[0.0, -5.0], [0.0, -0.4]], [[0.0, 0.4], [0.0, 5.0]]].map(Solid::Wall);
+    assert_eq!(setup(&text).solids, walls);
+}
+
+#[test]
+fn listed_starts_are_off_by_their_noise() {
+    let noisy = |seed| setup(&format!("{HEAD}seed = {seed}\n{PLANE}{TWO}noise_m = 0.1\n")).starts;
+    let exact = setup(&format!("{HEAD}{PLANE}{TWO}")).starts;
+    for (start, exact) in noisy(1).iter().zip(&exact) {
+        let off = [0, 1].map(|axis| start.position_m[axis] - exact.position_m[axis]);
+        assert!(off.iter().all(|off| *off != 0.0 && off.abs() <= 0.1), "{off:?}");
+        assert_eq!((start.position_m[2], &start.places), (exact.position_m[2], &exact.places));
+    }
+    assert_ne!(noisy(1)[0].position_m, noisy(2)[0].position_m);
 }
 
 #[test]

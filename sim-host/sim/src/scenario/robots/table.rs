@@ -49,4 +49,7 @@ pub struct ScatteredEntry {
     pub count: u32,
     /// Farthest distance of a goal from its start along each axis, cells. Default: the whole map.
     pub travel: Option<u16>,
+    /// Smallest distance of a goal from its start along the longer axis, cells. Default: 0.
+    #[serde(default)]
+    pub least: u16,
 }

@@ -1,0 +1,94 @@
+//! Figures of papers: plans in `papers/PAPER/FIGURE/figure.toml`.
+
+use crate::sweep::report::VERDICT;
+use crate::sweep::{Plan, SweepError};
+use anyhow::Result;
+use staya_sim::record::Error;
+use staya_sim::scenario::nearest;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const FILE: &str = "figure.toml";
+const HERE: &str = "papers";
+/// The checkout that the program was built in.
+const CHECKOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../papers");
+
+/// A figure of a paper.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// File of the plan.
+    pub path: PathBuf,
+    /// `PAPER/FIGURE`.
+    pub place: String,
+    /// Short name; results go to `out/NAME`.
+    pub name: String,
+    /// Title of the plan; may be empty.
+    pub title: String,
+}
+
+impl Figure {
+    /// Folder of the results.
+    #[must_use]
+    pub fn out(&self) -> PathBuf {
+        Path::new("out").join(&self.name)
+    }
+
+    /// Verdict on the last complete run; `None` without one.
+    #[must_use]
+    pub fn verdict(&self) -> Option<String> {
+        let text = fs::read_to_string(self.out().join(VERDICT)).ok()?;
+        text.lines().next().map(str::to_owned)
+    }
+}
+
+/// All figures, sorted by place: those below `papers/` here, or of the checkout of the program.
+///
+/// # Errors
+/// A folder or a figure cannot be read.
+pub fn all() -> Result<Vec<Figure>> {
+    let root = [HERE, CHECKOUT].map(Path::new).into_iter().find(|root| root.is_dir());
+    let Some(root) = root else {
+        let what = "there is no such folder here";
+        return Err(SweepError::new(HERE, what, "change to a checkout, or name the file of a plan").into());
+    };
+    let mut figures = Vec::new();
+    for path in folders(root)?.iter().map(|paper| folders(paper)).collect::<Result<Vec<_>, _>>()?.concat() {
+        let file = path.join(FILE);
+        if file.is_file() {
+            let (name, title) = Plan::title(&file)?;
+            let place = path.strip_prefix(root).unwrap_or(&path).display().to_string();
+            figures.push(Figure { path: file, place, name, title });
+        }
+    }
+    Ok(figures)
+}
+
+fn folders(root: &Path) -> Result<Vec<PathBuf>, Error> {
+    let entries = fs::read_dir(root).map_err(Error::new("read directory", root))?;
+    let mut folders: Vec<_> = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    folders.sort();
+    Ok(folders)
+}
+
+/// The figure with this short name or place, or the plan in this file.
+///
+/// # Errors
+/// There is no such figure, or it cannot be read.
+pub fn find(name: &str) -> Result<Figure> {
+    let path = PathBuf::from(name);
+    if path.is_file() {
+        let (short, title) = Plan::title(&path)?;
+        return Ok(Figure { path, place: name.to_owned(), name: short, title });
+    }
+    let figures = all()?;
+    let place = name.trim_end_matches('/').trim_start_matches("papers/");
+    if let Some(figure) = figures.iter().find(|figure| figure.name == name || figure.place == place) {
+        return Ok(figure.clone());
+    }
+    let names = figures.iter().flat_map(|figure| [&figure.name, &figure.place]).map(String::as_str);
+    let remedy = match nearest(name, names) {
+        Some(near) => format!("did you mean {near}?"),
+        None => "`staya experiment` lists all".to_owned(),
+    };
+    Err(SweepError::new(name, "there is no such experiment", remedy).into())
+}
