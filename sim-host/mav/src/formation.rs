@@ -1,4 +1,4 @@
-//! Orders that give a formation a new shape and goal. [`Shape`] builds a [`Graph`], [`orders`]
+//! Orders that give a formation a new shape and goal. [`Shape`] builds a [`Graph`], `orders`
 //! encodes it, and [`station::give`] sends the frames until every robot has confirmed them.
 //!
 //! Shapes face east; [`Graph::turned`] turns them. Robots get places in the order of their numbers,

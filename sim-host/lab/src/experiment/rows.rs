@@ -3,8 +3,7 @@
 use super::{Experiment, ProgressCallback};
 use crate::sweep::design::Design;
 use crate::sweep::merge::Merged;
-use crate::sweep::row::{Outcome, Row};
-use crate::sweep::run::Finished;
+use crate::sweep::row::{Finished, Outcome, Row};
 use crate::sweep::shard::{Course, Existing, files, perform_shard};
 use crate::sweep::{Figure, Shard, Value, aggregate, jobs, schema};
 use anyhow::{Result, ensure};

@@ -21,6 +21,17 @@ pub struct Row {
     pub trace_hash: String,
 }
 
+/// A completed run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// Record of the run.
+    pub row: Row,
+    /// Wall time, seconds.
+    pub seconds: f64,
+    /// Reason for an impossible run.
+    pub refusal: Option<String>,
+}
+
 /// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {

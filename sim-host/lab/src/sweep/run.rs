@@ -2,7 +2,7 @@
 
 use crate::sweep::plan::Plan;
 use crate::sweep::probe::{self, Kind};
-use crate::sweep::row::{Outcome, Row};
+use crate::sweep::row::{Finished, Outcome, Row};
 use crate::sweep::value::Figure;
 use staya_plot::flock::Sheet;
 use staya_plot::motion_sheet;
@@ -12,17 +12,6 @@ use staya_sim::summary::Summary;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-
-/// A completed run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finished {
-    /// Record of the run.
-    pub row: Row,
-    /// Wall time, seconds.
-    pub seconds: f64,
-    /// Reason for an impossible run.
-    pub refusal: Option<String>,
-}
 
 /// Makes a run; `None` if `may_continue` stops it between two ticks.
 pub fn perform(plan: &Plan, number: u64, may_continue: impl Fn() -> bool) -> Option<Finished> {

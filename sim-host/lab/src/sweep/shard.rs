@@ -6,8 +6,7 @@
 use crate::sweep::SweepError;
 use crate::sweep::design::Design;
 use crate::sweep::jobs;
-use crate::sweep::row::{Outcome, Row, header, is_older_header};
-use crate::sweep::run::Finished;
+use crate::sweep::row::{Finished, Outcome, Row, header, is_older_header};
 use staya_sim::file::{MAP, read};
 use staya_sim::record::{Error, make_dir};
 use std::collections::BTreeSet;

@@ -35,7 +35,7 @@ pub struct Axes {
     pub set: Vec<(Field, Value, Range<usize>)>,
 }
 
-/// A field's values on the command line, instead of the plan's: `radio.loss=0,0.3` or `count=2..64`.
+/// A field's values on the command line, instead of the plan's: `radio.loss=0,0.3`, `count=2..64`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     field: Field,
