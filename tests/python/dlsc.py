@@ -1,6 +1,6 @@
 """Discs that negotiate in the mazes and forests of DLSC-GC, read from a clone of github.com/qwerty35/dlsc_gc_planner.
 
-    STAYA=target/release/staya python tests/python/dlsc.py CLONE dense|sparse|forest [--loss 0.3] [--seeds 11,12,13] [--restarts 3]
+    STAYA=target/release/staya python tests/python/dlsc.py CLONE dense|sparse|forest [--loss 0.3] [--seeds 11,12] [--restarts 3]
 
 Ten discs of 0.15 m at 1 m/s and 2 m/s^2 in cells of 0.5 m, radio range 3 m, at most 120 s. With --restarts, three of them at
 random are down for that many seconds, from a second between the second and the twelfth. Prints each run that is not complete,
