@@ -13,7 +13,7 @@ use staya_controller::geom::Vec3;
 use staya_controller::time::Duration as Valid;
 use staya_record::page;
 use staya_record::recording::RunRecorder;
-use staya_sim::engine::{Moment, Operated, operated};
+use staya_sim::engine::{Engine, Moment, operated};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Intervention, Overrides, Scenario, Setting, with_interventions, with_settings};
 use staya_sim::summary::Summary;
@@ -44,7 +44,7 @@ pub struct Run {
 struct Inner {
     scenario: Scenario,
     text: String,
-    engine: Box<dyn Operated>,
+    engine: Engine,
     tick: u32,
     done: Vec<(u32, Intervention)>,
     /// Commanded velocities, m/s; `None` for robots with their own law, empty before a command.
@@ -73,7 +73,7 @@ impl Inner {
     fn advance(&mut self) -> PyResult<()> {
         let began = Instant::now();
         self.command()?;
-        self.engine.advance();
+        self.engine.step();
         self.tick += 1;
         self.wall_seconds += began.elapsed().as_secs_f64();
         if let Some(trace) = &mut self.trace {

@@ -1,11 +1,10 @@
 //! Applies [`Intervention`]s to a running simulation.
 
-use super::{Engine, Ground, HostLaw};
+use super::Engine;
 use crate::scenario::{Fault, Intervention};
 use crate::world::Refusal;
 use crate::world::plane::Shape;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::Safety;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 
@@ -40,16 +39,12 @@ pub(super) struct Tuned {
     value: f32,
 }
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
+impl Engine {
     /// Applies the scenario's terrain changes of this tick.
     pub fn change_land(&mut self) {
         for (number, rule) in self.changes.iter().enumerate().filter(|(_, rule)| rule.is_due(self.tick)) {
-            let due = self.ground.terrain().map(|land| rule.due(number, self.seed, self.tick, land));
+            let land = self.ground.view(self.tick).terrain;
+            let due = land.map(|land| rule.due(number, self.seed, self.tick, land));
             if let Some(cells) = due.filter(|cells| !cells.is_empty()) {
                 // Cannot fail: the terrain exists.
                 let _ = self.ground.change(self.tick, Change::Land(&cells));
@@ -117,7 +112,7 @@ where
         if self.external.is_some() {
             return Err(Refusal::new("kind", "some of these robots run elsewhere", "run them here"));
         }
-        if !self.ground.is_open(place_m) {
+        if !self.ground.view(self.tick).is_open(place_m) {
             return Err(Refusal::new(
                 "place_m",
                 "no robot can stand there",
@@ -138,7 +133,7 @@ where
             if !robots.contains(&self.number(index)) {
                 continue;
             }
-            let (task, is_up) = (self.ground.task(self.number(index), self.tick), self.is_up(index));
+            let ((_, task), is_up) = (self.ground.setup(self.number(index), self.tick), self.is_up(index));
             let agent = self.computers[index].agent.as_mut();
             // A robot that is down receives the goal at its restart.
             is_of_use |= agent.filter(|_| is_up).is_none_or(|agent| agent.assign(&task).is_ok());

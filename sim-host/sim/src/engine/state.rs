@@ -1,29 +1,24 @@
 //! Saves and restores single robots and whole runs, in postcard format. The bytes contain keys.
 //! Constant data is not saved: restore into an engine of the same scenario and program version.
 
-use super::{Engine, Ground, HostAgent, HostLaw, OnboardComputer, Status};
+use super::{Engine, HostAgent, OnboardComputer, Status};
 use crate::engine::attacker::AttackerState;
 use crate::engine::hash::StateHash;
 use crate::engine::intervene::Tuned;
 use crate::engine::intruder::IntruderState;
 use crate::engine::key_server::KeeperState;
-use crate::metrics::waits;
+use crate::metrics::{FormationMeters, waits};
 use crate::radio::{End, Weather};
 use crate::record::PacketCounts;
 use crate::scenario::Fault;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Agent, Command, Safety};
+use staya_controller::agent::{Agent, Command};
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 use std::fmt;
 use thiserror::Error;
-
-/// State that can be saved and restored.
-pub trait State: Serialize + DeserializeOwned + Sync {}
-
-impl<T: Serialize + DeserializeOwned + Sync> State for T {}
 
 /// A run that can be saved.
 pub trait Saves {
@@ -40,12 +35,7 @@ impl fmt::Debug for dyn Saves + '_ {
     }
 }
 
-impl<W, G, A> Saves for Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
+impl Saves for Engine {
     fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError> {
         Self::save(self, bytes)
     }
@@ -76,7 +66,8 @@ impl StateError {
     }
 }
 
-struct Reader<'a> {
+/// Reads values in postcard format, and knows where it is.
+pub struct Reader<'a> {
     all: &'a [u8],
     rest: &'a [u8],
 }
@@ -90,7 +81,7 @@ impl<'a> Reader<'a> {
         self.all.len() - self.rest.len()
     }
 
-    fn read<T: DeserializeOwned>(&mut self, what: &str) -> Result<T, StateError> {
+    pub(super) fn read<T: DeserializeOwned>(&mut self, what: &str) -> Result<T, StateError> {
         let mut from = postcard::Deserializer::from_bytes(self.rest);
         let value = T::deserialize(&mut from);
         // Position at which decoding stopped; the start if it is unknown.
@@ -108,16 +99,21 @@ impl<'a> Reader<'a> {
             Err(_) => Err(StateError::new(stopped_at, format!("{what} makes no sense"), REMEDY)),
         }
     }
+
+    /// The error for values that this engine cannot have.
+    pub(super) fn unfit(&self, what: &'static str) -> StateError {
+        StateError::new(self.at(), what, SAME)
+    }
 }
 
-fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
+pub(super) fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
     // Cannot fail: all sequences have a length, and a `Vec` accepts every byte.
     let done = postcard::to_extend(value, std::mem::take(bytes));
     *bytes = done.expect("states have a form");
 }
 
 #[derive(Serialize, Deserialize)]
-struct Robot<B> {
+struct Robot {
     mail: Vec<u8>,
     boot: u8,
     epoch: u32,
@@ -129,11 +125,10 @@ struct Robot<B> {
     command: Command<f32>,
     arrived: Option<u64>,
     waits: waits::Robot,
-    body: B,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Whole<S> {
+struct Whole {
     seed: u64,
     robots: usize,
     tick: u32,
@@ -145,15 +140,10 @@ struct Whole<S> {
     throttled: u64,
     waited: Vec<(u64, u32)>,
     weather: Weather,
-    ground: S,
+    meter: Option<FormationMeters>,
 }
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
+impl Engine {
     /// Appends the mutable state of robot `index`: body, computer with agent and mail, hash,
     /// statistics and radio. Call it between ticks. O(bytes).
     ///
@@ -174,9 +164,9 @@ where
             command: self.commands[index].clone(),
             arrived: self.arrivals.times()[index],
             waits: self.waits.robot(index),
-            body: self.ground.body(index),
         };
         write(&robot, bytes);
+        self.ground.save_body(index, bytes);
         write(&self.radio.end(index), bytes);
     }
 
@@ -196,14 +186,12 @@ where
             let what = format!("this is robot {}, not robot {}", id.0, own.0);
             return Err(StateError::new(0, what, SAME));
         }
-        let agent: Option<HostAgent<G, A>> = from.read("an agent")?;
-        let at = from.at();
-        let robot: Robot<W::Body> = from.read("a robot")?;
-        let unfit = |at: usize| move |what: &'static str| StateError::new(at, what, SAME);
-        self.ground.set_body(index, robot.body).map_err(unfit(at))?;
-        let at = from.at();
+        let agent: Option<HostAgent> = from.read("an agent")?;
+        let robot: Robot = from.read("a robot")?;
+        let number = self.number(index);
+        self.ground.load_body(number, Some(index), &mut from)?;
         let end: End = from.read("an end of the radio")?;
-        self.radio.set_end(index, end).map_err(unfit(at))?;
+        self.radio.set_end(index, end).map_err(|what| from.unfit(what))?;
         let Robot { mail, boot, epoch, down_until, sent_bytes, heard_bytes, .. } = robot;
         self.computers[index] = OnboardComputer {
             agent,
@@ -254,9 +242,10 @@ where
             throttled: self.throttled,
             waited: self.waits.ticks(),
             weather: self.radio.weather(),
-            ground: self.ground.shared(),
+            meter: self.meter.clone(),
         };
         write(&whole, bytes);
+        self.ground.save_shared(bytes);
         for attacker in &self.attackers {
             write(&attacker.state(), bytes);
         }
@@ -288,13 +277,21 @@ where
         if self.tick > 0 || self.external.is_some() {
             return Err(StateError::new(0, "this run is under way", "restore into one before its first tick"));
         }
-        let whole: Whole<W::Shared> = from.read("the head of the run")?;
+        let whole: Whole = from.read("the head of the run")?;
         if (whole.seed, whole.robots) != (self.seed, self.robots.len()) {
             let what = format!("it is of {} robots and seed {}", whole.robots, whole.seed);
             return Err(StateError::new(0, what, SAME));
         }
-        let unfit = |what: &'static str| StateError::new(0, what, SAME);
-        self.ground.set_shared(whole.ground).map_err(unfit)?;
+        let is_same = match (&self.meter, &whole.meter) {
+            (Some(meter), Some(measured)) => meter.is_of(measured),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_same {
+            return Err(StateError::new(0, "it is of another formation", SAME));
+        }
+        self.meter = whole.meter;
+        self.ground.load_shared(&mut from)?;
         self.tick = whole.tick;
         let done = self.interventions.len().saturating_sub(whole.interventions);
         self.interventions.drain(..done);
@@ -322,10 +319,9 @@ where
             }
         }
         for index in (self.here.len()..).take(attackers + intruders + keepers) {
-            let at = from.at();
             let end: End = from.read("an end of the radio")?;
             if index < self.positions_m.len() {
-                self.radio.set_end(index, end).map_err(|what| StateError::new(at, what, SAME))?;
+                self.radio.set_end(index, end).map_err(|what| from.unfit(what))?;
             }
         }
         let here: HashMap<usize, usize> = (0..self.here.len()).map(|index| (self.number(index), index)).collect();
@@ -349,9 +345,9 @@ where
     fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
         let _: RobotId = from.read("the number of a robot")?;
-        let _: Option<HostAgent<G, A>> = from.read("an agent")?;
-        let robot: Robot<W::Body> = from.read("a robot")?;
-        self.ground.note(number, robot.body);
+        let _: Option<HostAgent> = from.read("an agent")?;
+        let _: Robot = from.read("a robot")?;
+        self.ground.load_body(number, None, &mut from)?;
         let _: End = from.read("an end of the radio")?;
         Ok(from.at())
     }

@@ -1,17 +1,11 @@
 //! Transmitters outside the swarm: attackers, intruders and the key server.
 
-use super::{Engine, Ground, HostLaw};
+use super::Engine;
 use crate::radio::HostWire;
-use staya_controller::agent::Safety;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Ring;
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
+impl Engine {
     /// Lets attackers receive and prepare frames.
     pub fn attack(&mut self) {
         let robots = self.computers.len();
@@ -42,8 +36,8 @@ where
     /// Lets intruders prepare beacons.
     pub fn intrude(&mut self) {
         let first = self.computers.len() + self.attackers.len();
-        let positions_m = self.positions_m.iter_mut().skip(first);
-        for ((intruder, position_m), disc) in self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard()) {
+        let (positions_m, view) = (self.positions_m.iter_mut().skip(first), self.ground.view(self.tick));
+        for ((intruder, position_m), disc) in self.intruders.iter_mut().zip(positions_m).zip(view.heard()) {
             intruder.speak(disc);
             *position_m = intruder.position_m;
         }

@@ -1,8 +1,8 @@
 //! Saves and restores the mutable state of the plane.
 
 use super::{PlaneGround, frames};
-use crate::engine::grid::{Changed, restore_meter};
-use crate::metrics::FormationMeters;
+use crate::engine::grid::Changed;
+use crate::engine::state::{Reader, StateError, write};
 use crate::scenario::{Order, Target};
 use crate::world::plane::{Clearance, Solid};
 use crate::world::scouts::Memory;
@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 
 /// Includes the task that its robot gets at a restart.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct PlaneBody {
+struct PlaneBody {
     position_m: [f64; 3],
     velocity_mps: [f64; 3],
     goal: Cell,
@@ -23,10 +23,9 @@ pub struct PlaneBody {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-pub struct PlaneShared {
+struct PlaneShared {
     clearance: Clearance,
     gap_m: Option<f64>,
-    meter: Option<FormationMeters>,
     changed: Changed,
     solids: Vec<Solid>,
     orders: Vec<Order>,
@@ -39,9 +38,9 @@ fn is_finite(vectors: &[[f64; 3]]) -> bool {
 }
 
 impl PlaneGround {
-    pub(super) fn body_now(&self, index: usize) -> PlaneBody {
+    pub(super) fn write_body(&self, index: usize, bytes: &mut Vec<u8>) {
         let (disc, number) = (&self.plane.discs()[index], self.number(index));
-        PlaneBody {
+        let body = PlaneBody {
             position_m: disc.position_m,
             velocity_mps: disc.velocity_mps,
             goal: self.robots[number].goal,
@@ -49,56 +48,58 @@ impl PlaneGround {
             since: self.since[number],
             shut: self.plane.shut(index).to_vec(),
             seen: self.scouts.as_ref().map(|scouts| scouts.memory(index).clone()),
-        }
+        };
+        write(&body, bytes);
     }
 
-    pub(super) fn put_body(&mut self, index: usize, mut body: PlaneBody) -> Result<(), &'static str> {
-        if !is_finite(&[body.position_m, body.velocity_mps]) {
-            return Err("its body is nowhere");
-        }
-        self.plane.put(index, body.position_m, body.velocity_mps);
-        self.plane.put_shut(index, std::mem::take(&mut body.shut));
-        if let (Some(scouts), Some(seen)) = (&mut self.scouts, body.seen.take()) {
-            scouts.put(index, seen);
-        }
-        self.note_body(self.number(index), body);
-        Ok(())
-    }
-
-    pub(super) fn note_body(&mut self, number: usize, body: PlaneBody) {
-        let PlaneBody { goal, places, since, .. } = body;
+    pub(super) fn read_body(
+        &mut self,
+        number: usize,
+        index: Option<usize>,
+        from: &mut Reader<'_>,
+    ) -> Result<(), StateError> {
+        let PlaneBody { position_m, velocity_mps, goal, places, since, shut, seen } = from.read("a body")?;
         self.robots[number].goal = goal;
         self.setup.starts[number].places = places;
         self.since[number] = since;
+        let Some(index) = index else { return Ok(()) };
+        if !is_finite(&[position_m, velocity_mps]) {
+            return Err(from.unfit("its body is nowhere"));
+        }
+        self.plane.put(index, position_m, velocity_mps);
+        self.plane.put_shut(index, shut);
+        if let (Some(scouts), Some(seen)) = (&mut self.scouts, seen) {
+            scouts.put(index, seen);
+        }
+        Ok(())
     }
 
-    pub(super) fn shared_now(&self) -> PlaneShared {
+    pub(super) fn write_shared(&self, bytes: &mut Vec<u8>) {
         let intruders = self.plane.intruders().iter();
-        PlaneShared {
+        let shared = PlaneShared {
             clearance: self.clearance,
             gap_m: self.gap_m,
-            meter: self.meter.clone(),
             changed: self.changed.clone(),
             solids: self.plane.solids().to_vec(),
             orders: self.setup.orders.clone(),
             intruders: intruders.map(|disc| [disc.position_m, disc.velocity_mps]).collect(),
             past: self.sight.as_ref().map(|sight| sight.past().clone()).unwrap_or_default(),
-        }
+        };
+        write(&shared, bytes);
     }
 
-    pub(super) fn put_shared(&mut self, shared: PlaneShared) -> Result<(), &'static str> {
-        let PlaneShared { clearance, gap_m, meter, changed, solids, orders, intruders, past } = shared;
+    pub(super) fn read_shared(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        let PlaneShared { clearance, gap_m, changed, solids, orders, intruders, past } = from.read("the plane")?;
         if intruders.len() != self.plane.intruders().len() || !is_finite(intruders.as_flattened()) {
-            return Err("it has other intruders");
+            return Err(from.unfit("it has other intruders"));
         }
         if let Some(sight) = &mut self.sight {
             let bodies = self.plane.discs().len() + self.plane.intruders().len();
             if past.is_empty() || past.iter().any(|places| places.len() != bodies || !is_finite(places)) {
-                return Err("its robots have seen others");
+                return Err(from.unfit("its robots have seen others"));
             }
             sight.put_past(past);
         }
-        restore_meter(&mut self.meter, meter)?;
         for (&(x, y), &class) in &changed {
             self.plane.put_cell(Cell::new(x, y), class);
         }
