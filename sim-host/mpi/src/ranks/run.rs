@@ -195,9 +195,7 @@ impl<'a> Rank<'a> {
         let refused = engine.decide();
         self.hand_out_keys()?;
         let engine = &mut self.engine;
-        engine.attack();
-        engine.intrude();
-        engine.keep_keys();
+        engine.transmit();
 
         let tick = engine.tick;
         let sent = engine.send();
@@ -303,11 +301,8 @@ impl<'a> Rank<'a> {
 
     pub(super) fn tell_region(&mut self) -> Result<(), RankError> {
         let engine = &self.engine;
-        let attackers = engine.attackers.iter().map(|attacker| attacker.place_m());
-        let keeper = engine.keeper.iter().map(|keeper| keeper.place_m());
-        let heard = engine.view().heard().map(|disc| [disc.position_m[0], disc.position_m[1]]);
-        let intruders = heard.take(engine.intruders.len());
-        let own = Region::new(self.places(), attackers.chain(keeper).chain(intruders));
+        let intruders = engine.view().intruders;
+        let own = Region::new(self.places(), engine.others.iter().map(|other| other.place_m(intruders)));
         let all = self.wire.gather(encode(&own))?;
         let all = all.iter().enumerate().map(|(rank, bytes)| decode(rank, "a region", bytes));
         self.wire.regions = all.collect::<Result<_, _>>()?;

@@ -117,9 +117,7 @@ impl Rank<'_> {
 
     /// Each rank takes its own robots, rank 0 the statistics.
     pub(super) fn restore(&mut self, bytes: &[u8]) -> Result<(), RankError> {
-        let heard = self.engine.view().heard().count();
-        let others = [self.scenario.attacks.len(), heard, usize::from(self.scenario.keeping.is_some())];
-        let restored = self.engine.restore_part(bytes, others);
+        let restored = self.engine.restore_part(bytes);
         if self.wire.rank() > 0 {
             Totals::none().exchange(&mut self.engine);
         }

@@ -4,10 +4,9 @@ use super::Status;
 use super::body::Kinematics;
 use super::ground::{Ground, Senses, StateWords, View};
 use super::hash::grid_words;
-use super::intervene::Change;
 use super::state::{Reader, StateError, write};
 use crate::record::Motion;
-use crate::scenario::{Robot, Scenario};
+use crate::scenario::{Intervention, Robot, Scenario};
 use crate::world::scouts::{Memory, Scouts};
 use crate::world::{Body, Misplaced, Refusal, World};
 use serde::{Deserialize, Serialize};
@@ -205,20 +204,19 @@ impl Ground for Grid {
         self.robots[number].goal = self.world.terrain().nearest_cell([x, y]);
     }
 
-    fn change(&mut self, _: u32, change: Change<'_>) -> Result<(), Refusal> {
-        match change {
-            Change::Cell([x, y], class) => {
-                self.world.set_cell(Cell::new(x, y), class)?;
-                self.changed.insert((x, y), class);
-                Ok(())
-            }
-            Change::Land(cells) => {
-                self.world.change(cells);
-                self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
-                Ok(())
-            }
-            _ => Err(Refusal::new("kind", "these robots go from cell to cell", "change cells of the land instead")),
-        }
+    fn change(&mut self, _: u32, what: &Intervention) -> Result<(), Refusal> {
+        let Intervention::Cell { cell: [x, y], class } = *what else {
+            let what = "these robots go from cell to cell";
+            return Err(Refusal::new("kind", what, "change cells of the land instead"));
+        };
+        self.world.set_cell(Cell::new(x, y), class)?;
+        self.changed.insert((x, y), class);
+        Ok(())
+    }
+
+    fn change_land(&mut self, cells: &[(Cell, u8)]) {
+        self.world.change(cells);
+        self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
     }
 
     fn target_m(&self, _: usize, _: u32, status: &Status) -> Option<[f64; 3]> {

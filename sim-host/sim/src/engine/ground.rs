@@ -1,13 +1,14 @@
 //! The interface between the engine and a world: sensing, and execution of commands.
 
 use super::state::{Reader, StateError};
-use super::{Change, Grid, PlaneGround, Status};
+use super::{Grid, PlaneGround, Status};
 use crate::record::Motion;
-use crate::scenario::Scenario;
+use crate::scenario::{Intervention, Scenario};
 use crate::terrain::Terrain;
 use crate::world::plane::{Clearance, Disc, Solid};
 use crate::world::{Misplaced, Refusal};
 use staya_controller::agent::{AgentConfig, AnyInputs, Command, Task, WAYPOINTS};
+use staya_controller::grid::Cell;
 use staya_controller::neighbor::Sighting;
 use staya_controller::obstacle::Obstacle;
 use std::ops::{Deref, DerefMut};
@@ -77,11 +78,16 @@ pub trait Ground: Send + Sync {
     /// Sets the goal of a robot from `tick` on.
     fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]);
 
-    /// Changes the world before `tick`.
+    /// Changes the world before `tick`. Interventions in robots and their radio have no effect here.
     ///
     /// # Errors
     /// The cell, obstacle or goal does not exist in this world.
-    fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal>;
+    fn change(&mut self, tick: u32, what: &Intervention) -> Result<(), Refusal>;
+
+    /// Gives new classes to cells, by a rule of the scenario
+    /// ([`LandChange`](crate::terrain::change::LandChange)). A robot inside a closing cell may
+    /// leave; no robot may enter.
+    fn change_land(&mut self, cells: &[(Cell, u8)]);
 
     /// The world at `tick`. O(goals).
     fn view(&self, tick: u32) -> View<'_>;
@@ -108,12 +114,7 @@ pub struct View<'a> {
     pub orders: &'a [u8],
 }
 
-impl<'a> View<'a> {
-    /// Foreign bodies that send beacons.
-    pub fn heard(&self) -> impl Iterator<Item = &'a Disc> + use<'a> {
-        self.intruders.iter().filter(|intruder| intruder.id.is_some())
-    }
-
+impl View<'_> {
     /// Whether a body could stand at a place, metres.
     #[must_use]
     pub fn is_open(&self, [x, y, _]: [f64; 3]) -> bool {

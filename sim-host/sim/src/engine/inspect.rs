@@ -4,7 +4,7 @@ use super::witness::Asked;
 use super::{Engine, Senses, Tick, WIDE};
 use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Law as _};
 use staya_controller::cost::TICK;
-use staya_controller::geom::Position;
+use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::{Parameter, Parameters};
@@ -182,28 +182,24 @@ pub(super) fn listed(each: impl FnOnce(&mut dyn FnMut(&mut dyn Parameters))) -> 
 
 fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Permitted> {
     let Asked { body, nearby, obstacles, .. } = asked;
+    let space = |(index, hard): (usize, usize), point_mps: [f32; 3], normal: [f32; 3]| Permitted {
+        point_mps,
+        normal,
+        is_of_obstacle: index < hard,
+    };
     match layer {
         AnySafety::Orca(layer) => {
             let (hard, planes) = layer.avoider().half_spaces(body, nearby, obstacles);
             let planes = planes.iter().enumerate();
             planes
-                .map(|(index, plane)| Permitted {
-                    point_mps: [plane.point.x, plane.point.y, 0.0],
-                    normal: [plane.normal.x, plane.normal.y, 0.0],
-                    is_of_obstacle: index < hard,
-                })
+                .map(|(at, p)| space((at, hard), [p.point.x, p.point.y, 0.0], [p.normal.x, p.normal.y, 0.0]))
                 .collect()
         }
         AnySafety::Fly(layer) => {
             let (hard, spaces) = layer.avoider().half_spaces(body, nearby, obstacles);
             let spaces = spaces.iter().enumerate();
-            spaces
-                .map(|(index, space)| Permitted {
-                    point_mps: [space.point.x, space.point.y, space.point.z],
-                    normal: [space.normal.x, space.normal.y, space.normal.z],
-                    is_of_obstacle: index < hard,
-                })
-                .collect()
+            let all = |v: &Vec3<f32>| [v.x, v.y, v.z];
+            spaces.map(|(at, s)| space((at, hard), all(&s.point), all(&s.normal))).collect()
         }
         AnySafety::Unguarded(_) | AnySafety::PushOut(_) => Vec::new(),
     }

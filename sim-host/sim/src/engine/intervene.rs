@@ -3,34 +3,8 @@
 use super::Engine;
 use crate::scenario::{Fault, Intervention};
 use crate::world::Refusal;
-use crate::world::plane::Shape;
 use serde::{Deserialize, Serialize};
-use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
-
-/// A change of the world itself.
-#[derive(Clone, Copy, Debug)]
-pub enum Change<'a> {
-    /// See [`Intervention::Waypoint`].
-    Waypoint {
-        /// Index of the goal.
-        goal: u8,
-        /// New position, metres.
-        place_m: [f64; 3],
-    },
-    /// See [`Intervention::Solid`].
-    Solid(&'a Shape),
-    /// See [`Intervention::Move`].
-    Move(usize, [f64; 2]),
-    /// See [`Intervention::Remove`].
-    Remove(usize),
-    /// See [`Intervention::Cell`].
-    Cell([i16; 2], u8),
-    /// Cells with their new class, by a rule of the scenario
-    /// ([`LandChange`](crate::terrain::change::LandChange)). A robot inside a closing cell may
-    /// leave; no robot may enter.
-    Land(&'a [(Cell, u8)]),
-}
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Tuned {
@@ -46,8 +20,7 @@ impl Engine {
             let land = self.ground.view(self.tick).terrain;
             let due = land.map(|land| rule.due(number, self.seed, self.tick, land));
             if let Some(cells) = due.filter(|cells| !cells.is_empty()) {
-                // Cannot fail: the terrain exists.
-                let _ = self.ground.change(self.tick, Change::Land(&cells));
+                self.ground.change_land(&cells);
             }
         }
     }
@@ -82,18 +55,12 @@ impl Engine {
                 self.radio.change(*loss, *range_m);
                 Ok(())
             }
-            Intervention::Waypoint { goal, place_m } => {
-                self.change(Change::Waypoint { goal: *goal, place_m: *place_m })
-            }
-            Intervention::Solid { solid } => self.change(Change::Solid(solid)),
-            Intervention::Move { index, by_m } => self.change(Change::Move(*index, *by_m)),
-            Intervention::Remove { index } => self.change(Change::Remove(*index)),
-            Intervention::Cell { cell, class } => self.change(Change::Cell(*cell, *class)),
+            Intervention::Waypoint { .. }
+            | Intervention::Solid { .. }
+            | Intervention::Move { .. }
+            | Intervention::Remove { .. }
+            | Intervention::Cell { .. } => self.ground.change(self.tick, what),
         }
-    }
-
-    fn change(&mut self, change: Change<'_>) -> Result<(), Refusal> {
-        self.ground.change(self.tick, change)
     }
 
     fn number_of(&self, id: RobotId) -> Option<usize> {

@@ -36,7 +36,6 @@ pub use external::{Decision, ExternalController};
 pub use grid::Grid;
 pub use ground::{AnyGround, Ground, Senses, StateWords, View};
 pub use inspect::{Choice, Inspection, Known, Permitted, SeenLand, known};
-pub use intervene::Change;
 pub use laws::{Agents, HostLaw, HostSafety, ScenarioLaw, WIDE, WrongWorld, agents, own_agents};
 pub use operator::{Observation, operated};
 pub use plane::PlaneGround;
@@ -51,13 +50,11 @@ use crate::record::{Motion, PacketCounts, TickRow};
 use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
 use crate::world::Misplaced;
-use attacker::Attacker;
 use hash::StateHash;
 use intervene::Tuned;
-use intruder::Intruder;
-use key_server::KeyServer;
 use operator::Operator;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, GridWorkspace, Inputs, NEIGHBORS, Outputs, Setup, Task,
 };
@@ -69,7 +66,8 @@ use staya_controller::time::Instant;
 use staya_controller::wire::{Format, Ring};
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
-use transmitters::ring;
+pub use transmitters::Transmitter;
+use transmitters::{ring, transmitters};
 
 /// Smallest number of robots per parallel task; smaller tasks cost more to schedule than to run.
 const BATCH: usize = 64;
@@ -78,12 +76,14 @@ const BATCH: usize = 64;
 pub type HostAgent = Agent<f32, HostLaw, NEIGHBORS, HostSafety, HostWire, Option<Box<Tracker<f32>>>>;
 
 /// A robot's computer.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct OnboardComputer {
     /// `None`: the controller is external.
     agent: Option<HostAgent>,
     /// Frames of the last step, without spare capacity.
+    #[serde(skip)]
     outbox: Vec<u8>,
+    #[serde(skip)]
     events: Vec<Event>,
     mail: Vec<u8>,
     boot: u8,
@@ -177,14 +177,10 @@ pub struct Engine {
     pub statuses: Vec<Status>,
     #[doc(hidden)]
     pub chains: Vec<StateHash>,
-    /// Positions of the robots, the attackers, the intruders and the key server, in this order.
+    /// Positions of the robots and the other transmitters, in this order.
     pub positions_m: Vec<[f64; 2]>,
-    #[doc(hidden)]
-    pub attackers: Vec<Attacker>,
-    #[doc(hidden)]
-    pub intruders: Vec<Intruder>,
-    #[doc(hidden)]
-    pub keeper: Option<KeyServer>,
+    /// Transmitters outside the swarm.
+    pub others: Vec<Box<dyn Transmitter>>,
     /// Keys of robots on other ranks that attackers take over in this tick.
     pub taken: HashMap<RobotId, Ring>,
     master: Option<Key>,
@@ -217,28 +213,18 @@ impl Engine {
 
     /// Creates the engine for the robots with the indices `here` in [`Scenario::robots`], whose
     /// bodies `ground` has in this order. With `has_others`, this process also simulates the
-    /// attackers, the intruders and the key server.
+    /// transmitters outside the swarm.
     pub fn part(scenario: &Scenario, ground: AnyGround, agents: Agents, here: Vec<u32>, has_others: bool) -> Self {
         let robots = scenario.robots.clone();
-        let format = scenario.radio.format;
-        let attackers = scenario.attacks.iter().filter(|_| has_others);
-        let attackers = attackers.map(|attack| Attacker::new(attack, scenario));
-        let attackers: Vec<_> = attackers.collect();
+        let intruders = ground.view(0).intruders;
+        let others = if has_others { transmitters(scenario, intruders) } else { Vec::new() };
         let ids = here.iter().map(|&number| robots[number as usize].id);
-        let view = ground.view(0);
-        let intruders = view.heard().filter(|_| has_others);
-        let intruders: Vec<_> = intruders.map(|disc| Intruder::new(disc, format)).collect();
-        let ids = ids.chain((0..attackers.len()).map(Attacker::id));
-        let ids = ids.chain(intruders.iter().map(|intruder| intruder.id));
-        let keeper = KeyServer::new(scenario).filter(|_| has_others);
-        let ids = ids.chain(keeper.iter().map(|_| KeyServer::id()));
+        let ids = ids.chain(others.iter().map(|other| other.id()));
         let mut positions_m = vec![[0.0; 2]; here.len()];
-        positions_m.extend(attackers.iter().map(Attacker::place_m));
-        positions_m.extend(intruders.iter().map(|intruder| intruder.position_m));
-        positions_m.extend(keeper.iter().map(KeyServer::place_m));
+        positions_m.extend(others.iter().map(|other| other.place_m(intruders)));
         let mut engine = Self {
             seed: scenario.seed,
-            format,
+            format: scenario.radio.format,
             key: scenario.key.clone(),
             plausibility: scenario.plausibility,
             tick_us: scenario.tick_us,
@@ -260,9 +246,7 @@ impl Engine {
             statuses: Vec::new(),
             chains: here.iter().map(|&number| StateHash::new(robots[number as usize].id)).collect(),
             positions_m,
-            attackers,
-            intruders,
-            keeper,
+            others,
             taken: HashMap::new(),
             master: scenario.keeping.as_ref().map(|keeping| keeping.master.clone()),
             external: None,
@@ -358,10 +342,7 @@ impl Engine {
         self.apply_interventions();
         self.apply_faults();
         let refused = self.decide();
-        self.attack();
-        self.intrude();
-
-        self.keep_keys();
+        self.transmit();
         let sent = self.send();
         let carried = self.radio.receive(self.tick, &self.positions_m, &[], sent);
         let packets = self.count(refused, carried);
@@ -397,14 +378,10 @@ impl Engine {
 
     /// Transmits the frames of this process.
     pub fn send(&mut self) -> radio::Counts {
-        let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
-        let keeper = self.keeper.as_ref().map_or(&[][..], KeyServer::outbox);
+        let (computers, others) = (&self.computers, &self.others);
         let outbox = |index: usize| match computers.get(index) {
             Some(computer) => computer.outbox.as_slice(),
-            None => match attackers.get(index - computers.len()) {
-                Some(attacker) => attacker.outbox(),
-                None => intruders.get(index - computers.len() - attackers.len()).map_or(keeper, Intruder::outbox),
-            },
+            None => others[index - computers.len()].outbox(),
         };
         self.radio.send(self.tick, &self.positions_m, outbox)
     }

@@ -1,32 +1,26 @@
-//! The plane (or space) as seen by the engine.
+//! Bodies in the plane or in space, and what their robots sense.
 
+mod ground;
 mod orders;
-mod state;
 
 pub(super) use orders::frames;
 use orders::{course, waypoint};
 
-use super::Status;
 use super::grid::{Changed, duration};
-use super::ground::{Ground, Senses, StateWords, View};
-use super::intervene::Change;
-use super::state::{Reader, StateError};
-use crate::record::Motion;
-use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
-use crate::world::Refusal;
+use super::ground::Senses;
+use crate::scenario::{Order, PlaneSetup, Robot, Scenario};
 use crate::world::plane::{Clearance, Disc, Plane, Sight, Solid, narrow};
-use crate::world::scouts::{Memory, Scouts};
+use crate::world::scouts::Scouts;
 use crate::world::window_but;
 use staya_controller::agent::{
-    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, ContactLossPolicy, GuidanceKind, InCell, InCells,
-    InPlane, Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, ContactLossPolicy, GuidanceKind, InCell, InCells, InPlane,
+    Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
-use staya_controller::grid::{Cell, GridFrame, UNIT};
-use staya_controller::neighbor::Sighting;
+use staya_controller::grid::{Cell, GridFrame};
 use staya_controller::obstacle::grid_walls;
-use staya_controller::robot::{Mode, RobotId};
+use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
 use staya_controller::wire::Format;
 
@@ -264,171 +258,5 @@ fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
         velocity_mps: start.velocity_mps,
         abilities: group.abilities,
         downwash: group.downwash(),
-    }
-}
-
-impl Ground for PlaneGround {
-    fn save_body(&self, index: usize, bytes: &mut Vec<u8>) {
-        self.write_body(index, bytes);
-    }
-
-    fn load_body(&mut self, number: usize, index: Option<usize>, from: &mut Reader<'_>) -> Result<(), StateError> {
-        self.read_body(number, index, from)
-    }
-
-    fn save_shared(&self, bytes: &mut Vec<u8>) {
-        self.write_shared(bytes);
-    }
-
-    fn load_shared(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
-        self.read_shared(from)
-    }
-
-    fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
-        let Disc { position_m, velocity_mps, .. } = self.plane.discs()[index];
-        self.sense_at(index, position_m, velocity_mps, senses)
-    }
-
-    fn sightings(&self, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
-        match &self.sight {
-            Some(sight) => sight.sightings(&self.plane, index, tick, sightings),
-            None => sightings.clear(),
-        }
-    }
-
-    fn motion(&self, index: usize, _: u32) -> Motion {
-        let disc = &self.plane.discs()[index];
-        Motion {
-            cell: self.plane.cell(disc.position_m).unwrap_or_default(),
-            position_m: disc.position_m,
-            velocity_mps: disc.velocity_mps,
-        }
-    }
-
-    fn forget(&mut self, index: usize) {
-        if let Some(scouts) = &mut self.scouts {
-            scouts.put(index, Memory::new());
-        }
-    }
-
-    fn advance(&mut self, _: u32, commands: &[Command<f32>]) -> u64 {
-        if let (Some(scouts), Some(land)) = (&mut self.scouts, self.plane.terrain()) {
-            let (plane, discs) = (&self.plane, self.plane.discs());
-            scouts.observe(land, |index| plane.cell(discs[index].position_m));
-        }
-        self.plane.advance(commands);
-        if let Some(sight) = &mut self.sight {
-            sight.look(&self.plane);
-        }
-        let now = self.plane.clearance();
-        self.clearance.add(&now);
-        self.gap_m = Some(now.bodies_m).filter(|gap_m| gap_m.is_finite());
-        now.overlaps + now.intrusions
-    }
-
-    fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords {
-        let disc = &self.plane.discs()[index];
-        let head = (u64::from(tick) << 8) | status.mode as u64;
-        let numbers = disc.position_m.into_iter().chain(disc.velocity_mps);
-        // Makes negative zero equal to zero.
-        core::iter::once(head).chain(numbers.map(|x| (x + 0.0).to_bits())).collect()
-    }
-
-    fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64> {
-        let disc = &self.plane.discs()[index];
-        let has_places = !self.setup.starts[self.number(index)].places.is_empty();
-        let stands = disc.velocity_mps.iter().all(|v| v.abs() < 1e-3);
-        let is_there = status.mode == Mode::Arrived && (has_places || stands);
-        is_there.then(|| (u64::from(tick) + 1) * u64::from(UNIT))
-    }
-
-    fn setup(&self, number: usize, tick: u32) -> (AgentConfig<f32>, Task) {
-        (self.config(number), self.task(number, tick))
-    }
-
-    fn view(&self, tick: u32) -> View<'_> {
-        let orders = self.orders.binary_search_by_key(&tick, |(tick, _)| *tick).map(|at| &self.orders[at].1[..]);
-        View {
-            terrain: self.plane.terrain(),
-            solids: self.plane.solids(),
-            discs: self.plane.discs(),
-            intruders: self.plane.intruders(),
-            goals_m: self.goals_m(tick),
-            clearance: Some(self.clearance),
-            gap_m: self.gap_m,
-            orders: orders.unwrap_or_default(),
-        }
-    }
-
-    fn target_m(&self, index: usize, tick: u32, status: &Status) -> Option<[f64; 3]> {
-        let number = self.number(index);
-        let guidance = self.setup.group(number).guidance.kind();
-        if guidance.is_on_grid() {
-            let land = self.plane.terrain().filter(|land| land.index(status.target).is_some())?;
-            let [x, y] = land.center_m(status.target);
-            return Some([x, y, 0.0]);
-        }
-        let (mut target, mut since) = match &self.setup.starts[number].places[..] {
-            [one] => (one, 0),
-            _ => return None,
-        };
-        for order in self.ordered(number, tick) {
-            if order.index > 0 {
-                return None;
-            }
-            (target, since) = (&order.target, order.tick);
-        }
-        let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
-        Some([0, 1, 2].map(|axis| target.position_m[axis] + target.velocity_mps[axis] * age_s))
-    }
-
-    fn goal_m(&self, number: usize) -> Option<[f64; 3]> {
-        self.setup.starts[number].places.first().map(|target| target.position_m)
-    }
-
-    fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]) {
-        let guidance = self.setup.group(number).guidance.kind();
-        let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
-        let places = &mut self.setup.starts[number].places;
-        match places.first_mut() {
-            Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
-            _ => *places = vec![target],
-        }
-        if let Some(land) = self.plane.terrain() {
-            self.robots[number].goal = land.nearest_cell([place_m[0], place_m[1]]);
-        }
-        self.since[number] = tick;
-    }
-
-    fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal> {
-        match change {
-            Change::Waypoint { goal, place_m } => {
-                if self.setup.kinds().all(|group| goal >= goals(group.guidance.kind())) {
-                    let what = format!("these robots have no goal {goal}");
-                    return Err(Refusal::new("goal", what, "give one that they have, from 0"));
-                }
-                let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
-                let at = self.setup.orders.partition_point(|order| order.tick <= tick);
-                self.setup.orders.insert(at, Order { tick, index: goal, target });
-                self.orders = frames(&self.setup.orders, self.format, self.key.as_ref());
-                Ok(())
-            }
-            Change::Solid(shape) => {
-                self.plane.add_solids(Solid::of(shape));
-                Ok(())
-            }
-            Change::Move(index, by_m) => self.plane.move_solid(index, by_m),
-            Change::Remove(index) => self.plane.remove_solid(index),
-            Change::Cell([x, y], class) => {
-                self.plane.set_cell(Cell::new(x, y), class)?;
-                self.changed.insert((x, y), class);
-                Ok(())
-            }
-            Change::Land(cells) => {
-                self.plane.change(cells);
-                self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
-                Ok(())
-            }
-        }
     }
 }

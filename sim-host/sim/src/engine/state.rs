@@ -1,12 +1,9 @@
 //! Saves and restores single robots and whole runs, in postcard format. The bytes contain keys.
 //! Constant data is not saved: restore into an engine of the same scenario and program version.
 
-use super::{Engine, HostAgent, OnboardComputer, Status};
-use crate::engine::attacker::AttackerState;
+use super::{Engine, OnboardComputer, Status};
 use crate::engine::hash::StateHash;
 use crate::engine::intervene::Tuned;
-use crate::engine::intruder::IntruderState;
-use crate::engine::key_server::KeeperState;
 use crate::metrics::{FormationMeters, waits};
 use crate::radio::{End, Weather};
 use crate::record::PacketCounts;
@@ -112,20 +109,8 @@ pub(super) fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
     *bytes = done.expect("states have a form");
 }
 
-#[derive(Serialize, Deserialize)]
-struct Robot {
-    mail: Vec<u8>,
-    boot: u8,
-    epoch: u32,
-    down_until: u32,
-    sent_bytes: u64,
-    heard_bytes: u64,
-    status: Status,
-    chain: StateHash,
-    command: Command<f32>,
-    arrived: Option<u64>,
-    waits: waits::Robot,
-}
+/// A robot apart from its number, its body and its radio; the last fields are those of its record.
+type RobotState = (OnboardComputer, Status, StateHash, Command<f32>, Option<u64>, waits::Robot);
 
 #[derive(Serialize, Deserialize)]
 struct Whole {
@@ -150,22 +135,9 @@ impl Engine {
     /// # Panics
     /// If `index` is out of range.
     pub fn pack(&self, index: usize, bytes: &mut Vec<u8>) {
-        let computer = &self.computers[index];
-        write(&(self.id(index), &computer.agent), bytes);
-        let robot = Robot {
-            mail: computer.mail.clone(),
-            boot: computer.boot,
-            epoch: computer.epoch,
-            down_until: computer.down_until,
-            sent_bytes: computer.sent_bytes,
-            heard_bytes: computer.heard_bytes,
-            status: self.statuses[index],
-            chain: self.chains[index],
-            command: self.commands[index].clone(),
-            arrived: self.arrivals.times()[index],
-            waits: self.waits.robot(index),
-        };
-        write(&robot, bytes);
+        let record = (self.arrivals.times()[index], self.waits.robot(index));
+        let decided = (self.statuses[index], self.chains[index], &self.commands[index]);
+        write(&(self.id(index), &self.computers[index], decided, record), bytes);
         self.ground.save_body(index, bytes);
         write(&self.radio.end(index), bytes);
     }
@@ -186,29 +158,15 @@ impl Engine {
             let what = format!("this is robot {}, not robot {}", id.0, own.0);
             return Err(StateError::new(0, what, SAME));
         }
-        let agent: Option<HostAgent> = from.read("an agent")?;
-        let robot: Robot = from.read("a robot")?;
+        let (computer, status, chain, command, arrived, waits): RobotState = from.read("a robot")?;
         let number = self.number(index);
         self.ground.load_body(number, Some(index), &mut from)?;
         let end: End = from.read("an end of the radio")?;
         self.radio.set_end(index, end).map_err(|what| from.unfit(what))?;
-        let Robot { mail, boot, epoch, down_until, sent_bytes, heard_bytes, .. } = robot;
-        self.computers[index] = OnboardComputer {
-            agent,
-            outbox: Vec::new(),
-            events: Vec::new(),
-            mail,
-            boot,
-            epoch,
-            down_until,
-            sent_bytes,
-            heard_bytes,
-        };
-        self.statuses[index] = robot.status;
-        self.chains[index] = robot.chain;
-        self.commands[index] = robot.command;
-        self.arrivals.set(index, robot.arrived);
-        self.waits.set_robot(index, robot.waits);
+        self.computers[index] = computer;
+        (self.statuses[index], self.chains[index], self.commands[index]) = (status, chain, command);
+        self.arrivals.set(index, arrived);
+        self.waits.set_robot(index, waits);
         Ok(from.at())
     }
 
@@ -246,18 +204,13 @@ impl Engine {
         };
         write(&whole, bytes);
         self.ground.save_shared(bytes);
-        for attacker in &self.attackers {
-            write(&attacker.state(), bytes);
-        }
-        for intruder in &self.intruders {
-            write(&intruder.state(), bytes);
-        }
-        if let Some(keeper) = &self.keeper {
-            write(&keeper.state(), bytes);
-        }
-        for index in self.here.len()..self.positions_m.len() {
-            write(&self.radio.end(index), bytes);
-        }
+        let others = (self.here.len()..).zip(&self.others).map(|(end, other)| {
+            let mut bytes = Vec::new();
+            other.save(&mut bytes);
+            write(&self.radio.end(end), &mut bytes);
+            bytes
+        });
+        write(&others.collect::<Vec<_>>(), bytes);
     }
 
     /// Restores [`Engine::save`] in an engine of the same scenario before its first tick.
@@ -265,14 +218,13 @@ impl Engine {
     /// # Errors
     /// The bytes are damaged or from another scenario or program. Discard the engine then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
-        let others = [self.attackers.len(), self.intruders.len(), usize::from(self.keeper.is_some())];
-        let (at, digest) = self.restore_part(bytes, others)?;
+        let (at, digest) = self.restore_part(bytes)?;
         if digest == self.digest() { Ok(()) } else { Err(Self::differs(at)) }
     }
 
-    /// Restores the robots of this process, in a run with the given numbers of attackers, beaconing
-    /// intruders and key servers (`others`). Returns position and value of the saved digest.
-    pub fn restore_part(&mut self, bytes: &[u8], others: [usize; 3]) -> Result<(usize, u64), StateError> {
+    /// Restores the robots and transmitters of this process. Returns position and value of the saved
+    /// digest.
+    pub fn restore_part(&mut self, bytes: &[u8]) -> Result<(usize, u64), StateError> {
         let mut from = Reader::new(bytes);
         if self.tick > 0 || self.external.is_some() {
             return Err(StateError::new(0, "this run is under way", "restore into one before its first tick"));
@@ -299,30 +251,17 @@ impl Engine {
         (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
         self.waits.set_ticks(&whole.waited);
         self.radio.set_weather(whole.weather);
-        let [attackers, intruders, keepers] = others;
-        for at in 0..attackers {
-            let state = from.read::<AttackerState>("an attacker")?;
-            if let Some(attacker) = self.attackers.get_mut(at) {
-                attacker.restore(state);
-            }
+        let others: Vec<Vec<u8>> = from.read("the transmitters")?;
+        // Other MPI ranks may have the transmitters.
+        if !self.others.is_empty() && self.others.len() != others.len() {
+            return Err(from.unfit("it has other transmitters"));
         }
-        for at in 0..intruders {
-            let state = from.read::<IntruderState>("an intruder")?;
-            if let Some(intruder) = self.intruders.get_mut(at) {
-                intruder.restore(state);
-            }
-        }
-        for _ in 0..keepers {
-            let state = from.read::<KeeperState>("the keeper of keys")?;
-            if let Some(keeper) = &mut self.keeper {
-                keeper.restore(state);
-            }
-        }
-        for index in (self.here.len()..).take(attackers + intruders + keepers) {
-            let end: End = from.read("an end of the radio")?;
-            if index < self.positions_m.len() {
-                self.radio.set_end(index, end).map_err(|what| from.unfit(what))?;
-            }
+        let at = from.at().saturating_sub(others.iter().map(Vec::len).sum());
+        for ((end, other), bytes) in (self.here.len()..).zip(&mut self.others).zip(&others) {
+            let mut from = Reader::new(bytes);
+            other.load(&mut from).map_err(|error| error.after(at))?;
+            let state: End = from.read("an end of the radio").map_err(|error| error.after(at))?;
+            self.radio.set_end(end, state).map_err(|what| from.unfit(what).after(at))?;
         }
         let here: HashMap<usize, usize> = (0..self.here.len()).map(|index| (self.number(index), index)).collect();
         for number in 0..self.robots.len() {
@@ -344,9 +283,7 @@ impl Engine {
     /// Returns the number of bytes read.
     fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
-        let _: RobotId = from.read("the number of a robot")?;
-        let _: Option<HostAgent> = from.read("an agent")?;
-        let _: Robot = from.read("a robot")?;
+        let _: (RobotId, RobotState) = from.read("a robot")?;
         self.ground.load_body(number, None, &mut from)?;
         let _: End = from.read("an end of the radio")?;
         Ok(from.at())
