@@ -1,24 +1,17 @@
 //! Applies [`Intervention`]s to a running simulation.
 
 use super::Engine;
+use super::roster::Tuned;
 use crate::scenario::{Fault, Intervention};
 use crate::world::Refusal;
-use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Tuned {
-    robot: Option<usize>,
-    name: String,
-    value: f32,
-}
 
 impl Engine {
     /// Applies the scenario's terrain changes of this tick.
     pub fn change_land(&mut self) {
         for (number, rule) in self.changes.iter().enumerate().filter(|(_, rule)| rule.is_due(self.tick)) {
             let land = self.ground.view(self.tick).terrain;
-            let due = land.map(|land| rule.due(number, self.seed, self.tick, land));
+            let due = land.map(|land| rule.due(number, self.roster.seed, self.tick, land));
             if let Some(cells) = due.filter(|cells| !cells.is_empty()) {
                 self.ground.change_land(&cells);
             }
@@ -126,7 +119,7 @@ impl Engine {
             let what = format!("none of these robots has the parameter {name}");
             return Err(Refusal::new("name", what, "give one that its guidance law or its safety layer has"));
         }
-        self.tuned.push(tuned);
+        self.roster.tuned.push(tuned);
         Ok(())
     }
 
@@ -137,11 +130,5 @@ impl Engine {
     /// Whether the computer of robot `index` is down.
     pub fn is_down(&self, index: usize) -> bool {
         self.tick < self.computers[index].down_until
-    }
-}
-
-pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(&str, f32)) {
-    for Tuned { name, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
-        set(name, *value);
     }
 }

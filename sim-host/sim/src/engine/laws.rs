@@ -39,30 +39,18 @@ laws! {
     }
 }
 
-/// Which law of a paper replaces Staya's formation.
-#[derive(Clone, Copy, Debug)]
-struct Papers {
-    published: Option<PublishedParams>,
-    looks_ahead: bool,
-}
-
-impl Papers {
-    const fn of(scenario: &Scenario) -> Self {
-        Self { published: scenario.published, looks_ahead: scenario.looks_ahead }
-    }
-
-    fn law(&self, setup: &GuidanceSetup, map: Map) -> ScenarioLaw {
-        match (setup, self.published) {
-            (GuidanceSetup::Formation { route, template, .. }, Some(params)) => {
-                let law = PublishedFormation::new(route.params, params, template.clone());
-                ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
-            }
-            (GuidanceSetup::Formation { route, formation, template, .. }, None) if self.looks_ahead => {
-                let law = FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
-                ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
-            }
-            _ => ScenarioLaw::BuiltIn(setup.law(map)),
+/// Staya's law for a robot, or that of a paper instead of Staya's formation.
+fn law_of(setup: &GuidanceSetup, published: Option<PublishedParams>, looks_ahead: bool, map: Map) -> ScenarioLaw {
+    match (setup, published) {
+        (GuidanceSetup::Formation { route, template, .. }, Some(params)) => {
+            let law = PublishedFormation::new(route.params, params, template.clone());
+            ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
         }
+        (GuidanceSetup::Formation { route, formation, template, .. }, None) if looks_ahead => {
+            let law = FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
+            ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
+        }
+        _ => ScenarioLaw::BuiltIn(setup.law(map)),
     }
 }
 
@@ -85,12 +73,15 @@ pub fn agents(scenario: &Scenario) -> Agents {
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, papers, own) = (scenario.maps, Papers::of(scenario), scenario.law.as_ref().map(NamedLaw::law));
+    let (maps, published, looks_ahead) = (scenario.maps, scenario.published, scenario.looks_ahead);
+    let own = scenario.law.as_ref().map(NamedLaw::law);
     Box::new(move |index| {
         let (guidance, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
         let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
-        let law = own.as_ref().map_or_else(|| papers.law(guidance, map), |own| ScenarioLaw::Own(own.clone()));
+        let law = own
+            .as_ref()
+            .map_or_else(|| law_of(guidance, published, looks_ahead, map), |own| ScenarioLaw::Own(own.clone()));
         (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     })
 }

@@ -23,6 +23,7 @@ mod laws;
 mod operator;
 mod plane;
 mod report;
+mod roster;
 mod simulate;
 mod state;
 mod status;
@@ -51,23 +52,21 @@ use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
 use crate::world::Misplaced;
 use hash::StateHash;
-use intervene::Tuned;
 use operator::Operator;
 use rayon::prelude::*;
+use roster::Roster;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, GridWorkspace, Inputs, NEIGHBORS, Outputs, Setup, Task,
 };
-use staya_controller::auth::Key;
-use staya_controller::geom::Torus;
-use staya_controller::neighbor::{PlausibilityLimits, TrackParams, Tracker};
+use staya_controller::neighbor::Tracker;
 use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
-use staya_controller::wire::{Format, Ring};
+use staya_controller::wire::Ring;
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
 pub use transmitters::Transmitter;
-use transmitters::{ring, transmitters};
+use transmitters::transmitters;
 
 /// Smallest number of robots per parallel task; smaller tasks cost more to schedule than to run.
 const BATCH: usize = 64;
@@ -140,10 +139,7 @@ impl Tick<'_> {
 /// Robots have the numbers of [`Scenario::robots`]. Fields are public for `staya-mpi`, which steps
 /// a part of a world in each process.
 pub struct Engine {
-    seed: u64,
-    format: Format,
-    key: Option<Key>,
-    plausibility: PlausibilityLimits<f32>,
+    roster: Roster,
     tick_us: u32,
     #[doc(hidden)]
     pub tick: u32,
@@ -156,17 +152,13 @@ pub struct Engine {
     changes: Vec<LandChange>,
     /// Pending interventions, sorted by tick.
     pub interventions: VecDeque<(u32, Intervention)>,
-    tuned: Vec<Tuned>,
     /// Robot ranges of the formations, whose goals move together.
     shapes: Vec<Range<usize>>,
-    agents: Agents,
     #[doc(hidden)]
     pub ground: AnyGround,
     /// Robots have no transmitter.
     is_mute: bool,
     meter: Option<FormationMeters>,
-    torus: Option<Torus<f32>>,
-    tracking: Option<TrackParams<f32>>,
     #[doc(hidden)]
     pub radio: Radio,
     #[doc(hidden)]
@@ -183,7 +175,6 @@ pub struct Engine {
     pub others: Vec<Box<dyn Transmitter>>,
     /// Keys of robots on other ranks that attackers take over in this tick.
     pub taken: HashMap<RobotId, Ring>,
-    master: Option<Key>,
     external: Option<External>,
     operator: Option<Operator>,
     /// Record row of the last tick.
@@ -223,24 +214,17 @@ impl Engine {
         let mut positions_m = vec![[0.0; 2]; here.len()];
         positions_m.extend(others.iter().map(|other| other.place_m(intruders)));
         let mut engine = Self {
-            seed: scenario.seed,
-            format: scenario.radio.format,
-            key: scenario.key.clone(),
-            plausibility: scenario.plausibility,
+            roster: Roster::new(scenario, agents),
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
             changes: scenario.changes.clone(),
             interventions: scenario.interventions.iter().cloned().collect(),
-            tuned: Vec::new(),
             shapes: scenario.formations.iter().map(Formation::members).collect(),
-            agents,
             is_mute: scenario.sensing.is_some_and(|sensing| !sensing.has_beacons),
             meter: FormationMeters::new(scenario),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
             ground,
-            torus: scenario.torus_m().map(|sides_m| Torus { size_m: sides_m.map(|side_m| side_m as f32) }),
-            tracking: scenario.sensing.map(|sensing| sensing.tracking),
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],
             statuses: Vec::new(),
@@ -248,7 +232,6 @@ impl Engine {
             positions_m,
             others,
             taken: HashMap::new(),
-            master: scenario.keeping.as_ref().map(|keeping| keeping.master.clone()),
             external: None,
             operator: None,
             row: TickRow::default(),
@@ -275,33 +258,13 @@ impl Engine {
 
     fn setup(&self, index: usize, boot: u8) -> (AgentConfig<f32>, Task) {
         let (config, task) = self.ground.setup(self.number(index), self.tick);
-        (AgentConfig { boot, seed: self.seed, plausibility: self.plausibility, ..config }, task)
+        (self.roster.config(config, boot), task)
     }
 
     fn start(&self, index: usize, boot: u8) -> OnboardComputer {
-        let number = self.number(index);
-        let (law, safety) = (self.agents)(number);
         let (config, task) = self.setup(index, boot);
-        let wire = match &self.master {
-            None => radio::wire(self.format, self.key.as_ref(), boot),
-            // The last key survives a restart in persistent memory.
-            Some(master) => {
-                let ring = self.computers.get(index).and_then(|computer| ring(computer.agent.as_ref()?.wire()));
-                let stored = ring.and_then(|ring| ring.seeds()[0].map(|(generation, seed)| (generation, seed.clone())));
-                radio::own_wire(master, config.id, stored, boot)
-            }
-        };
-        let tracker = self.tracking.map(|params| Box::new(Tracker::new(params)));
-        let mut agent = Agent::with_perception(&config, law, safety, wire, tracker);
-        if let Some(torus) = self.torus {
-            agent.set_torus(torus);
-        }
-        // Only laws without a task refuse it; the scenario was checked for that.
-        let _ = agent.assign(&task);
-        intervene::retune(&self.tuned, number, |name, value| {
-            // A value that was refused once is refused again.
-            let _ = agent.set_parameter(name, value);
-        });
+        let previous = self.computers.get(index).and_then(|computer| computer.agent.as_ref());
+        let agent = self.roster.agent(self.number(index), &config, &task, previous);
         self.computer(Some(agent), boot)
     }
 
@@ -326,7 +289,8 @@ impl Engine {
         let robots = self.external.as_mut().and_then(|external| {
             let found = external.robots.iter().find(|(robot, ..)| *robot == index);
             let (_, guidance, safety) = found?;
-            let setup = Setup { agent: config, guidance: guidance.clone(), safety: *safety, format: self.format };
+            let setup =
+                Setup { agent: config, guidance: guidance.clone(), safety: *safety, format: self.roster.format };
             external.controllers.start(index, setup, task);
             Some(())
         });

@@ -3,7 +3,7 @@
 
 use super::{Engine, OnboardComputer, Status};
 use crate::engine::hash::StateHash;
-use crate::engine::intervene::Tuned;
+use crate::engine::roster::Tuned;
 use crate::metrics::{FormationMeters, waits};
 use crate::radio::{End, Weather};
 use crate::record::PacketCounts;
@@ -189,12 +189,12 @@ impl Engine {
     /// Writes the shared state and the transmitters outside the swarm; see [`Engine::save`].
     pub fn save_head(&self, bytes: &mut Vec<u8>) {
         let whole = Whole {
-            seed: self.seed,
+            seed: self.roster.seed,
             robots: self.robots.len(),
             tick: self.tick,
             interventions: self.interventions.len(),
             faults: self.faults.clone(),
-            tuned: self.tuned.clone(),
+            tuned: self.roster.tuned.clone(),
             collisions: self.collisions,
             packets: self.packets,
             throttled: self.throttled,
@@ -230,7 +230,7 @@ impl Engine {
             return Err(StateError::new(0, "this run is under way", "restore into one before its first tick"));
         }
         let whole: Whole = from.read("the head of the run")?;
-        if (whole.seed, whole.robots) != (self.seed, self.robots.len()) {
+        if (whole.seed, whole.robots) != (self.roster.seed, self.robots.len()) {
             let what = format!("it is of {} robots and seed {}", whole.robots, whole.seed);
             return Err(StateError::new(0, what, SAME));
         }
@@ -247,7 +247,7 @@ impl Engine {
         self.tick = whole.tick;
         let done = self.interventions.len().saturating_sub(whole.interventions);
         self.interventions.drain(..done);
-        (self.faults, self.tuned) = (whole.faults, whole.tuned);
+        (self.faults, self.roster.tuned) = (whole.faults, whole.tuned);
         (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
         self.waits.set_ticks(&whole.waited);
         self.radio.set_weather(whole.weather);

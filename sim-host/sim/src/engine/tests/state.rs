@@ -215,7 +215,7 @@ fn a_state_of_another_scenario_is_refused() {
         let error = other.unpack(1, &bytes).expect_err("it is another robot").to_string();
         assert!(error.contains("robot 1, not robot 2"), "{error}");
         bytes.clear();
-        one.seed = seed;
+        one.roster.seed = seed;
         one.save(&mut bytes).expect("all robots are here");
         let error = other.restore(&bytes).expect_err("it has another seed").to_string();
         assert!(error.contains("2 robots and seed 99"), "{error}");
