@@ -78,7 +78,8 @@ pub trait Ground: Send + Sync {
     /// Sets the goal of a robot from `tick` on.
     fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]);
 
-    /// Changes the world before `tick`. Interventions in robots and their radio have no effect here.
+    /// Changes the world before `tick`. Interventions in robots and their radio have no effect
+    /// here.
     ///
     /// # Errors
     /// The cell, obstacle or goal does not exist in this world.

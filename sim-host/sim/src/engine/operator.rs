@@ -1,4 +1,4 @@
-//! What an operator sees and does between ticks.
+//! Observation and control of a run by an operator, between ticks.
 
 use super::inspect::listed;
 use super::{Engine, HostAgent, Moment, Status, View, agents};
@@ -62,7 +62,7 @@ impl Operator {
 }
 
 impl Engine {
-    /// Adds an operator, for whom the robots' events are stored. Call it before the first tick.
+    /// Adds an operator, and stores the robots' events. Call it before the first tick.
     #[must_use]
     pub fn with_operator(mut self, scenario: &Scenario) -> Self {
         self.operator = Some(Operator::new(scenario));

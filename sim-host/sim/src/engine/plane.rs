@@ -1,4 +1,4 @@
-//! Bodies in the plane or in space, and what their robots sense.
+//! Bodies in the plane or in space, and the sensors of their robots.
 
 mod ground;
 mod orders;

@@ -63,7 +63,7 @@ impl StateError {
     }
 }
 
-/// Reads values in postcard format, and knows where it is.
+/// Reads values in postcard format, with the position of errors.
 pub struct Reader<'a> {
     all: &'a [u8],
     rest: &'a [u8],
@@ -222,8 +222,8 @@ impl Engine {
         if digest == self.digest() { Ok(()) } else { Err(Self::differs(at)) }
     }
 
-    /// Restores the robots and transmitters of this process. Returns position and value of the saved
-    /// digest.
+    /// Restores the robots and transmitters of this process. Returns position and value of the
+    /// saved digest.
     pub fn restore_part(&mut self, bytes: &[u8]) -> Result<(usize, u64), StateError> {
         let mut from = Reader::new(bytes);
         if self.tick > 0 || self.external.is_some() {
