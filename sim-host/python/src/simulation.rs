@@ -77,7 +77,7 @@ impl Inner {
         self.tick += 1;
         self.wall_seconds += began.elapsed().as_secs_f64();
         if let Some(trace) = &mut self.trace {
-            trace.take(&*self.engine);
+            trace.take(&self.engine);
         }
         self.record()
     }
@@ -183,7 +183,7 @@ impl Run {
     fn begin_trace(&self, py: Python<'_>, every: u32) {
         let mut inner = self.lock(py);
         let mut trace = Trace::new(every, inner.scenario.robots.len());
-        trace.take(&*inner.engine);
+        trace.take(&inner.engine);
         inner.trace = Some(trace);
     }
 
@@ -191,7 +191,7 @@ impl Run {
     fn end_trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut inner = self.lock(py);
         let mut trace = inner.trace.take().ok_or_else(|| PyRuntimeError::new_err("no trace was started"))?;
-        trace.finish(&*inner.engine);
+        trace.finish(&inner.engine);
         drop(inner);
         trace.columns(py)
     }
