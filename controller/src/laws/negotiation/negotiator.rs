@@ -329,8 +329,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// A robot, or this one, shares its cell with one that is nearer to the centre, and can leave it
-    /// only by these moves: bits of [`Dir::index`].
+    /// A robot, or this one, shares its cell with one that is nearer to the centre, and can leave
+    /// it only by these moves: bits of [`Dir::index`].
     pub fn share(&mut self, id: RobotId, ways: u8) {
         if id == self.id {
             self.ways = Some(ways);

@@ -1,7 +1,7 @@
 //! Attackers with a radio: outsiders without the key, and insiders that control a robot.
 
 use super::state::{Reader, StateError, write};
-use super::transmitters::Transmitter;
+use super::transmitter::Transmitter;
 use crate::radio::{self, HostWire};
 use crate::scenario::{Attack, AttackKind, Lie, Scenario};
 use crate::world::plane::Disc;

@@ -1,7 +1,7 @@
 //! A foreign body that sends beacons, such as a vehicle with a transponder.
 
 use super::state::{Reader, StateError, write};
-use super::transmitters::Transmitter;
+use super::transmitter::Transmitter;
 use crate::radio::{self, HostWire};
 use crate::world::plane::Disc;
 use heapless::Vec as Bounded;

@@ -2,7 +2,7 @@
 //! own key, and collects confirmations.
 
 use super::state::{Reader, StateError, write};
-use super::transmitters::Transmitter;
+use super::transmitter::Transmitter;
 use crate::radio;
 use crate::scenario::{Roll, Scenario};
 use crate::world::plane::Disc;

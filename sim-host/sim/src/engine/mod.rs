@@ -27,6 +27,7 @@ mod roster;
 mod simulate;
 mod state;
 mod status;
+mod transmitter;
 mod transmitters;
 mod witness;
 
@@ -65,7 +66,7 @@ use staya_controller::time::Instant;
 use staya_controller::wire::Ring;
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
-pub use transmitters::Transmitter;
+pub use transmitter::Transmitter;
 use transmitters::transmitters;
 
 /// Smallest number of robots per parallel task; smaller tasks cost more to schedule than to run.

@@ -1,15 +1,14 @@
 //! Creates the agents of a scenario's robots, at each of their starts.
 
-use super::transmitters::ring;
 use super::{Agents, HostAgent};
-use crate::radio;
+use crate::radio::{self, HostWire};
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Agent, AgentConfig, Task};
 use staya_controller::auth::Key;
 use staya_controller::geom::Torus;
 use staya_controller::neighbor::{PlausibilityLimits, TrackParams, Tracker};
-use staya_controller::wire::Format;
+use staya_controller::wire::{Format, Ring};
 
 /// A parameter that an intervention has changed permanently.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -83,5 +82,13 @@ impl Roster {
             }
         }
         agent
+    }
+}
+
+/// The keys of an authenticated radio.
+pub(super) fn ring(wire: &HostWire) -> Option<&Ring> {
+    match wire {
+        HostWire::Sealed(sealed) => Some(sealed.ring()),
+        _ => None,
     }
 }

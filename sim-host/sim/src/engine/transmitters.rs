@@ -4,44 +4,12 @@ use super::Engine;
 use super::attacker::Attacker;
 use super::intruder::Intruder;
 use super::key_server::KeyServer;
-use super::state::{Reader, StateError};
-use crate::radio::HostWire;
+use super::roster::ring;
+use super::transmitter::Transmitter;
 use crate::scenario::Scenario;
 use crate::world::plane::Disc;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Ring;
-
-/// A transmitter outside the swarm.
-pub trait Transmitter: Send + Sync {
-    /// Id at the radio.
-    fn id(&self) -> RobotId;
-
-    /// Position of its antenna, metres; `intruders` are all foreign bodies.
-    fn place_m(&self, intruders: &[Disc]) -> [f64; 2];
-
-    /// Receives frames and prepares its own.
-    fn act(&mut self, tick: u32, inbox: &[u8], intruders: &[Disc]);
-
-    /// Frames of the last [`Transmitter::act`].
-    fn outbox(&self) -> &[u8];
-
-    /// The robot that it captures before it acts at `tick`.
-    fn captures(&self, _tick: u32) -> Option<RobotId> {
-        None
-    }
-
-    /// Takes the keys of the captured robot.
-    fn take(&mut self, _ring: &Ring) {}
-
-    /// Appends its mutable state.
-    fn save(&self, bytes: &mut Vec<u8>);
-
-    /// Restores the bytes of [`Transmitter::save`].
-    ///
-    /// # Errors
-    /// They cannot be decoded.
-    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError>;
-}
 
 /// The transmitters of a scenario: attackers, then the intruders that send beacons, then the key
 /// server.
@@ -74,12 +42,5 @@ impl Engine {
     pub fn ring_of(&self, robot: RobotId) -> Option<Ring> {
         let agent = self.computers[self.index_of(robot)?].agent.as_ref()?;
         ring(agent.wire()).cloned()
-    }
-}
-
-pub(super) fn ring(wire: &HostWire) -> Option<&Ring> {
-    match wire {
-        HostWire::Sealed(sealed) => Some(sealed.ring()),
-        _ => None,
     }
 }

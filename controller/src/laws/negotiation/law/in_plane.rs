@@ -82,8 +82,8 @@ impl From<Beat> for u8 {
 /// *Claims:* a robot takes its move back if another one has said that it stays in that cell, or
 /// that it enters the cell and has waited longer. A robot half a cell from its path is late: it
 /// stays in the next step. A robot that is late for long begins again in the cell that it is in.
-/// Where robots share a cell, those farther from the centre leave it first, to their side of it, and
-/// others make way for them.
+/// Where robots share a cell, those farther from the centre leave it first, to their side of it,
+/// and others make way for them.
 ///
 /// A decision takes O(N), and at the start of a step as much as a plan.
 #[derive(Clone, Debug, Serialize, Deserialize)]
