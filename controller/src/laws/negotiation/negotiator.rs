@@ -78,7 +78,7 @@ struct Known {
     /// It does not move in this step.
     holds: bool,
     /// As in [`Member::ways`].
-    ways: Option<u8>,
+    ways: u8,
 }
 
 /// A robot that plans with the robots near it: at most `N` with itself, and distances of `F` goals.
@@ -109,7 +109,7 @@ pub struct Negotiator<const N: usize, const F: usize> {
     manners: Manners,
     promised: Option<Manners>,
     /// As in [`Member::ways`], in this step.
-    ways: Option<u8>,
+    ways: u8,
     /// Whether anything of this step came, and whether it saw its cell in this step.
     has_begun: bool,
     has_seen: bool,
@@ -139,7 +139,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             barred: (cell, 0),
             manners,
             promised: None,
-            ways: None,
+            ways: 0,
             has_begun: false,
             has_seen: false,
             area: Area::new(cell),
@@ -230,7 +230,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             other.age = other.age.saturating_add(1);
             other.lost = other.lost.saturating_add(1);
             other.holds = false;
-            other.ways = None;
+            other.ways = 0;
             let said = &mut other.said;
             said.step = said.step.wrapping_add(1);
             said.waiting = waiting(said.cell == said.goal, said.waiting);
@@ -274,7 +274,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     }
 
     fn note(&mut self, id: RobotId, said: &Said) {
-        let known = Known { id, said: *said, age: 0, lost: 0, holds: false, ways: None };
+        let known = Known { id, said: *said, age: 0, lost: 0, holds: false, ways: 0 };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = known,
             None => {
@@ -333,9 +333,9 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// it only by these moves: bits of [`Dir::index`].
     pub fn share(&mut self, id: RobotId, ways: u8) {
         if id == self.id {
-            self.ways = Some(ways);
+            self.ways = ways;
         } else if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
-            other.ways = Some(ways);
+            other.ways = ways;
         }
     }
 
@@ -419,7 +419,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         };
         self.known.retain(|other| other.said.cell.chebyshev(own.cell) <= RANGE);
         let mut members: Vec<Member, N> = Vec::new();
-        let _ = members.push(Member { ways: self.ways.take(), ..member(self.id, &own, true, false) });
+        let _ = members.push(Member { ways: core::mem::take(&mut self.ways), ..member(self.id, &own, true, false) });
         // The newest news of a cell counts.
         list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
         let known = self
@@ -427,7 +427,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             .iter()
             .map(|other| Member { ways: other.ways, ..member(other.id, &other.said, other.age == 0, other.holds) });
         for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
-            let is_same = |other: &Member| other.cell == member.cell && other.ways.is_some() == member.ways.is_some();
+            let is_same = |other: &Member| other.cell == member.cell && (other.ways == 0) == (member.ways == 0);
             if !members.iter().any(is_same) {
                 let _ = members.push(member);
             }
@@ -478,11 +478,11 @@ const fn waiting(is_at_goal: bool, before: u16) -> u16 {
 
 fn member(id: RobotId, said: &Said, is_heard: bool, holds: bool) -> Member {
     let Said { cell, goal, waiting, wish, step, manners } = *said;
-    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish), holds, ways: None }
+    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish), holds, ways: 0 }
 }
 
 /// A robot of which only the cell is known.
 fn stranger(cell: Cell) -> Member {
     let (id, manners) = (RobotId::NONE, Manners::default());
-    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false, ways: None }
+    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false, ways: 0 }
 }

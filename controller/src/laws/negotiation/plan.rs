@@ -112,8 +112,8 @@ pub struct Member {
     /// It does not move in this step.
     pub holds: bool,
     /// If another robot is in its cell too, nearer to the centre: the moves that it can make, as
-    /// bits of [`Dir::index`].
-    pub ways: Option<u8>,
+    /// bits of [`Dir::index`]; otherwise 0.
+    pub ways: u8,
 }
 
 /// A robot's place in the chain of those that ask each other to move.
@@ -201,8 +201,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves };
         // Where two robots share a cell, one has to leave it, whoever else has to make way.
         let shares = |member: &Member| {
-            let is_guest_here = |other: &Member| other.ways.is_some() && other.cell == member.cell;
-            (member.ways.is_some(), members.iter().any(is_guest_here))
+            let is_guest_here = |other: &Member| other.ways != 0 && other.cell == member.cell;
+            (member.ways != 0, members.iter().any(is_guest_here))
         };
         let mut order: Vec<((bool, bool), u16, u32, u8), N> = Vec::new();
         for (index, member) in members.iter().enumerate() {
@@ -239,7 +239,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             manners: Manners::default(),
             wish: None,
             holds: false,
-            ways: None,
+            ways: 0,
         };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
     }
@@ -257,7 +257,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     /// The robot in a cell; of two, the one nearer to the centre.
     fn occupant(&self, cell: Cell) -> Option<u8> {
         let there = self.members.iter().enumerate().filter(|(_, member)| member.cell == cell);
-        there.min_by_key(|(_, member)| member.ways.is_some()).map(|(index, _)| index as u8)
+        there.min_by_key(|(_, member)| member.ways != 0).map(|(index, _)| index as u8)
     }
 
     /// Whether another member goes to this cell, or crosses the way of `member` to it.
@@ -342,7 +342,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let member = self.member(index);
         let Member { id, cell, .. } = member;
         let mut order: Vec<(u8, u32, Dir), 9> = Vec::new();
-        let can = |dir: &&Dir| member.ways.is_none_or(|ways| **dir != Dir::Stay && ways >> dir.index() & 1 == 1);
+        let can = |dir: &&Dir| member.ways == 0 || (**dir != Dir::Stay && member.ways >> dir.index() & 1 == 1);
         for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]).filter(can) {
             if let Some(rank) = self.rank(&member, dir) {
                 let to = cell + dir.offset();
@@ -353,7 +353,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
         list::sort_by_key(&mut order, |&(rank, tie, dir)| (rank, tie, dir.index()));
         let best = order.first().map_or(Dir::Stay, |&(_, _, dir)| dir);
-        let swaps = if best == Dir::Stay || member.manners.keeps_on || member.ways.is_some() {
+        let swaps = if best == Dir::Stay || member.manners.keeps_on || member.ways != 0 {
             None
         } else {
             self.swap(index, cell + best.offset())
