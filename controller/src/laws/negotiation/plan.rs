@@ -256,8 +256,14 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
 
     /// The robot in a cell; of two, the one nearer to the centre.
     fn occupant(&self, cell: Cell) -> Option<u8> {
-        let there = self.members.iter().enumerate().filter(|(_, member)| member.cell == cell);
-        there.min_by_key(|(_, member)| member.ways != 0).map(|(index, _)| index as u8)
+        let mut there = None;
+        for (member, index) in self.members.iter().zip(0_u8..).filter(|(member, _)| member.cell == cell) {
+            there = Some(index);
+            if member.ways == 0 {
+                break;
+            }
+        }
+        there
     }
 
     /// Whether another member goes to this cell, or crosses the way of `member` to it.
