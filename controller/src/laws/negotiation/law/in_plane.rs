@@ -266,11 +266,10 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
                 let _ = bodies.push((other.id, cell, body_m - to_center(cell)));
             }
             for &(id, cell, off_m) in &bodies {
-                let rank = (off_m.norm(), id);
-                let is_nearer = |&&(other, its, its_m): &&(RobotId, Cell, Vec2<S>)| {
-                    its == cell && (its_m.norm(), other.0) < (rank.0, rank.1.0)
+                let is_nearer = |&(other, its, its_m): &(RobotId, Cell, Vec2<S>)| {
+                    its == cell && (its_m.norm(), other.0) < (off_m.norm(), id.0)
                 };
-                if bodies.iter().find(is_nearer).is_some() {
+                if bodies.iter().any(is_nearer) {
                     robot.share(id, ways(off_m));
                 }
             }
