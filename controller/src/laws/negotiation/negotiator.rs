@@ -427,7 +427,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             .iter()
             .map(|other| Member { ways: other.ways, ..member(other.id, &other.said, other.age == 0, other.holds) });
         for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
-            let is_same = |other: &Member| other.cell == member.cell && (other.ways == 0) == (member.ways == 0);
+            let is_same = |other: &Member| other.cell == member.cell && member.ways == 0 && other.ways == 0;
             if !members.iter().any(is_same) {
                 let _ = members.push(member);
             }

@@ -185,13 +185,14 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
     }
 }
 
-/// The moves to the side of a cell on which a body is, as bits of [`Dir::index`].
+/// The move to the side of a cell on which a body is, as a bit of [`Dir::index`].
 fn ways<S: Scalar>(off_m: Vec2<S>) -> u8 {
-    let leads = |dir: &&Dir| {
+    let along = |dir: Dir| {
         let Cell { x, y } = dir.offset();
-        off_m.x * S::from_i32(x.into()) + off_m.y * S::from_i32(y.into()) >= S::ZERO
+        off_m.x * S::from_i32(x.into()) + off_m.y * S::from_i32(y.into())
     };
-    Moves::FOUR.dirs().iter().filter(leads).fold(0, |ways, dir| ways | 1 << dir.index())
+    let farthest = |a: Dir, b: &Dir| if along(*b) > along(a) { *b } else { a };
+    1 << Moves::FOUR.dirs().iter().fold(Dir::North, farthest).index()
 }
 
 /// The time of a step: a body turns a corner in it. `None` if it is not a minute at most.
