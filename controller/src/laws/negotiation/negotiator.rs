@@ -300,6 +300,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
+    /// It does not get into this cell, so that counts as blocked until a robot is heard there.
+    pub fn close(&mut self, cell: Cell) {
+        self.area.block(cell, false);
+    }
+
     /// A robot in this cell moves, so nothing blocks it.
     pub fn free(&mut self, cell: Cell) {
         self.area.unblock(cell);

@@ -234,6 +234,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
             self.before = self.from;
             self.from = self.from + self.by.offset();
             self.late = if self.is_late { self.late.saturating_add(1) } else { 0 };
+            let refused = (self.late >= GIVES_UP).then_some(self.from).filter(|&cell| cell != under);
             if self.late >= GIVES_UP {
                 (self.before, self.from, self.late) = (under, under, 0);
             }
@@ -243,6 +244,9 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
                 robot.set_goal(goal);
             }
             robot.set_step(self.step);
+            if let Some(cell) = refused {
+                robot.close(cell);
+            }
             robot.see(self.from, &sight(self.from, under, &window));
             for (other, InStepPayload { said, by, beat }) in view.peers() {
                 // A robot whose step began already was there when it began.
