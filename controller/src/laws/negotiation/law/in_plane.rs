@@ -81,7 +81,8 @@ impl From<Beat> for u8 {
 ///
 /// *Claims:* a robot takes its move back if another one has said that it stays in that cell, or
 /// that it enters the cell and has waited longer. A robot half a cell from its path is late: it
-/// stays in the next step. A robot that is late for long begins again in the cell that it is in.
+/// stays in the next step. A robot that is late for long begins again in the cell that it is in,
+/// and counts the cell that it did not get into as blocked.
 /// Where robots share a cell, those farther from the centre leave it first, to their side of it,
 /// and others make way for them.
 ///
@@ -185,14 +186,14 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
     }
 }
 
-/// The move to the side of a cell on which a body is, as a bit of [`Dir::index`].
-fn ways<S: Scalar>(off_m: Vec2<S>) -> u8 {
+/// The move to the side of its cell on which a body is.
+fn outwards<S: Scalar>(off_m: Vec2<S>) -> Dir {
     let along = |dir: Dir| {
         let Cell { x, y } = dir.offset();
         off_m.x * S::from_i32(x.into()) + off_m.y * S::from_i32(y.into())
     };
     let farthest = |a: Dir, b: &Dir| if along(*b) > along(a) { *b } else { a };
-    1 << Moves::FOUR.dirs().iter().fold(Dir::North, farthest).index()
+    Moves::FOUR.dirs().iter().fold(Dir::North, farthest)
 }
 
 /// The time of a step: a body turns a corner in it. `None` if it is not a minute at most.
@@ -275,7 +276,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
                     its == cell && (its_m.norm(), other.0) < (off_m.norm(), id.0)
                 };
                 if bodies.iter().any(is_nearer) {
-                    robot.share(id, ways(off_m));
+                    robot.share(id, outwards(off_m));
                 }
             }
             let was_late = self.is_late;
