@@ -23,7 +23,7 @@ export class Controls {
     this.is = "";
     const click = (id, action) => element(id).addEventListener("click", action);
     click("play", () => this.playOrPause());
-    click("go-on", () => app.send({ do: "play" }));
+    click("undo", () => app.send({ do: "undo" }));
     click("step", () => this.step(1));
     click("back", () => this.step(-1));
     click("zoom-in", () => app.camera.zoom(1.4));
@@ -35,6 +35,9 @@ export class Controls {
     element("timeline").addEventListener("input", () => this.scrub());
     element("timeline").addEventListener("change", () => {
       this.scrubbing = false;
+    });
+    element("branch").addEventListener("change", () => {
+      app.send({ do: "branch", number: Number(element("branch").value) });
     });
     element("speed").addEventListener("change", () => {
       app.send({ do: "speed", x: element("speed").value === "null" ? null : Number(element("speed").value) });
@@ -108,8 +111,7 @@ export class Controls {
     element("play-icon").setAttribute("href", playing ? "#i-pause" : "#i-play");
     element("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     element("back").disabled = state.tick <= state.first;
-    const later = app.live && state.paused && state.tick < state.last;
-    element("go-on").hidden = !later;
+    this.branches();
     const { speed } = state,
       select = element("speed");
     const speeds = SPEEDS.includes(speed) ? SPEEDS : [...SPEEDS.slice(0, -1), speed].sort((a, b) => a - b).concat(null);
@@ -122,11 +124,31 @@ export class Controls {
     const timeline = element("timeline");
     timeline.min = state.first;
     timeline.max = Math.max(app.horizon, state.first + 1);
+    this.mark();
     this.clock();
     this.showStatus();
     if (before && before.paused !== state.paused) {
       app.announce(state.paused ? `Paused at tick ${state.tick}${state.at_end ? ", the end" : ""}` : "Playing");
     }
+  }
+
+  /** Lists the branches once there are two. */
+  branches() {
+    const { state, scene } = this.app;
+    const branches = state.branches ?? [];
+    element("branch-label").hidden = branches.length < 2;
+    element("undo").disabled = !branches.some(({ number, actions }) => number === state.branch && actions);
+    const key = JSON.stringify(branches.map(({ number, from, actions }) => [number, from, actions]));
+    if (key !== this.listed) {
+      this.listed = key;
+      element("branch").replaceChildren(
+        ...branches.map(({ number, from, actions }) => {
+          const origin = number > 1 ? `from ${duration(from * scene.tick_s)}, ` : "";
+          return new Option(`${number}: ${origin}${actions} ${actions === 1 ? "action" : "actions"}`, String(number));
+        }),
+      );
+    }
+    element("branch").value = String(state.branch);
   }
 
   connection(is) {
@@ -177,14 +199,19 @@ export class Controls {
     timeline.style.setProperty("--known", share(Math.max(state.last, scene.mode === "recording" ? 0 : frame.tick)));
   }
 
-  /** Marks the orders on the timeline. */
-  mark(orders) {
-    const { first, last } = this.app.state;
+  /** Marks the orders on the timeline, one mark for each tick. */
+  mark() {
+    const { state, marked, horizon } = this.app;
+    if (!state || !marked || (marked === this.marked && horizon === this.markedTo)) return;
+    this.marked = marked;
+    this.markedTo = horizon;
+    const kinds = new Map();
+    for (const { tick, order } of marked) kinds.set(tick, (kinds.get(tick) ?? new Set()).add(order.kind));
     element("marks").replaceChildren(
-      ...orders.map(({ tick, order }) => {
+      ...[...kinds].map(([tick, of]) => {
         const mark = document.createElement("i");
-        mark.style.left = `${(100 * (tick - first)) / Math.max(last - first, 1)}%`;
-        mark.title = `${order.kind} at tick ${tick}`;
+        mark.style.left = `${(100 * (tick - state.first)) / Math.max(horizon - state.first, 1)}%`;
+        mark.title = `${[...of].join(", ")} at tick ${tick}`;
         return mark;
       }),
     );
@@ -193,12 +220,13 @@ export class Controls {
   scrub() {
     const { app } = this;
     this.scrubbing = true;
+    this.scrubbedTo = Number(element("timeline").value);
     // At most one order per frame.
     if (this.scrubWaits) return;
     this.scrubWaits = true;
     requestAnimationFrame(() => {
       this.scrubWaits = false;
-      app.seek(Number(element("timeline").value));
+      app.seek(this.scrubbedTo);
     });
   }
 
@@ -282,6 +310,7 @@ export class Controls {
       b: () => next(-1),
       c: () => this.toggleFollow(),
       p: () => this.toggleSide(),
+      z: () => element("undo").click(),
       d: () => app.look.toggleTheme(),
       l: () => {
         if (app.scene?.mode !== "recording") document.querySelector("[data-layer='links']").click();
