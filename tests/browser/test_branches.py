@@ -40,6 +40,10 @@ def test_a_change_in_the_past_keeps_the_old_future(view, look, tmp_path):
     play_to_the_end(page)
     changed = page.evaluate("staya.lastFigures.hash")
     assert changed != end and math.dist(place_of(page, 0)[:2], [3, 3]) < 0.05
+    # Both are shown at once: the robots of the old branch as outlines.
+    until(lambda: page.evaluate("staya.otherPlace(0)"), what="the robots of the old branch")
+    assert math.dist(page.evaluate("staya.otherPlace(0)")[:2], place_of(page, 0)[:2]) > 1
+    assert "branch 1" in page.inner_text("#legend")
     # The old branch again, with all its figures.
     show_branch(page, 1)
     assert page.evaluate("staya.state.last") == last
@@ -56,10 +60,10 @@ def test_a_change_in_the_past_keeps_the_old_future(view, look, tmp_path):
     saved = tmp_path / "saved.toml"
     download.value.save_as(saved)
     text = saved.read_text()
-    assert text.startswith("# Saved from a view: branch 2, which begins at 1.5 s, with 1 action of pages.")
+    assert text.startswith("# Saved from a view: branch 2, which begins at 1.5 s, with 1 change by pages.")
     assert re.search(rf"Trace hash after tick \d+: {changed}", text)
     assert summary(str(saved), "--out", str(tmp_path / "out"))["trace_hash"] == changed
-    assert "branch 2 with 1 action" in page.locator("#toasts").inner_text()
+    assert "branch 2 with 1 change" in page.locator("#toasts").inner_text()
 
 
 def test_undo_takes_back_the_last_change(view, look):

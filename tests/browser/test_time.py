@@ -183,3 +183,20 @@ def test_the_picture_stays_when_panels_toggle(view, look):
         setTimeout(() => document.getElementById('toggle-side').click(), 300);
     })""")
     assert not blank
+
+
+def test_an_exported_page_shows_the_same_picture_after_a_jump(look, tmp_path):
+    recording, page_file = tmp_path / "swap.staya", tmp_path / "swap.html"
+    run = [STAYA, "run", SWAP, "--ticks", "90", "--out", tmp_path / "out", "--record", recording, "-q"]
+    subprocess.run(run, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([STAYA, "page", recording, "--out", page_file, "-q"], check=True, stdout=subprocess.DEVNULL)
+    page = look(page_file.as_uri(), offline=True)
+    seek(page, 60)
+    jumped = picture(page)
+    assert len(page.evaluate("staya.trail")) > 4
+    seek(page, 0)
+    page.evaluate("staya.send({ do: 'speed', x: null })")
+    page.evaluate("staya.send({ do: 'play' })")
+    until(lambda: page.evaluate("staya.state.at_end"), what="the end")
+    seek(page, 60)
+    assert picture(page) == jumped

@@ -137,14 +137,15 @@ export class Controls {
     const { state, scene } = this.app;
     const branches = state.branches ?? [];
     element("branch-label").hidden = branches.length < 2;
-    element("undo").disabled = !branches.some(({ number, actions }) => number === state.branch && actions);
-    const key = JSON.stringify(branches.map(({ number, from, actions }) => [number, from, actions]));
+    document.querySelector("[data-layer='branch']").parentElement.hidden = branches.length < 2;
+    element("undo").disabled = !branches.some(({ number, orders }) => number === state.branch && orders);
+    const key = JSON.stringify(branches.map(({ number, from, orders }) => [number, from, orders]));
     if (key !== this.listed) {
       this.listed = key;
       element("branch").replaceChildren(
-        ...branches.map(({ number, from, actions }) => {
+        ...branches.map(({ number, from, orders }) => {
           const origin = number > 1 ? `from ${duration(from * scene.tick_s)}, ` : "";
-          return new Option(`${number}: ${origin}${actions} ${actions === 1 ? "action" : "actions"}`, String(number));
+          return new Option(`${number}: ${origin}${orders} ${orders === 1 ? "change" : "changes"}`, String(number));
         }),
       );
     }
@@ -412,6 +413,7 @@ export class Controls {
     }
     if (layers.velocities) key(line(css.velocity), "velocity", "velocity");
     if (layers.formation && scene.formation) key(line(css.formation), "formation");
+    if (app.otherBranch !== null) key(disc("transparent", css.muted), `branch ${app.otherBranch}`);
     if (layers.leaders) key(line(css.leader, [3, 3]), "leader");
     if (layers.links) {
       key(line(css.ok), "packet delivered");

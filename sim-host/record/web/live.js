@@ -62,7 +62,10 @@ export class Live {
           for (const [tick, values] of figuresOf(message.rows)) this.listener.onFigures(tick, values, message.every);
           break;
         case "trail":
-          this.listener.onTrail(message.rows.map(([tick, places]) => [tick, floatsOf(places)]));
+          this.listener.onTrail(
+            message.rows.map(([tick, places]) => [tick, floatsOf(places)]),
+            message.branch,
+          );
           break;
         case "orders":
           this.listener.onOrders(message.orders);

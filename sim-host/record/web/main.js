@@ -123,9 +123,11 @@ class App {
   onState(state) {
     const before = this.state;
     if (before && before.speed !== state.speed) this.motion.interval = 50;
+    const other = this.otherBranch;
     this.state = state;
     if (before && before.branch !== state.branch) {
-      this.plots.reset();
+      this.shownBefore = before.branch;
+      this.plots.changeBranch();
       this.renderer?.trails.reset();
     }
     if (this.timed) {
@@ -133,6 +135,10 @@ class App {
       this.renderer?.trails.forgetAfter(state.last);
     }
     this.plots.setRange(state.first, this.horizon);
+    if (this.otherBranch !== other) {
+      this.other = null;
+      this.controls.legend();
+    }
     this.controls.state(before);
     this.orders.state();
     this.dirty = true;
@@ -165,9 +171,24 @@ class App {
     this.dirty = true;
   }
 
-  /** Past positions, which the trails lack. */
-  onTrail(rows) {
+  /** The branch to compare with: the one that was shown before, else the newest; null for none. */
+  get otherBranch() {
+    const { state, look } = this;
+    const others = (state?.branches ?? []).map(({ number }) => number).filter((number) => number !== state.branch);
+    if (!others.length || !look.layers.branch) return null;
+    return others.includes(this.shownBefore) ? this.shownBefore : others.at(-1);
+  }
+
+  /** Past positions, which the trails lack, or positions in another branch. */
+  onTrail(rows, branch = null) {
     const { renderer, motion } = this;
+    if (branch !== null) {
+      const [[tick, at]] = rows;
+      this.other = { branch, tick, at };
+      this.askedOther = null;
+      this.dirty = true;
+      return;
+    }
     if (!renderer || !motion.current) return;
     const { trails } = renderer,
       { n } = motion.current;
@@ -209,14 +230,15 @@ class App {
     this.toast(text, kind);
   }
 
-  onSaved({ name, text, branch, actions }) {
+  onSaved({ name, text, branch, orders }) {
     download(name, new Blob([text], { type: "application/toml" }));
-    this.toast(`Saved branch ${branch} with ${actions} ${actions === 1 ? "action" : "actions"} as ${name}.`);
+    this.toast(`Saved branch ${branch} with ${orders} ${orders === 1 ? "change" : "changes"} as ${name}.`);
   }
 
   onConnection(is, inSeconds) {
     if (is === "open") {
       this.banner(this.lack);
+      this.askedOther = null;
       if (this.selected !== null) this.send({ do: "select", robot: this.selected });
       if (this.look.layers.links) this.send({ do: "links", on: true });
     } else if (is === "over") {
@@ -319,6 +341,16 @@ class App {
     return best;
   }
 
+  /** The position of body `i` in the other branch at this tick; null for none. */
+  placeInOther(i) {
+    const { other, otherBranch } = this;
+    const frame = this.motion.current;
+    if (!other || other.branch !== otherBranch || (this.state.paused && other.tick !== frame?.tick)) return null;
+    const { at } = other,
+      n = frame.n;
+    return at.length < 2 * n ? null : [at[i], at[n + i], at.length > 2 * n ? at[2 * n + i] : 0];
+  }
+
   /** The goal of body `i`; null for none. */
   targetOf(i) {
     const frame = this.motion.current;
@@ -405,9 +437,14 @@ class App {
   }
 
   askForTrail(now) {
-    const { motion, renderer } = this;
+    const { motion, renderer, otherBranch: branch } = this;
+    const tick = motion.current?.tick;
+    if (branch !== null && tick !== undefined && !this.askedOther && this.other?.tick !== tick) {
+      this.askedOther = true;
+      this.send({ do: "trail", branch, ticks: [tick] });
+    }
     if (!this.timed || !motion.current || !this.suitTrails(motion.current)) return;
-    const ticks = renderer.trails.missing(motion.current.tick, now);
+    const ticks = renderer.trails.missing(tick, now);
     if (ticks.length) this.send({ do: "trail", ticks });
   }
 
@@ -484,6 +521,8 @@ window.staya = {
   get marks() {
     return { robot: app.look.leastRadius, goal: app.look.targetSize };
   },
+  /** Position of a robot in the other branch, metres. */
+  otherPlace: (i) => app.placeInOther(i),
   get plotted() {
     return [app.plots.first, app.plots.last];
   },
@@ -495,10 +534,11 @@ window.staya = {
     const { trails } = app.renderer;
     return trails.ticks(app.motion.tick).filter((tick) => trails.rows.has(tick)).reverse();
   },
-  /** Whether the trail of the shown moment is complete. */
+  /** Whether the picture has all that belongs to the shown moment. */
   get settled() {
     const { motion, renderer } = app;
     if (!motion.current || motion.mix < 1) return false;
+    if (app.otherBranch !== null && app.other?.tick !== motion.current.tick) return false;
     return !renderer?.hasTrails || renderer.trails.ticks(motion.tick).every((tick) => renderer.trails.rows.has(tick));
   },
   target: (i) => app.targetOf(i),

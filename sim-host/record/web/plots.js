@@ -69,7 +69,16 @@ export class Plots {
     this.spacing = 1;
     // Samples with more ticks between them are not joined.
     this.every = 1;
+    // The samples of the branch that was shown before.
+    this.before = null;
     this.stale = true;
+  }
+
+  /** Starts with another branch; the lines of the one before stay as faint lines. */
+  changeBranch() {
+    const { samples, known, count, spacing, every } = this;
+    this.reset();
+    this.before = { samples, known, count, spacing, every };
   }
 
   add(tick, values, every = 1) {
@@ -123,7 +132,7 @@ export class Plots {
   /** The drawn pieces of a plot's first line. */
   lines(name) {
     const same = (value) => value;
-    return this.pieces(LINES.indexOf(PLOTS.find((plot) => plot.name === name).lines[0]), same, same);
+    return pieces(this, LINES.indexOf(PLOTS.find((plot) => plot.name === name).lines[0]), same, same);
   }
 
   /** The known samples of a plot's first line, `[tick, value]`. */
@@ -191,9 +200,18 @@ export class Plots {
     context.stroke();
     plot.lines.forEach(({ colour }, i) => {
       context.strokeStyle = context.fillStyle = colours[colour];
-      context.lineWidth = 1.4;
       context.lineJoin = context.lineCap = "round";
-      for (const points of this.pieces(from + i, (at) => Math.round(x(at) * 2 * ratio) / 2 / ratio, y)) {
+      const column = (at) => Math.round(x(at) * 2 * ratio) / 2 / ratio;
+      context.lineWidth = 1;
+      context.globalAlpha = 0.4;
+      for (const points of this.before ? pieces(this.before, from + i, column, y) : []) {
+        context.beginPath();
+        for (const point of points) context.lineTo(...point);
+        context.stroke();
+      }
+      context.lineWidth = 1.4;
+      context.globalAlpha = 1;
+      for (const points of pieces(this, from + i, column, y)) {
         const [[firstX, firstY], [lastX]] = [points[0], points.at(-1)];
         context.beginPath();
         for (const point of points) context.lineTo(...point);
@@ -214,39 +232,38 @@ export class Plots {
     context.lineTo(x(tick), height);
     context.stroke();
   }
+}
 
-  /** Joined points of a line; each gap in time or value starts a new piece. Of the samples with one
-      place on the x axis, it keeps the first, least, greatest and last one. */
-  pieces(line, x, y) {
-    const { samples, known, count, spacing } = this;
-    const joined = Math.max(this.every, spacing);
-    const pieces = [];
-    let before = -Infinity,
-      column = null;
-    const flush = () => {
-      if (!column) return;
-      const { at, values } = column;
-      const [first, last] = [values[0], values.at(-1)];
-      const kept = values.length > 2 ? [first, Math.min(...values), Math.max(...values), last] : values;
-      pieces.at(-1).push(...kept.map((value) => [at, y(value)]));
-      column = null;
-    };
-    for (let i = 0; i < count; i++) {
-      const value = samples[i * PLOTTED + line];
-      if (!known[i] || Number.isNaN(value)) {
-        if (known[i]) before = -Infinity;
-        continue;
-      }
-      const tick = i * spacing,
-        at = x(tick);
-      const isNew = tick - before > joined;
-      if (isNew || column?.at !== at) flush();
-      if (isNew) pieces.push([]);
-      if (column) column.values.push(value);
-      else column = { at, values: [value] };
-      before = tick;
+/** Joined points of a line; each gap in time or value starts a new piece. Of the samples with one
+    place on the x axis, it keeps the first, least, greatest and last one. */
+function pieces({ samples, known, count, spacing, every }, line, x, y) {
+  const joined = Math.max(every, spacing);
+  const found = [];
+  let before = -Infinity,
+    column = null;
+  const flush = () => {
+    if (!column) return;
+    const { at, values } = column;
+    const [first, last] = [values[0], values.at(-1)];
+    const kept = values.length > 2 ? [first, Math.min(...values), Math.max(...values), last] : values;
+    found.at(-1).push(...kept.map((value) => [at, y(value)]));
+    column = null;
+  };
+  for (let i = 0; i < count; i++) {
+    const value = samples[i * PLOTTED + line];
+    if (!known[i] || Number.isNaN(value)) {
+      if (known[i]) before = -Infinity;
+      continue;
     }
-    flush();
-    return pieces;
+    const tick = i * spacing,
+      at = x(tick);
+    const isNew = tick - before > joined;
+    if (isNew || column?.at !== at) flush();
+    if (isNew) found.push([]);
+    if (column) column.values.push(value);
+    else column = { at, values: [value] };
+    before = tick;
   }
+  flush();
+  return found;
 }

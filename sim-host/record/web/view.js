@@ -189,6 +189,7 @@ export class View {
     const at = (i) => app.camera.project(...app.motion.place(i, [0, 0, 0]));
     const selected = app.selected !== null && app.selected < frame.n;
     if (selected && app.look.layers.known) this.drawGhosts();
+    this.drawOther(frame);
     this.drawCrosses();
     this.drawGoals(frame);
     if (app.look.layers.numbers) this.drawNumbers(frame, at);
@@ -300,6 +301,29 @@ export class View {
         context.lineWidth = 1.5;
         context.strokeStyle = css.ghost;
       }
+    }
+  }
+
+  /** Draws where the robots are in another branch at this tick. */
+  drawOther(frame) {
+    const { app, context } = this;
+    if (app.otherBranch === null) return;
+    context.lineWidth = 1;
+    context.strokeStyle = app.look.css.muted;
+    for (let i = 0; i < frame.n; i++) {
+      const place = app.placeInOther(i),
+        to = place && app.camera.project(...place),
+        from = app.camera.project(...app.motion.place(i, [0, 0, 0]));
+      if (!to || !from || Math.hypot(to[0] - from[0], to[1] - from[1]) < 1) continue;
+      context.setLineDash([2, 3]);
+      context.beginPath();
+      context.moveTo(from[0], from[1]);
+      context.lineTo(to[0], to[1]);
+      context.stroke();
+      context.setLineDash([]);
+      context.beginPath();
+      context.arc(to[0], to[1], this.pixelRadius(i, to), 0, 2 * Math.PI);
+      context.stroke();
     }
   }
 

@@ -179,7 +179,7 @@ impl Playback {
                     for tick in ticks {
                         frames.push((tick, self.reader.frame_bytes(tick)?.to_vec()));
                     }
-                    server.say(Some(client), trail(frames.iter().map(|(tick, frame)| (*tick, &frame[..]))));
+                    server.say(Some(client), trail(None, frames.iter().map(|(tick, frame)| (*tick, &frame[..]))));
                     return Ok(());
                 }
                 Ok(Wanted::Other) => {}

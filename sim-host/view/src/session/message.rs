@@ -27,7 +27,7 @@ pub(super) enum Wanted {
     Seek { tick: u32 },
     Select { robot: Option<usize> },
     Links { on: bool },
-    Trail { ticks: Vec<u32> },
+    Trail { ticks: Vec<u32>, branch: Option<u32> },
     Branch { number: u32 },
     Undo,
     Seen { frames: u64 },
@@ -106,16 +106,16 @@ pub(super) fn error(text: &str) -> String {
 pub(super) fn saved(name: &str, branch: &Branch, text: &str) -> String {
     let number = branch.number;
     let file = if number > 1 { format!("{name}-branch-{number}.toml") } else { format!("{name}-by-hand.toml") };
-    json!({ "type": "saved", "name": file, "branch": number, "actions": branch.done.len(), "text": text }).to_string()
+    json!({ "type": "saved", "name": file, "branch": number, "orders": branch.done.len(), "text": text }).to_string()
 }
 
 /// The positions of frames, each with the tick for which a page asked.
-pub(crate) fn trail<'a>(frames: impl Iterator<Item = (u32, &'a [u8])>) -> String {
+pub(crate) fn trail<'a>(branch: Option<u32>, frames: impl Iterator<Item = (u32, &'a [u8])>) -> String {
     let rows = frames.filter_map(|(tick, frame)| {
         let (_, positions) = FrameData::positions_of(frame).ok()?;
         Some(json!([tick, BASE64_STANDARD.encode(positions)]))
     });
-    json!({ "type": "trail", "rows": rows.collect::<Vec<_>>() }).to_string()
+    json!({ "type": "trail", "branch": branch, "rows": rows.collect::<Vec<_>>() }).to_string()
 }
 
 pub(super) fn event(event: &Event) -> String {
@@ -181,11 +181,11 @@ impl Session {
         branches.sort_unstable_by_key(|branch| branch.number);
         let branches = branches.iter().map(|branch| {
             let last = branch.memory.last().unwrap_or_default();
-            json!({ "number": branch.number, "from": branch.from, "last": last, "actions": branch.done.len() })
+            json!({ "number": branch.number, "from": branch.from, "last": last, "orders": branch.done.len() })
         });
         json!({
             "type": "state",
-            "paused": self.pace.is_paused(),
+            "paused": self.pace.is_paused() && self.runs_on_to.is_none(),
             "speed": self.pace.speed(),
             "tick": self.catches_up_to.unwrap_or(self.tick),
             "first": 0,
@@ -199,7 +199,7 @@ impl Session {
         .to_string()
     }
 
-    /// The planned actions and those of pages.
+    /// The planned orders and those of pages.
     pub(super) fn orders(&self) -> String {
         let orders = self.scenario.interventions.iter().chain(&self.branch.done).map(|(tick, what)| {
             let kind = serde_json::to_value(what).map(|mut what| what["kind"].take());
@@ -208,9 +208,11 @@ impl Session {
         json!({ "type": "orders", "orders": orders.collect::<Vec<_>>() }).to_string()
     }
 
-    /// Past positions.
-    pub(super) fn trail(&self, ticks: &[u32]) -> String {
-        trail(ticks.iter().filter_map(|&tick| Some((tick, self.branch.memory.at(tick)?))))
+    /// Past positions, of another branch by its number.
+    pub(super) fn trail(&self, ticks: &[u32], branch: Option<u32>) -> String {
+        let other = branch.and_then(|number| self.branches.iter().find(|branch| branch.number == number));
+        let memory = &other.unwrap_or(&self.branch).memory;
+        trail(branch, ticks.iter().filter_map(|&tick| Some((tick, memory.at(tick)?))))
     }
 
     pub(super) fn links(&self) -> String {

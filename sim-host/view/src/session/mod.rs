@@ -175,7 +175,10 @@ impl Session {
             }
             if let Some(goal) = self.runs_on_to {
                 self.advance(server);
-                self.runs_on_to = (self.tick < goal && !self.is_over).then_some(goal);
+                if self.tick >= goal || self.is_over {
+                    self.runs_on_to = None;
+                    self.tell(server);
+                }
                 continue;
             }
             let now = Instant::now();
@@ -398,8 +401,8 @@ impl Session {
                 }
                 self.is_new = true;
             }
-            Wanted::Trail { ticks } => {
-                let trail = self.trail(&ticks[..ticks.len().min(TRAIL)]);
+            Wanted::Trail { ticks, branch } => {
+                let trail = self.trail(&ticks[..ticks.len().min(TRAIL)], branch);
                 return server.say(Some(client), trail);
             }
             Wanted::Branch { number } => match self.branches.take(number) {
@@ -412,7 +415,7 @@ impl Session {
             },
             Wanted::Undo => match self.branches.undo(&mut self.branch) {
                 Some(tick) => self.show_branch(tick, server),
-                None => error("there is no action to undo"),
+                None => error("there is no change to undo"),
             },
             Wanted::Seen { frames } => server.seen(client, frames),
             Wanted::Save => {

@@ -169,7 +169,7 @@ fn a_saved_scenario_repeats_the_actions_of_a_page() {
         run.say(&json!({ "do": "undo" }));
         run.state(|state| {
             let branches = state["branches"].as_array().expect("a list").iter();
-            branches.clone().any(|each| each["number"] == state["branch"] && each["actions"] == left)
+            branches.clone().any(|each| each["number"] == state["branch"] && each["orders"] == left)
         });
     }
     run.last = None;
@@ -191,7 +191,7 @@ fn an_order_in_the_past_makes_a_branch_and_the_old_future_stays() {
     run.say(&json!({ "do": "order", "order": { "kind": "goal", "robot": 0, "place_m": [3, 3, 0] } }));
     let state = run.state(|state| state["branch"] == 2);
     assert_eq!((&state["last"], &state["branches"][0]["last"]), (&json!(10), &json!(40)));
-    assert_eq!(state["branches"][1], json!({ "number": 2, "from": 10, "last": 10, "actions": 1 }));
+    assert_eq!(state["branches"][1], json!({ "number": 2, "from": 10, "last": 10, "orders": 1 }));
     run.say(&json!({ "do": "seek", "tick": 40 }));
     run.state(|state| state["tick"] == 40 && state["last"] == 40);
     run.last = None;
@@ -216,6 +216,7 @@ fn past_positions_and_all_figures_are_sent() {
     assert_eq!(rows.iter().map(|row| row[0].as_u64()).collect::<Vec<_>>(), [Some(0), Some(5), Some(12)]);
     let bytes = BASE64_STANDARD.decode(rows[2][1].as_str().expect("a text")).expect("base64");
     let columns = [0, 1].into_iter().flat_map(|axis| frame.position_m.iter().map(move |at| at[axis]));
+    assert_eq!(trail["branch"], Value::Null);
     assert_eq!(bytes, columns.flat_map(f32::to_le_bytes).collect::<Vec<_>>());
 }
 

@@ -21,14 +21,14 @@ pub(super) fn saved(text: &str, scenario: &Scenario, branch: &Branch, tick: u32,
     let Branch { number, from, done, .. } = branch;
     let text = with_top_field(text, "seed", &scenario.seed.to_string());
     // No event of the file may be after the end.
-    let last_action = done.last().map_or(0, |(tick, _)| *tick);
-    let ticks = scenario.ticks.max(tick).max(scenario.last_event()).max(last_action);
+    let last_change = done.last().map_or(0, |(tick, _)| *tick);
+    let ticks = scenario.ticks.max(tick).max(scenario.last_event()).max(last_change);
     let text = with_top_field(&text, "ticks", &ticks.to_string());
-    let (actions, from_s) = (done.len(), f64::from(*from) * scenario.tick_s());
-    let unit = if actions == 1 { "action" } else { "actions" };
+    let (changes, from_s) = (done.len(), f64::from(*from) * scenario.tick_s());
+    let unit = if changes == 1 { "change" } else { "changes" };
     let origin = if *number > 1 { format!(", which begins at {from_s} s") } else { String::new() };
     let head = format!(
-        "# Saved from a view: branch {number}{origin}, with {actions} {unit} of pages.\n\
+        "# Saved from a view: branch {number}{origin}, with {changes} {unit} by pages.\n\
          # Trace hash after tick {tick}: {hash}\n\
          # Relative paths refer to the folder of the original scenario.\n"
     );
