@@ -2,9 +2,10 @@
 
 import base64
 import re
+import subprocess
 import xml.etree.ElementTree
 
-from conftest import ROOT, until
+from conftest import ROOT, STAYA, until
 from test_view import SWAP, seek, tick
 
 GROUPS = "scenarios/groups.toml"
@@ -19,6 +20,16 @@ def test_an_address_opens_a_moment(view, look):
     until(lambda: page.evaluate("staya.robot?.tick") == wanted, what="the robot")
     page.evaluate("location.hash = 't=1'")
     until(lambda: tick(page) == round(1 / page.evaluate("staya.scene.tick_s")), what="another moment")
+
+
+def test_an_address_opens_a_moment_of_an_exported_page(look, tmp_path):
+    page_file = tmp_path / "swap.html"
+    command = [STAYA, "page", SWAP, "--out", page_file, "-q"]
+    subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    page = look(page_file.as_uri() + "#t=1.5&robot=7", offline=True)
+    wanted = round(1.5 / page.evaluate("staya.scene.tick_s"))
+    until(lambda: tick(page) == wanted and page.evaluate("staya.state.paused"), what="the moment")
+    assert page.evaluate("staya.robot.id") == 7
 
 
 def test_pictures_are_saved_as_png_and_svg(view, look, tmp_path):

@@ -2,7 +2,6 @@
 
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, null];
 const PAN_PIXELS = 60;
-const COUNTS_EVERY_MS = 250;
 const NARROW = "(max-width: 720px)";
 
 const element = (id) => document.getElementById(id);
@@ -19,7 +18,6 @@ export function duration(seconds) {
 export class Controls {
   constructor(app) {
     this.app = app;
-    this.counted = 0;
     this.is = "";
     const click = (id, action) => element(id).addEventListener("click", action);
     click("play", () => this.playOrPause());
@@ -437,16 +435,13 @@ export class Controls {
       }, "wall");
     }
     element("legend-body").replaceChildren(...keys);
-    this.counted = 0;
     this.counts();
   }
 
   counts() {
     const { app } = this;
-    const frame = app.motion.current,
-      now = performance.now();
-    if (!frame || !element("legend").open || now - this.counted < COUNTS_EVERY_MS) return;
-    this.counted = now;
+    const frame = app.motion.current;
+    if (!frame || !element("legend").open) return;
     const counts = { mode: new Uint32Array(256), wait: new Uint32Array(256) };
     const n = Math.min(frame.n, app.robots);
     for (let i = 0; i < n; i++) {

@@ -19,6 +19,8 @@ import { View } from "staya/view.js";
 const PLOTS_EVERY_MS = 120;
 const TOAST_MS = 6000;
 const TOP_RATIO = 2;
+// Robots of another branch are shown up to this number.
+const MOST_OTHERS = 2000;
 const NO_WEBGL =
   "This browser does not support WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, " +
   "or start Chromium with --enable-unsafe-swiftshader; current versions of Firefox, Chrome, Edge and Safari support it.";
@@ -162,7 +164,8 @@ class App {
     this.figures = frame.figures;
     // A live run sends the figures of all ticks.
     if (!this.live) this.plots.add(frame.tick, plotted(frame.figures));
-    if (this.suitTrails(frame)) this.renderer.trails.store(frame.tick, frame.x, frame.y, frame.z);
+    // Frames and other messages are not ordered, so that a frame may be of the branch before.
+    if (!this.live && this.suitTrails(frame)) this.renderer.trails.store(frame.tick, frame.x, frame.y, frame.z);
   }
 
   /** Passes figures to the plots; `every` is the distance between ticks. */
@@ -175,7 +178,7 @@ class App {
   get otherBranch() {
     const { state, look } = this;
     const others = (state?.branches ?? []).map(({ number }) => number).filter((number) => number !== state.branch);
-    if (!others.length || !look.layers.branch) return null;
+    if (!others.length || !look.layers.branch || this.robots > MOST_OTHERS) return null;
     return others.includes(this.shownBefore) ? this.shownBefore : others.at(-1);
   }
 

@@ -86,6 +86,7 @@ export class Player {
       while (this.wanted !== null) {
         const tick = this.wanted;
         this.wanted = null;
+        this.awaited = tick;
         await this.show(tick);
         this.say();
       }
@@ -208,7 +209,7 @@ export class Player {
         break;
       case "select":
         this.selected = message.robot;
-        this.wanted ??= this.tick;
+        this.wanted ??= this.busy ? this.awaited : this.tick;
         this.fetch();
         break;
     }

@@ -252,7 +252,7 @@ impl Session {
     fn go_to(&mut self, tick: u32) {
         if tick < self.tick {
             self.start_again(tick);
-        } else if tick > self.tick {
+        } else if tick > self.tick || self.catches_up_to.is_some() {
             self.catches_up_to = Some(tick);
         }
     }
@@ -350,6 +350,8 @@ impl Session {
                 self.log_links();
             }
             FromPage::Said(client, text) => match Wanted::read(&text) {
+                // A later seek replaces the one that is under way.
+                Ok(asked @ Wanted::Seek { .. }) if self.deferred.is_empty() => self.answer(client, asked, server),
                 Ok(asked) if self.catches_up_to.is_some() && asked.needs_the_run() => {
                     if self.deferred.len() < DEFERRED {
                         self.deferred.push_back((client, asked));

@@ -205,6 +205,22 @@ fn an_order_in_the_past_makes_a_branch_and_the_old_future_stays() {
 }
 
 #[test]
+fn a_later_seek_replaces_the_one_under_way() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    run.say(&json!({ "do": "seek", "tick": 60 }));
+    run.state(|state| state["tick"] == 60 && state["paused"] == true);
+    // More than the number of requests that may wait.
+    for tick in (0..2 * DEFERRED).map(|at| at % 60) {
+        run.say(&json!({ "do": "seek", "tick": tick }));
+    }
+    run.say(&json!({ "do": "seek", "tick": 17 }));
+    run.say(&json!({ "do": "order", "order": { "kind": "goal", "robot": 0, "place_m": [3, 3, 0] } }));
+    let state = run.state(|state| state["branch"] == 2);
+    assert_eq!((&state["tick"], &state["branches"][1]["from"]), (&json!(17), &json!(17)));
+}
+
+#[test]
 fn past_positions_and_all_figures_are_sent() {
     let mut run = Running::new(IN_PLANE);
     run.text("scene");
