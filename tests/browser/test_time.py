@@ -95,6 +95,7 @@ def test_plots_do_not_join_values_across_gaps(view, look):
     known = [(at, value) for at, value in page.evaluate("staya.series('Smallest gap')") if not math.isnan(value)]
     pieces = 1 + sum(after[0] - before[0] > 1 for before, after in zip(known, known[1:]))
     assert pieces > 1
+    assert page.get_by_text("Smallest gap", exact=True).is_visible()
     drawn = page.evaluate("staya.lines('Smallest gap')")
     assert len(drawn) == pieces
     # No piece begins before the one before it ends.
@@ -172,15 +173,17 @@ def test_links_appear_while_paused(view, look):
 def test_the_picture_stays_when_panels_toggle(view, look):
     page = look(view(SWAP, "--paused").url)
     blank = page.evaluate("""() => new Promise(resolve => {
-        const overlay = document.getElementById('ground');
+        const ground = document.getElementById('ground');
         // Called after the page's own observer and before the browser paints.
         let calls = 0;
         new ResizeObserver(() => {
-            if (++calls < 2) return;
-            const { data } = overlay.getContext('2d').getImageData(0, 0, overlay.width, overlay.height);
+            if (++calls === 1) {
+                setTimeout(() => document.getElementById('toggle-side').click());
+                return;
+            }
+            const { data } = ground.getContext('2d').getImageData(0, 0, ground.width, ground.height);
             resolve(data[0] + data[1] + data[2] === 0);
         }).observe(document.getElementById('stage'));
-        setTimeout(() => document.getElementById('toggle-side').click(), 300);
     })""")
     assert not blank
 

@@ -154,7 +154,7 @@ export class Plots {
       const from = line;
       line += plot.lines.length;
       const values = plot.lines.map(({ of }) => of(figures) ?? null);
-      if (row.hidden && values.some((each) => each !== null)) row.hidden = false;
+      if (row.hidden && (values.some((each) => each !== null) || this.hasValues(from, line))) row.hidden = false;
       if (row.hidden) continue;
       value.replaceChildren(
         ...values.map((each, i) => {
@@ -171,6 +171,14 @@ export class Plots {
       );
       this.drawPlot(canvas, plot, from, tick, colours);
     }
+  }
+
+  /** Whether a line of `from..to` has a known value. */
+  hasValues(from, to) {
+    for (let i = 0; i < this.count; i++) {
+      for (let k = from; this.known[i] && k < to; k++) if (!Number.isNaN(this.samples[i * PLOTTED + k])) return true;
+    }
+    return false;
   }
 
   drawPlot(canvas, plot, from, tick, colours) {
