@@ -18,7 +18,7 @@ use crate::pace::{Pace, SLICE};
 use crate::server::{Client, FromPage, Server, WORDS};
 use branch::{Branch, Branches, changes_scene};
 use message::Wanted;
-use staya_sim::engine::{Operated, operated};
+use staya_sim::engine::{Engine, operated};
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{Overrides, Scenario, ScenarioError};
 use staya_sim::world::Misplaced;
@@ -58,7 +58,7 @@ pub struct Session {
     text: String,
     path: PathBuf,
     scenario: Scenario,
-    engine: Box<dyn Operated>,
+    engine: Engine,
     tick: u32,
     framer: Framer,
     frame: FrameData,
@@ -207,7 +207,7 @@ impl Session {
 
     fn step(&mut self) {
         self.has_new_land |= self.scenario.changes.iter().any(|rule| rule.is_due(self.tick));
-        self.engine.advance();
+        self.engine.step();
         self.tick += 1;
         self.repeat_orders();
         self.has_work |= !self.engine.is_over();
