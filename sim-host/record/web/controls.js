@@ -2,7 +2,6 @@
 
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, null];
 const PAN_PIXELS = 60;
-const COUNTS_EVERY_MS = 250;
 const NARROW = "(max-width: 720px)";
 
 const element = (id) => document.getElementById(id);
@@ -19,11 +18,10 @@ export function duration(seconds) {
 export class Controls {
   constructor(app) {
     this.app = app;
-    this.counted = 0;
     this.is = "";
     const click = (id, action) => element(id).addEventListener("click", action);
     click("play", () => this.playOrPause());
-    click("go-on", () => app.send({ do: "play" }));
+    click("undo", () => app.send({ do: "undo" }));
     click("step", () => this.step(1));
     click("back", () => this.step(-1));
     click("zoom-in", () => app.camera.zoom(1.4));
@@ -35,6 +33,9 @@ export class Controls {
     element("timeline").addEventListener("input", () => this.scrub());
     element("timeline").addEventListener("change", () => {
       this.scrubbing = false;
+    });
+    element("branch").addEventListener("change", () => {
+      app.send({ do: "branch", number: Number(element("branch").value) });
     });
     element("speed").addEventListener("change", () => {
       app.send({ do: "speed", x: element("speed").value === "null" ? null : Number(element("speed").value) });
@@ -108,8 +109,7 @@ export class Controls {
     element("play-icon").setAttribute("href", playing ? "#i-pause" : "#i-play");
     element("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     element("back").disabled = state.tick <= state.first;
-    const later = app.live && state.paused && state.tick < state.last;
-    element("go-on").hidden = !later;
+    this.branches();
     const { speed } = state,
       select = element("speed");
     const speeds = SPEEDS.includes(speed) ? SPEEDS : [...SPEEDS.slice(0, -1), speed].sort((a, b) => a - b).concat(null);
@@ -122,11 +122,32 @@ export class Controls {
     const timeline = element("timeline");
     timeline.min = state.first;
     timeline.max = Math.max(app.horizon, state.first + 1);
+    this.mark();
     this.clock();
     this.showStatus();
     if (before && before.paused !== state.paused) {
       app.announce(state.paused ? `Paused at tick ${state.tick}${state.at_end ? ", the end" : ""}` : "Playing");
     }
+  }
+
+  /** Lists the branches once there are two. */
+  branches() {
+    const { state, scene } = this.app;
+    const branches = state.branches ?? [];
+    element("branch-label").hidden = branches.length < 2;
+    document.querySelector("[data-layer='branch']").parentElement.hidden = branches.length < 2;
+    element("undo").disabled = !branches.some(({ number, orders }) => number === state.branch && orders);
+    const key = JSON.stringify(branches.map(({ number, from, orders }) => [number, from, orders]));
+    if (key !== this.listed) {
+      this.listed = key;
+      element("branch").replaceChildren(
+        ...branches.map(({ number, from, orders }) => {
+          const origin = number > 1 ? `from ${duration(from * scene.tick_s)}, ` : "";
+          return new Option(`${number}: ${origin}${orders} ${orders === 1 ? "change" : "changes"}`, String(number));
+        }),
+      );
+    }
+    element("branch").value = String(state.branch);
   }
 
   connection(is) {
@@ -177,14 +198,19 @@ export class Controls {
     timeline.style.setProperty("--known", share(Math.max(state.last, scene.mode === "recording" ? 0 : frame.tick)));
   }
 
-  /** Marks the orders on the timeline. */
-  mark(orders) {
-    const { first, last } = this.app.state;
+  /** Marks the orders on the timeline, one mark for each tick. */
+  mark() {
+    const { state, marked, horizon } = this.app;
+    if (!state || !marked || (marked === this.marked && horizon === this.markedTo)) return;
+    this.marked = marked;
+    this.markedTo = horizon;
+    const kinds = new Map();
+    for (const { tick, order } of marked) kinds.set(tick, (kinds.get(tick) ?? new Set()).add(order.kind));
     element("marks").replaceChildren(
-      ...orders.map(({ tick, order }) => {
+      ...[...kinds].map(([tick, of]) => {
         const mark = document.createElement("i");
-        mark.style.left = `${(100 * (tick - first)) / Math.max(last - first, 1)}%`;
-        mark.title = `${order.kind} at tick ${tick}`;
+        mark.style.left = `${(100 * (tick - state.first)) / Math.max(horizon - state.first, 1)}%`;
+        mark.title = `${[...of].join(", ")} at tick ${tick}`;
         return mark;
       }),
     );
@@ -193,12 +219,13 @@ export class Controls {
   scrub() {
     const { app } = this;
     this.scrubbing = true;
+    this.scrubbedTo = Number(element("timeline").value);
     // At most one order per frame.
     if (this.scrubWaits) return;
     this.scrubWaits = true;
     requestAnimationFrame(() => {
       this.scrubWaits = false;
-      app.seek(Number(element("timeline").value));
+      app.seek(this.scrubbedTo);
     });
   }
 
@@ -282,6 +309,7 @@ export class Controls {
       b: () => next(-1),
       c: () => this.toggleFollow(),
       p: () => this.toggleSide(),
+      z: () => element("undo").click(),
       d: () => app.look.toggleTheme(),
       l: () => {
         if (app.scene?.mode !== "recording") document.querySelector("[data-layer='links']").click();
@@ -383,6 +411,7 @@ export class Controls {
     }
     if (layers.velocities) key(line(css.velocity), "velocity", "velocity");
     if (layers.formation && scene.formation) key(line(css.formation), "formation");
+    if (app.otherBranch !== null) key(disc("transparent", css.muted), `branch ${app.otherBranch}`);
     if (layers.leaders) key(line(css.leader, [3, 3]), "leader");
     if (layers.links) {
       key(line(css.ok), "packet delivered");
@@ -406,16 +435,13 @@ export class Controls {
       }, "wall");
     }
     element("legend-body").replaceChildren(...keys);
-    this.counted = 0;
     this.counts();
   }
 
   counts() {
     const { app } = this;
-    const frame = app.motion.current,
-      now = performance.now();
-    if (!frame || !element("legend").open || now - this.counted < COUNTS_EVERY_MS) return;
-    this.counted = now;
+    const frame = app.motion.current;
+    if (!frame || !element("legend").open) return;
     const counts = { mode: new Uint32Array(256), wait: new Uint32Array(256) };
     const n = Math.min(frame.n, app.robots);
     for (let i = 0; i < n; i++) {

@@ -10,7 +10,8 @@ import { Motion } from "staya/motion.js";
 import { Orders } from "staya/orders.js";
 import { Panel } from "staya/panel.js";
 import { Player } from "staya/player.js";
-import { Plots } from "staya/plots.js";
+import { Picture, download } from "staya/picture.js";
+import { Plots, plotted } from "staya/plots.js";
 import { Pointer } from "staya/pointer.js";
 import { Renderer } from "staya/renderer.js";
 import { View } from "staya/view.js";
@@ -18,6 +19,8 @@ import { View } from "staya/view.js";
 const PLOTS_EVERY_MS = 120;
 const TOAST_MS = 6000;
 const TOP_RATIO = 2;
+// Robots of another branch are shown up to this number.
+const MOST_OTHERS = 2000;
 const NO_WEBGL =
   "This browser does not support WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, " +
   "or start Chromium with --enable-unsafe-swiftshader; current versions of Firefox, Chrome, Edge and Safari support it.";
@@ -46,12 +49,19 @@ class App {
     this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
     this.panel = new Panel(this);
     this.orders = new Orders(this);
+    this.picture = new Picture(this);
     this.controls = new Controls(this);
     this.pointer = new Pointer(this, element("overlay"));
     this.look.onTheme = () => this.restyle();
     this.restyle();
     this.banner(this.lack);
     new ResizeObserver(() => this.resize()).observe(element("stage"));
+    // A plot in a closed panel has no size and is drawn when the panel opens.
+    new ResizeObserver(() => {
+      this.plots.stale = this.dirty = true;
+      this.plottedAt = 0;
+    }).observe(element("plots"));
+    addEventListener("hashchange", () => this.scene && this.state && this.openAddress());
     this.resize();
   }
 
@@ -89,6 +99,7 @@ class App {
     if (isNewRun) {
       this.motion.reset();
       this.plots.reset();
+      this.renderer?.trails.reset();
     }
     const balls = scene.kind === "space" ? this.solids.filter(({ kind }) => kind === "ball") : [];
     if (isNewRun || balls.length) {
@@ -101,7 +112,8 @@ class App {
     this.ground.setScene(scene, this.cells, this.solids);
     this.look.words = scene.words;
     if (!same) {
-      this.look.colourBy = this.robots <= 8 ? "robot" : "mode";
+      const groups = new Set(scene.robots.group).size;
+      this.look.colourBy = groups > 1 ? "group" : this.robots <= 8 ? "robot" : "mode";
       this.select(null);
       this.fit();
     }
@@ -113,19 +125,36 @@ class App {
   onState(state) {
     const before = this.state;
     if (before && before.speed !== state.speed) this.motion.interval = 50;
-    if (state.last < (before?.last ?? 0)) this.plots.forgetAfter(state.last);
+    const other = this.otherBranch;
     this.state = state;
-    this.plots.setRange(state.first, state.last);
+    if (before && before.branch !== state.branch) {
+      this.shownBefore = before.branch;
+      this.plots.changeBranch();
+      this.renderer?.trails.reset();
+    }
+    if (this.timed) {
+      this.plots.forgetAfter(state.last);
+      this.renderer?.trails.forgetAfter(state.last);
+    }
+    this.plots.setRange(state.first, this.horizon);
+    if (this.otherBranch !== other) {
+      this.other = null;
+      this.controls.legend();
+    }
     this.controls.state(before);
     this.orders.state();
     this.dirty = true;
+    if (!this.opened && this.scene) {
+      this.opened = true;
+      this.openAddress();
+    }
   }
 
-  /** The tick at the end of the timeline. */
+  /** The tick at the end of the timeline: of all ticks of the scenario or the recording. */
   get horizon() {
     const { state, scene } = this;
     if (!state || !scene) return 1;
-    return scene.mode !== "live" || state.at_end ? state.last : Math.max(state.last, scene.ticks ?? 0);
+    return scene.mode === "live" ? Math.max(state.last, scene.ticks) : state.last;
   }
 
   onFrame(frame) {
@@ -133,12 +162,49 @@ class App {
     if (!this.scene) return;
     this.motion.offer(frame);
     this.figures = frame.figures;
-    this.plots.add(frame.tick, frame.figures);
+    // A live run sends the figures of all ticks.
+    if (!this.live) this.plots.add(frame.tick, plotted(frame.figures));
+    // Frames and other messages are not ordered, so that a frame may be of the branch before.
+    if (!this.live && this.suitTrails(frame)) this.renderer.trails.store(frame.tick, frame.x, frame.y, frame.z);
   }
 
-  /** Passes figures to the plots. */
-  onFigures(tick, figures) {
-    this.plots.add(tick, figures);
+  /** Passes figures to the plots; `every` is the distance between ticks. */
+  onFigures(tick, values, every) {
+    this.plots.add(tick, values, every);
+    this.dirty = true;
+  }
+
+  /** The branch to compare with: the one that was shown before, else the newest; null for none. */
+  get otherBranch() {
+    const { state, look } = this;
+    const others = (state?.branches ?? []).map(({ number }) => number).filter((number) => number !== state.branch);
+    if (!others.length || !look.layers.branch || this.robots > MOST_OTHERS) return null;
+    return others.includes(this.shownBefore) ? this.shownBefore : others.at(-1);
+  }
+
+  /** Past positions, which the trails lack, or positions in another branch. */
+  onTrail(rows, branch = null) {
+    const { renderer, motion } = this;
+    if (branch !== null) {
+      const [[tick, at]] = rows;
+      this.other = { branch, tick, at };
+      this.askedOther = null;
+      this.dirty = true;
+      return;
+    }
+    if (!renderer || !motion.current) return;
+    const { trails } = renderer,
+      { n } = motion.current;
+    for (const [tick, at] of rows) {
+      trails.store(tick, at.subarray(0, n), at.subarray(n, 2 * n), at.length > 2 * n ? at.subarray(2 * n) : null);
+    }
+    trails.answered();
+    this.dirty = true;
+  }
+
+  suitTrails(frame) {
+    const { renderer, look, scene } = this;
+    return Boolean(renderer?.suitTrails(frame, look.trails, scene.tick_s));
   }
 
   onRobot(robot) {
@@ -148,7 +214,7 @@ class App {
     this.robot = robot;
     if (changes) this.controls.legend();
     this.showWindow();
-    this.panel.update();
+    this.panelStale = true;
     this.orders.robot();
     this.dirty = true;
   }
@@ -159,25 +225,23 @@ class App {
   }
 
   onOrders(orders) {
-    this.controls.mark(orders);
+    this.marked = orders;
+    this.controls.mark();
   }
 
   onMessage(kind, text) {
     this.toast(text, kind);
   }
 
-  onSaved({ name, text }) {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([text], { type: "application/toml" }));
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-    this.toast(`Saved as ${name}.`);
+  onSaved({ name, text, branch, orders }) {
+    download(name, new Blob([text], { type: "application/toml" }));
+    this.toast(`Saved branch ${branch} with ${orders} ${orders === 1 ? "change" : "changes"} as ${name}.`);
   }
 
   onConnection(is, inSeconds) {
     if (is === "open") {
       this.banner(this.lack);
+      this.askedOther = null;
       if (this.selected !== null) this.send({ do: "select", robot: this.selected });
       if (this.look.layers.links) this.send({ do: "links", on: true });
     } else if (is === "over") {
@@ -216,8 +280,17 @@ class App {
 
   seek(tick) {
     if (!this.timed) return;
-    const { first, last } = this.state;
-    this.send({ do: "seek", tick: Math.max(first, Math.min(last, Math.round(tick))) });
+    this.send({ do: "seek", tick: Math.max(this.state.first, Math.min(this.horizon, Math.round(tick))) });
+  }
+
+  /** Opens the moment in the address: `#t=SECONDS&robot=NUMBER`, both optional. */
+  openAddress() {
+    const wanted = new URLSearchParams(location.hash.slice(1));
+    const [seconds, robot] = ["t", "robot"].map((name) => (wanted.has(name) ? Number(wanted.get(name)) : NaN));
+    if (seconds >= 0) this.seek(seconds / this.scene.tick_s);
+    const index = this.scene.robots.id.indexOf(robot);
+    if (index >= 0) this.select(index);
+    else if (wanted.has("robot")) this.toast(`There is no robot ${wanted.get("robot")}.`);
   }
 
   select(index) {
@@ -271,6 +344,16 @@ class App {
     return best;
   }
 
+  /** The position of body `i` in the other branch at this tick; null for none. */
+  placeInOther(i) {
+    const { other, otherBranch } = this;
+    const frame = this.motion.current;
+    if (!other || other.branch !== otherBranch || (this.state.paused && other.tick !== frame?.tick)) return null;
+    const { at } = other,
+      n = frame.n;
+    return at.length < 2 * n ? null : [at[i], at[n + i], at.length > 2 * n ? at[2 * n + i] : 0];
+  }
+
   /** The goal of body `i`; null for none. */
   targetOf(i) {
     const frame = this.motion.current;
@@ -287,7 +370,7 @@ class App {
       scene.bounds_m,
       scene.height_m ?? [0, 0],
       scene.kind === "space",
-      phone ? [8, 8, 8, 44] : [left, 14, 58, 54],
+      phone ? [8, this.live ? 56 : 8, 8, 44] : [left, 14, 58, 54],
     );
     this.follow = false;
     this.controls?.follow();
@@ -327,6 +410,8 @@ class App {
     this.camera.resize(Math.max(width, 1), Math.max(height, 1));
     for (const layer of [this.ground, this.renderer, this.view]) layer?.resize(width, height, ratio);
     if (first || !this.pointer.touched) this.fit();
+    // A resized canvas is empty until it is drawn.
+    if (this.scene) this.draw(performance.now());
     this.dirty = true;
   }
 
@@ -335,9 +420,14 @@ class App {
     if (!this.scene) return;
     const paused = this.state?.paused ?? false;
     const news = motion.advance(now, paused);
-    if (news === "jump") this.renderer?.trails.reset();
     if (this.follow && this.selected !== null && motion.current)
       camera.centre(...motion.place(this.selected, [0, 0, 0]));
+    this.askForTrail(now);
+    // Messages about a robot come before its frame is taken.
+    if (this.panelStale && this.robot) {
+      this.panelStale = false;
+      this.panel.update();
+    }
     if (news === "none" && !this.wasMoving && !this.dirty && camera.version === this.drawnVersion) return;
     this.wasMoving = motion.moving;
     this.dirty = false;
@@ -347,6 +437,18 @@ class App {
       this.frames.drawn++;
       if (this.source instanceof Live) this.source.seen();
     }
+  }
+
+  askForTrail(now) {
+    const { motion, renderer, otherBranch: branch } = this;
+    const tick = motion.current?.tick;
+    if (branch !== null && tick !== undefined && !this.askedOther && this.other?.tick !== tick) {
+      this.askedOther = true;
+      this.send({ do: "trail", branch, ticks: [tick] });
+    }
+    if (!this.timed || !motion.current || !this.suitTrails(motion.current)) return;
+    const ticks = renderer.trails.missing(tick, now);
+    if (ticks.length) this.send({ do: "trail", ticks });
   }
 
   draw(now) {
@@ -409,6 +511,38 @@ window.staya = {
     const at = app.camera.project(x, y, z);
     const { left, top } = element("overlay").getBoundingClientRect();
     return at && [at[0] + left, at[1] + top];
+  },
+  /** Known values of a plot, `[tick, value]`. */
+  series: (name) => app.plots.series(name),
+  /** The drawn lines of a plot, each a list of [tick, value]. */
+  lines: (name) => app.plots.lines(name),
+  /** Places of the written labels on the picture: left, top, right, bottom. */
+  get labels() {
+    return app.view.boxes;
+  },
+  /** Least radius of robots and size of goals, pixels. */
+  get marks() {
+    return { robot: app.look.leastRadius, goal: app.look.targetSize };
+  },
+  /** Position of a robot in the other branch, metres. */
+  otherPlace: (i) => app.placeInOther(i),
+  get plotted() {
+    return [app.plots.first, app.plots.last];
+  },
+  get links() {
+    return app.links && { tick: app.links.tick, pairs: app.links.pairs.length / 2 };
+  },
+  /** Ticks of the stored positions behind the shown ones. */
+  get trail() {
+    const { trails } = app.renderer;
+    return trails.ticks(app.motion.tick).filter((tick) => trails.rows.has(tick)).reverse();
+  },
+  /** Whether the picture has all that belongs to the shown moment. */
+  get settled() {
+    const { motion, renderer } = app;
+    if (!motion.current || motion.mix < 1) return false;
+    if (app.otherBranch !== null && app.other?.tick !== motion.current.tick) return false;
+    return !renderer?.hasTrails || renderer.trails.ticks(motion.tick).every((tick) => renderer.trails.rows.has(tick));
   },
   target: (i) => app.targetOf(i),
   place: (i) => (app.motion.current ? app.motion.place(i, [0, 0, 0]) : null),

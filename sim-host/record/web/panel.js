@@ -52,6 +52,7 @@ export class Panel {
       "aria-label",
       "Permitted velocities, the preferred velocity and the chosen one",
     );
+    new ResizeObserver(() => app.robot?.orca && this.showVelocities(app.robot)).observe(this.plot);
     this.key = make("p", "caption");
     this.velocities.append(make("h3", "", "Permitted velocities"), this.plot, this.key);
     this.neighbors = make("section");

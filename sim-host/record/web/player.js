@@ -2,6 +2,7 @@
 
 import { Recording } from "staya/recording.js";
 import { fromBase64 } from "staya/frame.js";
+import { plotted } from "staya/plots.js";
 
 // Recordings up to this size in bytes are read completely for the plots; of larger ones only played
 // parts are plotted.
@@ -85,6 +86,7 @@ export class Player {
       while (this.wanted !== null) {
         const tick = this.wanted;
         this.wanted = null;
+        this.awaited = tick;
         await this.show(tick);
         this.say();
       }
@@ -150,12 +152,14 @@ export class Player {
   async readThrough() {
     if (this.recording.size > READ_THROUGH) return;
     const count = this.recording.frames.length;
+    let before = null;
     try {
       for (let index = 0; index < count; index++) {
         const block = await this.recording.unpacked(index);
         for (let i = 0; i < block.ticks.length; i++) {
           const { tick, figures } = block.frame(i);
-          this.listener.onFigures(tick, figures);
+          this.listener.onFigures(tick, plotted(figures), tick - (before ?? tick));
+          before = tick;
           if (i % 64 === 63) await new Promise((resolve) => setTimeout(resolve));
         }
       }
@@ -164,8 +168,25 @@ export class Player {
     }
   }
 
+  /** Sends the positions at past ticks. */
+  async trail(ticks) {
+    const rows = [];
+    try {
+      for (const tick of ticks) {
+        const { x, y, z } = (await this.recording.at(tick)).frame;
+        rows.push([tick, Float32Array.from([...x, ...y, ...(z ?? [])])]);
+      }
+    } catch {
+      // Playback reports the damaged block when it reaches it.
+    }
+    this.listener.onTrail(rows);
+  }
+
   send(message) {
     switch (message.do) {
+      case "trail":
+        this.trail(message.ticks);
+        break;
       case "pause":
         this.paused = true;
         this.say();
@@ -188,7 +209,7 @@ export class Player {
         break;
       case "select":
         this.selected = message.robot;
-        this.wanted ??= this.tick;
+        this.wanted ??= this.busy ? this.awaited : this.tick;
         this.fetch();
         break;
     }

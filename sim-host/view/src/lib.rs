@@ -6,6 +6,7 @@ pub mod mcap;
 mod observers;
 pub mod pace;
 pub mod playback;
+mod series;
 pub mod server;
 pub mod session;
 pub mod watch;

@@ -1,6 +1,7 @@
 //! JSON messages between a session and its pages (`PROTOCOL.md`).
 
 use super::Session;
+use super::branch::Branch;
 use crate::frame::FrameData;
 use crate::scene::{self, Mode, Scene};
 use base64::Engine as _;
@@ -26,6 +27,9 @@ pub(super) enum Wanted {
     Seek { tick: u32 },
     Select { robot: Option<usize> },
     Links { on: bool },
+    Trail { ticks: Vec<u32>, branch: Option<u32> },
+    Branch { number: u32 },
+    Undo,
     Seen { frames: u64 },
     Save,
     Restart { seed: Option<u64> },
@@ -53,7 +57,7 @@ impl Wanted {
 
     /// Whether the request needs the engine at the shown moment.
     pub const fn needs_the_run(&self) -> bool {
-        !matches!(self, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Seen { .. })
+        !matches!(self, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Trail { .. } | Wanted::Seen { .. })
     }
 }
 
@@ -99,8 +103,19 @@ pub(super) fn error(text: &str) -> String {
     json!({ "type": "error", "text": text }).to_string()
 }
 
-pub(super) fn saved(name: &str, text: &str) -> String {
-    json!({ "type": "saved", "name": format!("{name}-by-hand.toml"), "text": text }).to_string()
+pub(super) fn saved(name: &str, branch: &Branch, text: &str) -> String {
+    let number = branch.number;
+    let file = if number > 1 { format!("{name}-branch-{number}.toml") } else { format!("{name}-by-hand.toml") };
+    json!({ "type": "saved", "name": file, "branch": number, "orders": branch.done.len(), "text": text }).to_string()
+}
+
+/// The positions of frames, each with the tick for which a page asked.
+pub(crate) fn trail<'a>(branch: Option<u32>, frames: impl Iterator<Item = (u32, &'a [u8])>) -> String {
+    let rows = frames.filter_map(|(tick, frame)| {
+        let (_, positions) = FrameData::positions_of(frame).ok()?;
+        Some(json!([tick, BASE64_STANDARD.encode(positions)]))
+    });
+    json!({ "type": "trail", "branch": branch, "rows": rows.collect::<Vec<_>>() }).to_string()
 }
 
 pub(super) fn event(event: &Event) -> String {
@@ -150,7 +165,7 @@ impl Session {
     fn radio(&self) -> scene::Radio {
         let mut radio = scene::Radio::of(&self.scenario);
         let planned = self.scenario.interventions.iter().filter(|(tick, _)| *tick < self.tick);
-        for (_, what) in planned.chain(self.done.iter().filter(|(tick, _)| *tick <= self.tick)) {
+        for (_, what) in planned.chain(self.branch.done.iter().filter(|(tick, _)| *tick <= self.tick)) {
             if let Intervention::Radio { loss, range_m } = what {
                 radio.loss = loss.unwrap_or(radio.loss);
                 if let Some(range_m) = range_m {
@@ -162,9 +177,15 @@ impl Session {
     }
 
     pub(super) fn state(&self) -> String {
+        let mut branches: Vec<&Branch> = self.branches.iter().chain([&self.branch]).collect();
+        branches.sort_unstable_by_key(|branch| branch.number);
+        let branches = branches.iter().map(|branch| {
+            let last = branch.memory.last().unwrap_or_default();
+            json!({ "number": branch.number, "from": branch.from, "last": last, "orders": branch.done.len() })
+        });
         json!({
             "type": "state",
-            "paused": self.pace.is_paused(),
+            "paused": self.pace.is_paused() && self.runs_on_to.is_none(),
             "speed": self.pace.speed(),
             "tick": self.catches_up_to.unwrap_or(self.tick),
             "first": 0,
@@ -172,15 +193,26 @@ impl Session {
             "clients": self.pages.len(),
             "at_end": self.is_over,
             "radio": self.radio(),
+            "branch": self.branch.number,
+            "branches": branches.collect::<Vec<_>>(),
         })
         .to_string()
     }
 
-    /// `None` before the first tick.
-    pub(super) fn rows(&self, most: usize) -> Option<String> {
-        let frames = self.memory.some(most).filter_map(|bytes| FrameData::figures_of(bytes).ok());
-        let rows: Vec<_> = frames.map(|(tick, figures)| json!([tick, figures])).collect();
-        (rows.len() > 1).then(|| json!({ "type": "figures", "rows": rows }).to_string())
+    /// The planned orders and those of pages.
+    pub(super) fn orders(&self) -> String {
+        let orders = self.scenario.interventions.iter().chain(&self.branch.done).map(|(tick, what)| {
+            let kind = serde_json::to_value(what).map(|mut what| what["kind"].take());
+            json!({ "tick": tick, "order": { "kind": kind.unwrap_or_default() } })
+        });
+        json!({ "type": "orders", "orders": orders.collect::<Vec<_>>() }).to_string()
+    }
+
+    /// Past positions, of another branch by its number.
+    pub(super) fn trail(&self, ticks: &[u32], branch: Option<u32>) -> String {
+        let other = branch.and_then(|number| self.branches.iter().find(|branch| branch.number == number));
+        let memory = &other.unwrap_or(&self.branch).memory;
+        trail(branch, ticks.iter().filter_map(|&tick| Some((tick, memory.at(tick)?))))
     }
 
     pub(super) fn links(&self) -> String {
