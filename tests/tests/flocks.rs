@@ -16,12 +16,16 @@ fn column(plan: &Plan, all: &[Vec<Figure>], measure: &str) -> Vec<Option<f64>> {
 
 #[test]
 fn golden_experiment_flock() {
-    let few = ["scenario=free,fragment,rendezvous,split,squeeze", "plane.robots.cloud.count=24", "knows=packets,all"];
-    let (plan, text, all) = table("olf/flock", &few, 1);
-    let parts = column(&plan, &all, "flock.parts");
-    let gaps = (0..).zip(parts).filter(|(_, parts)| *parts != Some(1.0));
-    let gaps = gaps.map(|(number, _)| format!("{}: more than one component", plan.values_of(number).join(" ")));
-    golden("experiment-flock", &text, &gaps.collect::<Vec<_>>());
+    let (mut text, mut gaps) = (String::new(), Vec::new());
+    for (knows, scenarios) in [("packets", "free,fragment,rendezvous,split,squeeze"), ("all", "free,fragment")] {
+        let [scenarios, knows] = [format!("scenario={scenarios}"), format!("study.knows={knows}")];
+        let (plan, table, all) = table("olf/flock", &[&scenarios, &knows, "plane.robots.cloud.count=24"], 1);
+        text += &table;
+        let parts = (0..).zip(column(&plan, &all, "flock.parts")).filter(|(_, parts)| *parts != Some(1.0));
+        gaps.extend(parts.map(|(number, _)| format!("{}: more than one component", plan.values_of(number)[0])));
+    }
+    gaps.dedup();
+    golden("experiment-flock", &text, &gaps);
 }
 
 #[test]
@@ -38,7 +42,17 @@ fn golden_experiment_closing() {
 
 #[test]
 fn golden_experiment_goals() {
-    let few = ["k2=0,50", "neighborhood_m=40", "plane.robots.cloud.count=30", "knows=all,packets", "ticks=600"];
+    let few = [
+        "k2=0,50",
+        "neighborhood_m=40",
+        "study.knows=all,packets",
+        "plane.robots.cloud.count=30",
+        "plane.robots.cloud.from_m[0]=-110",
+        "plane.robots.cloud.to_m[0]=110",
+        "plane.robots.cloud.from_m[1]=-110",
+        "plane.robots.cloud.to_m[1]=110",
+        "ticks=1200",
+    ];
     let (plan, text, all) = table("pav/goals", &few, 1);
     let missing = column(&plan, &all, "company.arrived").into_iter().any(|arrived| arrived != Some(1.0));
     golden("experiment-goals", &text, missing.then(|| "not all robots arrive".to_owned()).as_slice());

@@ -17,8 +17,6 @@ fn scenario(name: &str) -> String {
     folder.join(name).to_str().expect("a path in UTF-8").to_owned()
 }
 
-const MAPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../maps/");
-
 fn folder() -> (tempfile::TempDir, String) {
     let dir = tempfile::tempdir().expect("temporary folder");
     let path = dir.path().join("out").to_str().expect("UTF-8").to_owned();
@@ -186,13 +184,13 @@ fn invalid_usage_differs_from_failure() {
 fn numbers_out_of_range_are_errors_with_a_remedy() {
     for (arguments, expected) in [
         (&["route", "--set", "obstacles=99999999"][..], "obstacles"),
-        (&["route", "--set", "width=65535"], "width"),
+        (&["route", "--set", "terrain.natural.width=65535"], "width"),
         (&["route", "--set", "route.radius=0"], "route.radius"),
         (&["route", "--seeds", "1000000"], "more than a million runs"),
         (&["boids", "--set", "boids=0"], "study.boids: 0 is out of range; give 1 to 1000000"),
-        (&["movingai", "--set", "visits=5"], "study.visits: a memory of 5 cells; give 16, 64, 256 or 1024"),
-        (&["flock", "--set", "knows=none"], "unknown value `none`"),
-        (&["goals-tuned", "--set", "particles=1"], "study.particles: 1 is out of range"),
+        (&["movingai", "--set", "study.visits=5"], "study.visits: a memory of 5 cells; give 16, 64, 256 or 1024"),
+        (&["flock", "--set", "study.knows=none"], "unknown value `none`"),
+        (&["goals-tuned", "--set", "study.particles=1"], "study.particles: 1 is out of range"),
         (&["formation", "--set", "radio.loss=-1"], "radio.loss: -1 is not a probability"),
         (&["formation", "--set", "formation.rho=0"], "formation.rho: with rho = 0 no robot knows its neighbours"),
         (&["formation", "--set", "formation.halt_cells=-1"], "formation.halt_cells: -1"),
@@ -255,7 +253,7 @@ fn every_json_command_prints_one_object_and_leaves_no_probe_file() {
     let (dir, out) = folder();
     let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
     let (land, picture, answers) = (path("land.yaml"), path("land.png"), path("answers"));
-    let route = "experiment route --seeds 2 --set obstacles=5 --set width=100 --set scenario=natural";
+    let route = "experiment route --seeds 2 --set obstacles=5 --set scenario=natural";
     let movingai = "experiment movingai --set scen=../../../maps/random-32-32-20-random-1.scen";
     let (formation, figure) = ("experiment formation --quick --set scenario=staya --set obstacles=5", path("figure"));
     let commands: [Vec<&str>; 6] = [
@@ -436,6 +434,6 @@ fn studies_print_tables_and_json_and_write_pictures() {
     let report = json(&format!("{goals} --axis k2=0,50 --restart"));
     assert_eq!(report["gains"].as_array().map(Vec::len), Some(2));
     assert_eq!(report["gains"][0]["gains"][0][1], 0.0);
-    let boids = "experiment boids --restart --axis search=cells,tree --set study.boids=20 --set steps=3";
+    let boids = "experiment boids --restart --axis search=cells,tree --set boids=20 --set study.steps=3";
     assert_eq!(json(boids)["points"][1]["figures"]["equal"]["min"], 1.0);
 }
