@@ -333,10 +333,10 @@ impl<'a> Crowd<'a> {
     /// Goals after their motion and the operator's orders.
     fn targets_at(&self, tick: u32) -> Vec<Target> {
         let target = |(index, first): (usize, &Target)| {
-            let orders =
+            let mut orders =
                 self.plane.orders.iter().filter(|order| usize::from(order.index) == index && order.tick < tick);
             let (since, Target { position_m, velocity_mps }) =
-                orders.last().map_or((0, *first), |order| (order.tick, order.target));
+                orders.next_back().map_or((0, *first), |order| (order.tick, order.target));
             let moves = !matches!(self.law, Law::Lattice { motion, .. } if motion != ReferenceMotion::Dynamic);
             let span_s = if moves { f64::from(tick - since) * self.step_s } else { 0.0 };
             let position_m = std::array::from_fn(|axis| position_m[axis] + velocity_mps[axis] * span_s);
