@@ -4,7 +4,9 @@
 pub mod boids;
 pub mod flock;
 pub mod movingai;
+pub mod route;
 pub mod tune;
+mod walk;
 
 use crate::sweep::SweepError;
 use crate::sweep::run::Measured;
@@ -57,7 +59,7 @@ pub trait Study: Debug + Sync {
 }
 
 /// All studies.
-pub const ALL: [&dyn Study; 4] = [&boids::Boids, &flock::Flock, &movingai::MovingAi, &tune::Tune];
+pub const ALL: [&dyn Study; 5] = [&boids::Boids, &flock::Flock, &movingai::MovingAi, &route::Route, &tune::Tune];
 
 /// Fields of a run.
 #[derive(Clone, Debug)]

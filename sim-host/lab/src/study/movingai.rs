@@ -6,23 +6,23 @@
 //! learned travel costs and finally by following the wall. Maps too large for the router's search
 //! are answered by the planner ([`optimal`]).
 
+use super::walk::{self, CELLS, Maker, Walks, maker, percent, whole};
 use super::{Given, Job, Study, Watch};
 use crate::optimal;
 use crate::sweep::SweepError;
-use crate::sweep::run::Measured;
-use crate::walk::{Task, Walker, holds};
+use crate::sweep::run::{Measured, write_table};
+use crate::walk::{Task, holds};
 use rayon::prelude::*;
 use serde::Deserialize;
 use staya_controller::cost::Gain;
-use staya_controller::grid::UNIT;
+use staya_controller::rand::Rng;
 use staya_controller::route::{ExitRule, Replan, RouteParams};
+use staya_controller::shuffle::Sharpness;
 use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
 use staya_stats::Summary;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-
-/// Largest search with its border: 255 x 255, the limit of 16-bit indices.
-const CELLS: usize = 255 * 255;
 
 /// The study.
 #[derive(Debug)]
@@ -38,10 +38,10 @@ struct Parameters {
     #[serde(default = "five")]
     radius: u8,
     /// Visited cells that the robot remembers, 6 bytes each.
-    #[serde(default = "visits")]
+    #[serde(default = "walk::visits")]
     visits: u32,
     /// Cells with learned travel costs, 8 bytes each.
-    #[serde(default = "learned")]
+    #[serde(default = "walk::learned")]
     learned: u32,
     #[serde(default)]
     exit: ExitRule,
@@ -55,14 +55,6 @@ struct Parameters {
 
 const fn five() -> u8 {
     5
-}
-
-const fn visits() -> u32 {
-    64
-}
-
-const fn learned() -> u32 {
-    256
 }
 
 /// Result of one query; lengths in cells.
@@ -82,6 +74,7 @@ struct Benchmark {
     params: RouteParams,
     replan: Replan,
     sees_map: bool,
+    maker: Maker,
 }
 
 impl Study for MovingAi {
@@ -105,35 +98,27 @@ impl Study for MovingAi {
     }
 
     fn read(&self, given: &Given<'_>) -> Result<Job, SweepError> {
-        let parameters: Parameters = given.parameters()?;
-        let benchmark = benchmark(given, &parameters)?;
-        let answers = match parameters.visits {
-            16 => with_visits::<16>(parameters.learned),
-            64 => with_visits::<64>(parameters.learned),
-            256 => with_visits::<256>(parameters.learned),
-            1024 => with_visits::<1024>(parameters.learned),
-            other => {
-                return Err(given.error("visits", format!("a memory of {other} cells"), "give 16, 64, 256 or 1024"));
-            }
-        };
-        let what = || format!("{} learned cells", parameters.learned);
-        let answers = answers.ok_or_else(|| given.error("learned", what(), "give 0, 64 or 256"))?;
+        let benchmark = benchmark(given)?;
         Ok(Box::new(move |watch| Ok(measured(&benchmark, &answers(&benchmark, watch)))))
     }
-}
 
-type Answers = fn(&Benchmark, &Watch<'_>) -> Vec<Answer>;
-
-fn with_visits<const M: usize>(learned: u32) -> Option<Answers> {
-    match learned {
-        0 => Some(answers::<M, 0>),
-        64 => Some(answers::<M, 64>),
-        256 => Some(answers::<M, 256>),
-        _ => None,
+    /// Writes a table with a row per query instead of a picture.
+    fn draw(&self, given: &Given<'_>, _: &str, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
+        let benchmark = benchmark(given)?;
+        let mut text =
+            "query,start_x,start_y,goal_x,goal_y,optimal_cells,arrived,length_cells,priced_cells\n".to_owned();
+        for ((number, query), answer) in (1..).zip(&benchmark.queries).zip(answers(&benchmark, &|_| true)) {
+            let ([start, goal], Answer { optimal, arrived, length, priced }) = ([query.start, query.goal], answer);
+            let ends = format!("{},{},{},{}", start.x, start.y, goal.x, goal.y);
+            let priced = priced.map_or(String::new(), |cells| cells.to_string());
+            let _ = writeln!(text, "{number},{ends},{optimal},{},{length},{priced}", u8::from(arrived));
+        }
+        Ok(vec![write_table(stem, &text)?])
     }
 }
 
-fn benchmark(given: &Given<'_>, parameters: &Parameters) -> Result<Benchmark, SweepError> {
+fn benchmark(given: &Given<'_>) -> Result<Benchmark, SweepError> {
+    let parameters: Parameters = given.parameters()?;
     let folder = given.path.parent().unwrap_or(Path::new(""));
     let scen = folder.join(&parameters.scen);
     let wrong = |what: String, remedy: &str| SweepError::new(scen.display(), what, remedy);
@@ -181,36 +166,33 @@ fn benchmark(given: &Given<'_>, parameters: &Parameters) -> Result<Benchmark, Sw
         a3: gain("a3", parameters.a3, default.a3)?,
         ..default
     };
-    Ok(Benchmark { land, queries, params, replan: parameters.replan, sees_map })
+    let maker = maker(given, parameters.visits, parameters.learned)?;
+    Ok(Benchmark { land, queries, params, replan: parameters.replan, sees_map, maker })
 }
 
-fn answers<const M: usize, const L: usize>(benchmark: &Benchmark, watch: &Watch<'_>) -> Vec<Answer> {
-    let Benchmark { land, params, .. } = benchmark;
-    let answer = |walker: &mut Walker<CELLS, M, L>, (number, query): (usize, &Query)| {
+fn answers(benchmark: &Benchmark, watch: &Watch<'_>) -> Vec<Answer> {
+    let Benchmark { land, queries, params, replan, sees_map, maker } = benchmark;
+    let answer = |walker: &mut Box<dyn Walks>, (number, query): (usize, &Query)| {
         if !watch(number as u32) {
             return None;
         }
-        let (from, to) = (query.start, query.goal);
-        if benchmark.sees_map && !holds(CELLS, land) {
+        let (from, to, optimal) = (query.start, query.goal, query.optimal_length);
+        if *sees_map && !holds(CELLS, land) {
             let route = optimal::route(land, from, to, params.norm, params.corner_cutting);
             return Some(Answer {
-                optimal: query.optimal_length,
+                optimal,
                 arrived: route.is_some(),
-                length: route.as_ref().map_or(0.0, |route| cells(route.length(params.norm) as f64)),
-                priced: route.map(|route| cells(route.cost as f64)),
+                length: route.as_ref().map_or(0.0, |route| whole(route.length(params.norm) as f64)),
+                priced: route.map(|route| whole(route.cost as f64)),
             });
         }
-        let walk = walker.walk(&Task { land, parked: &[], from, to }, params, benchmark.replan);
-        let priced = if benchmark.sees_map { walker.price(land, params, from, to) } else { None };
-        Some(Answer {
-            optimal: query.optimal_length,
-            arrived: walk.arrived,
-            length: cells(walk.length as f64),
-            priced: priced.map(cells),
-        })
+        let order = (Sharpness::Greedy, &mut Rng::new(0));
+        let walk = walker.walk(&Task { land, parked: &[], from, to }, params, *replan, order);
+        let priced = if *sees_map { walker.price(land, params, from, to) } else { None };
+        let length = whole(walk.length as f64);
+        Some(Answer { optimal, arrived: walk.arrived, length, priced: priced.map(whole) })
     };
-    let queries = benchmark.queries.par_iter().enumerate().with_min_len(8);
-    queries.map_init(Walker::default, answer).while_some().collect()
+    queries.par_iter().enumerate().with_min_len(8).map_init(maker, answer).while_some().collect()
 }
 
 fn measured(benchmark: &Benchmark, answers: &[Answer]) -> Measured {
@@ -230,14 +212,6 @@ fn measured(benchmark: &Benchmark, answers: &[Answer]) -> Measured {
         ("without_route", benchmark.sees_map.then_some(without)),
     ];
     Measured { is_cut: answers.len() < benchmark.queries.len(), ..Measured::of(values) }
-}
-
-fn percent(ours: f64, optimal: f64) -> f64 {
-    if ours == optimal { 0.0 } else { 100.0 * (ours - optimal) / optimal }
-}
-
-fn cells(units: f64) -> f64 {
-    units / f64::from(UNIT)
 }
 
 #[cfg(test)]

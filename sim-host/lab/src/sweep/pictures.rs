@@ -59,7 +59,7 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
     let parts = if and.is_some() { (rows.len() / RUNS).isqrt() } else { rows.len() / RUNS };
     let levels = |axis| Levels::new(plan, axis, parts.clamp(PARTS[0], PARTS[1]));
     let (x, y) = (levels(over), and.map(levels));
-    let picture = Picture { plan, plot, rows, x, y };
+    let picture = Picture { plan, plot, rows, x, y, reference: reference(plan, merged, &plot.figure, over) };
     let stem = folder.join(picture.file_name());
     match &picture.y {
         Some(y) if y.is_parts || y.names.len() > CURVES || picture.x.numbers.is_none() => {
@@ -67,6 +67,20 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
         }
         _ => picture.chart().write(&stem),
     }
+}
+
+/// Values of a paper over an axis of numbers, with the first values of the other axes.
+fn reference(plan: &Plan, merged: &Merged, figure: &str, over: usize) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for row in &merged.rows {
+        let value = plan.reference.as_ref().and_then(|it| it.value(&plan.values_of(row.run), figure));
+        let Some((x, y)) = plan.run(row.run).values[over].number().zip(value) else { continue };
+        if points.iter().all(|point| point[0] != x) {
+            points.push([x, y]);
+        }
+    }
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points
 }
 
 /// Draws the distribution of a figure over the runs of each chosen point, with the Norton-Rice law
@@ -175,6 +189,7 @@ struct Picture<'a> {
     rows: Vec<(Value, Option<Value>, f64)>,
     x: Levels,
     y: Option<Levels>,
+    reference: Vec<[f64; 2]>,
 }
 
 impl Picture<'_> {
@@ -246,6 +261,9 @@ impl Picture<'_> {
                     Series::intervals(if self.x.is_parts { "parts of the axis" } else { "" }, curve(None)).joined(),
                 );
             }
+        }
+        if !self.reference.is_empty() {
+            chart = chart.with(Series::reference("paper", self.reference.iter().copied()));
         }
         chart
     }

@@ -7,7 +7,6 @@ mod flock;
 mod flow;
 mod foresight;
 mod free;
-mod land;
 mod optimum;
 mod process;
 
@@ -31,6 +30,11 @@ pub trait Probe {
         None
     }
 
+    /// The run over time as CSV; by default there is none.
+    fn table(&self) -> Option<String> {
+        None
+    }
+
     /// Values in the order of the probe's measures.
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>>;
 }
@@ -47,17 +51,8 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 9] = [
-    free::KIND,
-    flow::KIND,
-    flock::KIND,
-    company::KIND,
-    alone::KIND,
-    cost::KIND,
-    optimum::KIND,
-    land::KIND,
-    foresight::KIND,
-];
+pub const KINDS: [Kind; 8] =
+    [free::KIND, flow::KIND, flock::KIND, company::KIND, alone::KIND, cost::KIND, optimum::KIND, foresight::KIND];
 
 /// Names and meanings of the measures of all probes.
 pub fn measures() -> impl Iterator<Item = (String, &'static str)> {

@@ -154,7 +154,10 @@ impl<'a> Report<'a> {
         }
         self.files.extend(pictures::histograms(plan, merged, &out.join("plots"))?);
         for run in plan.pictured().map(|point| point * plan.seeds()) {
-            let name = plan.values_of(run).join("-");
+            let words = plan.values_of(run);
+            // Files without their folders.
+            let words: Vec<&str> = words.iter().filter_map(|word| word.rsplit('/').next()).collect();
+            let name = words.join("-");
             let name = name.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-");
             self.files.extend(draw(plan, run, &out.join("pictures").join(format!("{}-{name}", plan.name)))?);
         }

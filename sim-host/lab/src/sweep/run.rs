@@ -8,7 +8,7 @@ use crate::sweep::row::{Finished, Outcome, Row};
 use crate::sweep::value::Figure;
 use staya_plot::{motion_sheet, run_pictures};
 use staya_sim::engine;
-use staya_sim::record::{Options, Recorder};
+use staya_sim::record::{Error, Options, Recorder, make_dir, write_atomically};
 use staya_sim::scenario::Scenario;
 use staya_sim::summary::Summary;
 use std::collections::BTreeMap;
@@ -160,12 +160,27 @@ pub fn draw_by(
         }
     };
     for (kind, probe) in &probes {
+        let name = stem.file_name().unwrap_or_default().to_string_lossy();
+        let own = stem.with_file_name(format!("{name}-{}", kind.name));
         if let Some(panels) = probe.charts(title) {
-            let name = stem.file_name().unwrap_or_default().to_string_lossy();
-            files.extend(panels.write(&stem.with_file_name(format!("{name}-{}", kind.name)))?);
+            files.extend(panels.write(&own)?);
+        }
+        if let Some(table) = probe.table() {
+            files.push(write_table(&own, &table)?);
         }
     }
     Ok(files)
+}
+
+/// Writes a CSV file whose name begins with `stem`, which may contain dots.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_table(stem: &Path, text: &str) -> Result<PathBuf, Error> {
+    let path = stem.with_file_name(format!("{}.csv", stem.file_name().unwrap_or_default().display()));
+    make_dir(path.parent().unwrap_or(Path::new("")))?;
+    write_atomically(&path, text.as_bytes())?;
+    Ok(path)
 }
 
 fn by_engine(scenario: &Scenario, each: &mut engine::Watch<'_>) -> Result<engine::Outcome, String> {
