@@ -29,6 +29,8 @@ use staya_sim::world::plane::{Clearance, Solid};
 use std::path::{Path, PathBuf};
 
 const STARTS: u32 = 0x0046_0101;
+const TREES: u32 = 0x0046_0102;
+const PLACES: u32 = 0x0047_0104;
 const TRIES: u32 = 1000;
 
 /// The study.
@@ -45,6 +47,43 @@ enum Knowledge {
     All,
 }
 
+/// Discs of random sizes at random places.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Scattered {
+    count: u32,
+    /// Smallest and largest radius. Default: points.
+    #[serde(default)]
+    radius_m: [f64; 2],
+    from_m: [f64; 2],
+    to_m: [f64; 2],
+    /// Least distance of two edges.
+    gap_m: f64,
+}
+
+impl Scattered {
+    /// Centres and radii; `None` if they find no room or are invalid.
+    fn draw(&self, most: usize, mut rng: Rng) -> Option<Vec<([f64; 3], f64)>> {
+        if self.count as usize > most || !self.radius_m.iter().all(|radius| (0.0..=1e5).contains(radius)) {
+            return None;
+        }
+        let mut discs: Vec<([f64; 3], f64)> = Vec::new();
+        let [[west, south], [east, north]] = [self.from_m, self.to_m];
+        let mut disc = || {
+            let [x, y] = [uniform(&mut rng, west, east), uniform(&mut rng, south, north)];
+            ([x, y, 0.0], uniform(&mut rng, self.radius_m[0], self.radius_m[1]))
+        };
+        for _ in 0..self.count {
+            let is_free = |&(center, radius): &([f64; 3], f64)| {
+                discs.iter().all(|other| distance_m(center, other.0) - radius - other.1 >= self.gap_m)
+            };
+            let drawn = (0..100 * TRIES).map(|_| disc()).find(is_free)?;
+            discs.push(drawn);
+        }
+        Some(discs)
+    }
+}
+
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Parameters {
@@ -58,6 +97,10 @@ struct Parameters {
     c2_gamma: Option<f32>,
     /// Standard deviation of starts along each axis, instead of the scenario's starts.
     deviation_m: [f64; 3],
+    /// Balls besides those of the scenario.
+    forest: Option<Scattered>,
+    /// Goals instead of those of the scenario, in its plane.
+    goals: Option<Scattered>,
 }
 
 impl Default for Parameters {
@@ -69,6 +112,8 @@ impl Default for Parameters {
             c2_alpha: None,
             c2_gamma: None,
             deviation_m: [0.0; 3],
+            forest: None,
+            goals: None,
         }
     }
 }
@@ -129,6 +174,24 @@ impl Run {
                 return Err(given.error("deviation_m", what, "give larger ones, up to 100,000"));
             }
         }
+        let scattered = |field: &str, discs: Option<Scattered>, most: usize, key| {
+            let no_room = || {
+                let what = format!("they find no room, are more than {most}, or have a radius out of range");
+                given.error(field, what, "give fewer, radii of 0 to 100,000 m, or corners farther apart")
+            };
+            let drawn = discs.map(|discs| discs.draw(most, Rng::keyed(given.seed, key, 0, 0)).ok_or_else(no_room));
+            Ok::<_, SweepError>(drawn.transpose()?.unwrap_or_default())
+        };
+        for (center_m, radius_m) in scattered("forest", parameters.forest, 10_000, TREES)? {
+            plane.solids.push(Solid::Ball { center_m, radius_m });
+        }
+        let goals = scattered("goals", parameters.goals, GOALS, PLACES)?;
+        if let Some(first) = plane.starts.first().and_then(|start| start.places.first()).filter(|_| !goals.is_empty()) {
+            let velocity_mps = first.velocity_mps;
+            let target = |&(position_m, _): &([f64; 3], f64)| Target { position_m, velocity_mps };
+            let targets: Vec<Target> = goals.iter().map(target).collect();
+            plane.starts.iter_mut().for_each(|start| start.places.clone_from(&targets));
+        }
         if let GuidanceSetup::Lattice { params, .. } = &mut plane.general.guidance {
             params.alpha.velocity = parameters.c2_alpha.unwrap_or(params.alpha.velocity);
             params.gamma.velocity = parameters.c2_gamma.unwrap_or(params.gamma.velocity);
@@ -173,11 +236,14 @@ fn draw_starts(plane: &mut PlaneSetup, deviation_m: [f64; 3], seed: u64) -> Opti
     Some(())
 }
 
+fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    low + (high - low) * ((rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64)
+}
+
 /// Mean 0 (Box and Muller).
 fn normal(rng: &mut Rng, deviation: f64) -> f64 {
-    let mut uniform = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    let length = libm::sqrt(-2.0 * libm::log(1.0 - uniform()));
-    deviation * length * libm::cos(2.0 * std::f64::consts::PI * uniform())
+    let length = libm::sqrt(-2.0 * libm::log(1.0 - uniform(rng, 0.0, 1.0)));
+    deviation * length * libm::cos(2.0 * std::f64::consts::PI * uniform(rng, 0.0, 1.0))
 }
 
 fn distance_m(a: [f64; 3], b: [f64; 3]) -> f64 {

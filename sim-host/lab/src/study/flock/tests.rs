@@ -123,3 +123,29 @@ fn other_laws_and_layers_have_no_exact_knowledge() {
         assert!(error.contains("study.knows"), "{error}");
     }
 }
+
+#[test]
+fn forests_and_goals_are_at_random_places_with_gaps() {
+    let forest =
+        Scattered { count: 30, radius_m: [2.0, 10.0], from_m: [135.0, -20.0], to_m: [230.0, 140.0], gap_m: 8.0 };
+    for seed in 0..20 {
+        let balls = forest.draw(30, Rng::new(seed)).unwrap();
+        assert!(balls.iter().all(|(_, radius_m)| (2.0..10.0).contains(radius_m)));
+        for (index, (center, radius)) in balls.iter().enumerate() {
+            let gap = |other: &([f64; 3], f64)| distance_m(*center, other.0) - radius - other.1;
+            assert!(balls[..index].iter().all(|other| gap(other) >= 8.0));
+        }
+    }
+    assert_eq!(forest.draw(29, Rng::new(1)), None);
+    let goals = "study.goals = { count = 2, from_m = [300, -400], to_m = [1100, 400], gap_m = 250 }";
+    let goals = goals.parse::<toml::Table>().unwrap()["study"]["goals"].clone();
+    let of = |seed| {
+        let sets = [sets(10, 900, "all"), vec![("study.goals", goals.clone())]].concat();
+        read("pav/goals/scenario.toml", &sets, &["company.share_1", "company.share_2", "company.share_3"], seed)
+            .unwrap()
+    };
+    let measured = of(3);
+    assert_ne!(measured.trace_hash, of(4).trace_hash);
+    assert!((value(&measured, "company.share_1") + value(&measured, "company.share_2") - 1.0).abs() < 1e-9);
+    assert_eq!(measured.values["company.share_3"], None);
+}

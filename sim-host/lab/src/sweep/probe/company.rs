@@ -8,7 +8,7 @@
 //! without any K2, and a larger K2 draws them into clumps.
 
 use super::{Kind, Probe};
-use staya_controller::agent::GuidanceSetup;
+use staya_controller::agent::{GOALS, GuidanceSetup};
 use staya_sim::engine::{Moment, Outcome};
 use staya_sim::metrics::flock::{FlockMeter, polarisation};
 use staya_sim::nearby::Space;
@@ -27,6 +27,10 @@ pub const KIND: Kind = Kind {
         ("half_gathered_s", "when half of them had; empty: never"),
         ("arrived", "share of the robots at a goal at the end"),
         ("largest_share", "share of the most popular goal among these"),
+        ("share_1", "share of the first goal among these"),
+        ("share_2", "share of the second goal"),
+        ("share_3", "share of the third goal"),
+        ("share_4", "share of the fourth goal"),
     ],
     new: |scenario| Box::new(Company { state: State::new(scenario) }),
 };
@@ -120,14 +124,15 @@ impl State {
     fn values(&self) -> Vec<Option<f64>> {
         let robots = self.has_gathered.len() as f64;
         let arrived = self.at_goals.iter().sum::<usize>() as f64;
-        let largest = self.at_goals.iter().max().map(|most| *most as f64 / arrived);
+        let share = |at: Option<&usize>| at.map(|at| *at as f64 / arrived).filter(|share| share.is_finite());
         let mut values = self.sums.map(|sum| (self.looks > 0).then(|| sum / f64::from(self.looks))).to_vec();
         values.extend([
             Some(self.gathered() as f64 / robots),
             self.half_gathered_s,
             Some(arrived / robots),
-            largest.filter(|share| share.is_finite()),
+            share(self.at_goals.iter().max()),
         ]);
+        values.extend((0..GOALS).map(|goal| share(self.at_goals.get(goal))));
         values
     }
 }

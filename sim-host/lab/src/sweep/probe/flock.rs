@@ -47,6 +47,7 @@ struct State {
     /// The spacing over that of the paper, 7 units.
     unit_m: f64,
     lattice_radius_m: f64,
+    tick_s: f64,
     solids: Vec<Solid>,
     meter: FlockMeter<3>,
     energy: Option<EnergyMeter<3>>,
@@ -74,6 +75,7 @@ impl State {
             spacing_m,
             unit_m: spacing_m / 7.0,
             lattice_radius_m: spacing_m * radius,
+            tick_s: scenario.tick_s(),
             solids: plane.solids.clone(),
             meter: FlockMeter::new(spacing_m, 1.2 * spacing_m, plane.space()),
             energy: EnergyMeter::new(&params.cast()),
@@ -131,6 +133,13 @@ impl State {
     }
 }
 
+impl State {
+    /// Ticks that are reported, at most about [`POINTS`].
+    fn ticks(&self) -> impl Iterator<Item = usize> + use<> {
+        (0..self.trace.len()).step_by(self.trace.len().div_ceil(POINTS).max(1))
+    }
+}
+
 fn rise(energies: &[f64]) -> f64 {
     let rise = energies.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     let lost = energies.first().zip(energies.last()).map_or(0.0, |(first, last)| first - last);
@@ -154,9 +163,8 @@ impl Probe for Flock {
     /// C, R, E~, K~ and H over time (figure 12).
     fn charts(&self, title: &str) -> Option<Panels> {
         let state = self.state.as_ref()?;
-        let every = state.trace.len().div_ceil(POINTS).max(1);
         let curve = |name: &str, label: &str, value: &dyn Fn(usize) -> Option<f64>| {
-            let points = (0..state.trace.len()).step_by(every).filter_map(|tick| Some([tick as f64, value(tick)?]));
+            let points = state.ticks().filter_map(|tick| Some([tick as f64, value(tick)?]));
             Chart::new(name, "iteration", label).size(560.0, 300.0).with(Series::line("", points))
         };
         let of = |value: fn(&FlockMeasure) -> f64| move |tick: usize| state.trace[tick].as_ref().map(value);
@@ -168,5 +176,19 @@ impl Probe for Flock {
             curve("Structural Hamiltonian", "log10 H / n", &|tick| Some(libm::log10(state.energies[tick]))),
         ];
         Some(charts.into_iter().fold(Panels::new(title).columns(2), Panels::with))
+    }
+
+    fn table(&self) -> Option<String> {
+        let state = self.state.as_ref()?;
+        let mut text = "iteration,time_s,connectivity,components,radius_m,deviation_energy,velocity_mismatch_m2ps2,\
+            polarisation,hamiltonian_per_robot\n"
+            .to_owned();
+        for tick in state.ticks() {
+            let Some(m) = &state.trace[tick] else { continue };
+            let shape = format!("{},{},{},{}", m.connectivity, m.components, m.radius_m, m.deviation_energy);
+            let motion = format!("{},{},{}", m.velocity_mismatch, m.polarisation, state.energies[tick]);
+            text += &format!("{tick},{},{shape},{motion}\n", tick as f64 * state.tick_s);
+        }
+        Some(text)
     }
 }
