@@ -16,11 +16,20 @@ const CURVES: usize = 6;
 const UNASKED: usize = 8;
 const BINS: usize = 30;
 
-/// Pictures that a plan requests; by default its first figures over its first two axes.
+/// Pictures that a plan requests, also over axes of the command line; by default its first figures
+/// over its first two axes.
 #[must_use]
 pub fn plots(plan: &Plan) -> Vec<PlotTable> {
     if !plan.plots.is_empty() {
-        return plan.plots.clone();
+        let mut plots = plan.plots.clone();
+        for (axis, plot) in plan.added().flat_map(|axis| plan.plots.iter().map(move |plot| (axis, plot))) {
+            let (figure, and) = (plot.figure.clone(), Some(plot.over.clone()));
+            let plot = PlotTable { figure, over: axis.to_owned(), and, log: false };
+            if !plots.contains(&plot) {
+                plots.push(plot);
+            }
+        }
+        return plots;
     }
     let varies = |axis: &&str| plan.values(axis).is_some_and(|values| values.iter().any(|value| value != &values[0]));
     let mut axes = plan.axes().filter(varies).map(str::to_owned);

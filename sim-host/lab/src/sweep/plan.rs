@@ -239,6 +239,11 @@ impl Plan {
         self.find(axis).map(|index| &self.axes[index].values[..])
     }
 
+    /// Axes that the command line adds to those of the file.
+    pub(crate) fn added(&self) -> impl Iterator<Item = &str> {
+        self.axes.iter().filter(|axis| axis.is_added() && axis.values.len() > 1).map(|axis| axis.field.name())
+    }
+
     /// Index of an axis, by its name or the end of it after a dot.
     #[must_use]
     pub fn find(&self, axis: &str) -> Option<usize> {

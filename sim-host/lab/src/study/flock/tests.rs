@@ -149,3 +149,14 @@ fn forests_and_goals_are_at_random_places_with_gaps() {
     assert!((value(&measured, "company.share_1") + value(&measured, "company.share_2") - 1.0).abs() < 1e-9);
     assert_eq!(measured.values["company.share_3"], None);
 }
+
+#[test]
+fn operator_moves_a_goal_of_robots_with_exact_knowledge() {
+    let order =
+        "order = [{ at_s = 10, goal = 2, place_m = [300, 900] }]".parse::<toml::Table>().unwrap()["order"].clone();
+    let sets = [sets(12, 1500, "all"), vec![("plane.order", order)]].concat();
+    let of = |sets: &[_]| read("pav/goals/scenario.toml", sets, &["company.share_3"], 5).unwrap();
+    let [moved, unmoved] = [of(&sets), of(&sets[..3])];
+    assert_ne!(moved.trace_hash, unmoved.trace_hash);
+    assert!(value(&moved, "company.arrived") > 0.5, "{moved:?}");
+}

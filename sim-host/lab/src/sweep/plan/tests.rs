@@ -51,6 +51,19 @@ fn axes_are_crossed_in_the_order_of_the_file_and_seeds_change_first() {
 }
 
 #[test]
+fn axes_of_the_command_line_are_plotted_too() {
+    let folder = folder();
+    let text = "name = 'p'\nscenario = 'duel.toml'\n[axes]\nradio.loss = [0, 1]\n\
+        [[plot]]\nfigure = 'arrived'\nover = 'radio.loss'\n";
+    let fields = ["radio.delay_ms=1,2", "radio.loss=0,0.5", "ticks=5"].map(|change| change.parse().unwrap()).to_vec();
+    let changes = Changes { fields, ..Changes::default() };
+    let plan = Plan::parse(text, &folder.path().join("plan.toml"), &changes).unwrap();
+    let plots = crate::sweep::pictures::plots(&plan);
+    let axes: Vec<_> = plots.iter().map(|plot| (&*plot.over, plot.and.as_deref())).collect();
+    assert_eq!(axes, [("radio.loss", None), ("radio.delay_ms", Some("radio.loss"))]);
+}
+
+#[test]
 fn run_is_the_scenario_with_the_values_of_its_point() {
     let plan =
         plan("seeds = { from = 40, count = 2 }\n[set]\nticks = 33\n[axes]\nplane.robots.circle.count = [2, 6]\n");
