@@ -17,9 +17,16 @@ fn column(plan: &Plan, all: &[Vec<Figure>], measure: &str) -> Vec<Option<f64>> {
 #[test]
 fn golden_experiment_flock() {
     let (mut text, mut gaps) = (String::new(), Vec::new());
-    for (knows, scenarios) in [("packets", "free,fragment,rendezvous,split,squeeze"), ("all", "free,fragment")] {
+    let orca: &[&str] = &["plane.safety=orca", "plane.orca.horizon_s=0.3", "plane.orca.wall_horizon_s=0.3"];
+    for (knows, safety, scenarios) in [
+        ("packets", &["plane.safety=none"][..], "free,fragment,rendezvous,split,squeeze"),
+        ("packets", orca, "free,fragment,split,squeeze"),
+        ("packets", &["plane.safety=fly", "plane.orca.horizon_s=0.3"], "rendezvous"),
+        ("all", &["plane.safety=none"], "free,fragment"),
+    ] {
         let [scenarios, knows] = [format!("scenario={scenarios}"), format!("study.knows={knows}")];
-        let (plan, table, all) = table("olf/flock", &[&scenarios, &knows, "plane.robots.cloud.count=24"], 1);
+        let few = [&[&scenarios, &knows, "plane.robots.cloud.count=24"], safety].concat();
+        let (plan, table, all) = table("olf/flock", &few, 1);
         text += &table;
         let parts = (0..).zip(column(&plan, &all, "flock.parts")).filter(|(_, parts)| *parts != Some(1.0));
         gaps.extend(parts.map(|(number, _)| format!("{}: more than one component", plan.values_of(number)[0])));
@@ -32,29 +39,40 @@ fn golden_experiment_flock() {
 fn golden_experiment_closing() {
     let (mut text, mut gaps) = (String::new(), Vec::new());
     for figure in ["staya/closing", "staya/closing-boids"] {
-        let (plan, table, all) = table(figure, &["plane.safety=orca"], 1);
+        let (plan, table, all) = table(figure, &["plane.safety=none,orca"], 1);
         text += &table;
-        let overlaps = column(&plan, &all, "collisions").into_iter().any(|overlaps| overlaps != Some(0.0));
-        gaps.extend(overlaps.then(|| "robots behind ORCA overlap".to_owned()));
+        let is_behind_orca = |run: u64| plan.values_of(run).contains(&"orca".to_owned());
+        let mut overlaps = (0..).zip(column(&plan, &all, "collisions")).filter(|(run, _)| is_behind_orca(*run));
+        gaps.extend(
+            overlaps.any(|(_, overlaps)| overlaps != Some(0.0)).then(|| "robots behind ORCA overlap".to_owned()),
+        );
     }
     golden("experiment-closing", &text, &gaps);
 }
 
 #[test]
 fn golden_experiment_goals() {
-    let few = [
-        "k2=0,50",
-        "neighborhood_m=40",
-        "study.knows=all,packets",
-        "plane.robots.cloud.count=30",
-        "plane.robots.cloud.from_m[0]=-110",
-        "plane.robots.cloud.to_m[0]=110",
-        "plane.robots.cloud.from_m[1]=-110",
-        "plane.robots.cloud.to_m[1]=110",
-        "ticks=1200",
-    ];
-    let (plan, text, all) = table("pav/goals", &few, 1);
-    let missing = column(&plan, &all, "company.arrived").into_iter().any(|arrived| arrived != Some(1.0));
+    let (mut text, mut missing) = (String::new(), false);
+    for knows in [
+        ["study.knows=all", "plane.safety=push_out", "plane.push_out.min_distance_m=10"],
+        ["study.knows=packets", "plane.safety=push_out", "plane.push_out.min_distance_m=8"],
+        ["study.knows=packets", "plane.safety=none,orca", "plane.sight_m=20"],
+    ] {
+        let few = [
+            "plane.goal_flock.k1=50,150",
+            "k2=0,50",
+            "neighborhood_m=40",
+            "plane.robots.cloud.count=30",
+            "plane.robots.cloud.from_m[0]=-110",
+            "plane.robots.cloud.to_m[0]=110",
+            "plane.robots.cloud.from_m[1]=-110",
+            "plane.robots.cloud.to_m[1]=110",
+            "ticks=1200",
+        ];
+        let (plan, table, all) = table("pav/goals", &[&knows[..], &few].concat(), 1);
+        text += &table;
+        missing |= column(&plan, &all, "company.arrived").into_iter().any(|arrived| arrived != Some(1.0));
+    }
     golden("experiment-goals", &text, missing.then(|| "not all robots arrive".to_owned()).as_slice());
 }
 
