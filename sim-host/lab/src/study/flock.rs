@@ -24,11 +24,12 @@ use staya_sim::engine::{self, Moment, Outcome};
 use staya_sim::metrics::flock::gaps;
 use staya_sim::nearby::{Cells, Query, Search as _, Space};
 use staya_sim::record::{Motion, PacketCounts, RobotRow, TickRow};
-use staya_sim::scenario::{PlaneSetup, Scenario, Target};
+use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
 use staya_sim::world::plane::{Clearance, Solid};
 use std::path::{Path, PathBuf};
 
 const STARTS: u32 = 0x0046_0101;
+const SQUARES: u32 = 0x0046_0201;
 const TREES: u32 = 0x0046_0102;
 const PLACES: u32 = 0x0047_0104;
 const TRIES: u32 = 1000;
@@ -84,7 +85,37 @@ impl Scattered {
     }
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// Starts in squares of rows, one square for each group of robots.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Squares {
+    /// South-west corners of the squares.
+    from_m: Vec<[f64; 2]>,
+    spacing_m: f64,
+    /// Largest random offset of a start along each axis.
+    noise_m: f64,
+    /// Largest random offset of a square but the first to the north or south.
+    shift_m: f64,
+}
+
+impl Squares {
+    /// `None` if a group has no square.
+    fn place(&self, plane: &mut PlaneSetup, mut rng: Rng) -> Option<()> {
+        let group_of = |start: &Start| start.group.map_or(0, |group| group + 1);
+        for (group, [west, south]) in self.from_m.iter().enumerate() {
+            let side = plane.starts.iter().filter(|start| group_of(start) == group).count().isqrt().max(1);
+            let shift_m = if group == 0 { 0.0 } else { uniform(&mut rng, -self.shift_m, self.shift_m) };
+            let mut noise = || uniform(&mut rng, -self.noise_m, self.noise_m);
+            for (number, start) in plane.starts.iter_mut().filter(|start| group_of(start) == group).enumerate() {
+                let [east, north] = [number / side, number % side].map(|rows| rows as f64 * self.spacing_m);
+                start.position_m = [west + east + noise(), south + shift_m + north + noise(), 0.0];
+            }
+        }
+        plane.starts.iter().all(|start| group_of(start) < self.from_m.len()).then_some(())
+    }
+}
+
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Parameters {
     knows: Knowledge,
@@ -97,6 +128,8 @@ struct Parameters {
     c2_gamma: Option<f32>,
     /// Standard deviation of starts along each axis, instead of the scenario's starts.
     deviation_m: [f64; 3],
+    /// Starts instead of the scenario's.
+    squares: Option<Squares>,
     /// Balls besides those of the scenario.
     forest: Option<Scattered>,
     /// Goals instead of those of the scenario, in its plane.
@@ -112,6 +145,7 @@ impl Default for Parameters {
             c2_alpha: None,
             c2_gamma: None,
             deviation_m: [0.0; 3],
+            squares: None,
             forest: None,
             goals: None,
         }
@@ -173,6 +207,12 @@ impl Run {
                 let what = format!("the robots find no room with deviations of {:?} m", parameters.deviation_m);
                 return Err(given.error("deviation_m", what, "give larger ones, up to 100,000"));
             }
+        }
+        if let Some(squares) = &parameters.squares
+            && squares.place(plane, Rng::keyed(given.seed, SQUARES, 0, 0)).is_none()
+        {
+            let what = "there are more groups than squares";
+            return Err(given.error("squares.from_m", what, "give a corner for each group, beginning with [plane]"));
         }
         let scattered = |field: &str, discs: Option<Scattered>, most: usize, key| {
             let no_room = || {

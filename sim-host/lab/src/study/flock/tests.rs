@@ -160,3 +160,19 @@ fn operator_moves_a_goal_of_robots_with_exact_knowledge() {
     assert_ne!(moved.trace_hash, unmoved.trace_hash);
     assert!(value(&moved, "company.arrived") > 0.5, "{moved:?}");
 }
+
+#[test]
+fn groups_start_in_squares_that_face_each_other() {
+    let sets = |corners: toml::Value| vec![("study.squares.from_m", corners)];
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../papers/staya/closing/alpha-nine.toml");
+    let table: toml::Table = std::fs::read_to_string(&path).unwrap().parse().unwrap();
+    let run = Run::read(&Given { table, path: &path, measures: &[], seed: 2 }).unwrap();
+    let starts = run.scenario.plane.unwrap().starts;
+    for (west, east) in starts[..9].iter().zip(&starts[9..]) {
+        let [dx, dy] = [0, 1].map(|axis| east.position_m[axis] - west.position_m[axis]);
+        assert!((dx - 42.0).abs() <= 0.1 && dy.abs() <= 0.6, "{dx} {dy}");
+    }
+    let one = toml::Value::from(vec![vec![0, 0]]);
+    let error = read("staya/closing/alpha-nine.toml", &sets(one), &ALL, 1).unwrap_err();
+    assert!(error.contains("study.squares.from_m: there are more groups than squares"), "{error}");
+}
