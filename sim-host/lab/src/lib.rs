@@ -1,6 +1,6 @@
 //! Sweeps, and experiments that repeat papers and benchmarks: [figures](figure) are plans in
 //! `papers/`. A run of a plan is one of a scenario, measured by its summary and by
-//! [probes](sweep::probe), or what a [study] does instead.
+//! [probes](sweep::probe), or of a [study].
 
 pub mod cli;
 pub mod figure;

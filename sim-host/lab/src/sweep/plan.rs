@@ -347,7 +347,7 @@ impl Plan {
         found.map_or("a figure of summary.json", |(_, meaning)| meaning)
     }
 
-    /// What the plan does instead of runs of its scenario.
+    /// Kind of run instead of runs of the scenario.
     pub(crate) fn study(&self) -> Option<&'static dyn Study> {
         self.study
     }

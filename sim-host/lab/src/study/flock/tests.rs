@@ -118,7 +118,7 @@ fn starts_have_the_deviation_and_their_distance() {
 
 #[test]
 fn other_laws_and_layers_have_no_exact_knowledge() {
-    for (field, value) in [("plane.safety", "orca"), ("study.knows", "nobody")] {
+    for (field, value) in [("plane.safety", "orca"), ("study.knows", "none")] {
         let error = read("pav/goals/scenario.toml", &[(field, value.into())], &ALL, 1).unwrap_err();
         assert!(error.contains("study.knows"), "{error}");
     }

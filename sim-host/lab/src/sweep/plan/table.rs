@@ -14,7 +14,7 @@ pub struct PlanFile {
     pub title: String,
     /// Several scenarios are the first axis. Required without `study`.
     pub scenario: Option<Files>,
-    /// What to do instead of runs of the scenario.
+    /// Kind of run instead of runs of the scenario.
     pub study: Option<String>,
     /// Default: the scenario's own seed.
     pub seeds: Option<Seeds>,
