@@ -2,6 +2,7 @@
 
 use staya_sim::record;
 use staya_sim::scenario::ScenarioError;
+use staya_sim::terrain::TerrainError;
 use std::fmt::Display;
 
 /// An error with its place, cause and remedy.
@@ -10,6 +11,9 @@ pub enum SweepError {
     /// The plan or its scenario is wrong.
     #[error(transparent)]
     Plan(#[from] ScenarioError),
+    /// A terrain file cannot be read.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
     /// A file cannot be written.
     #[error(transparent)]
     File(#[from] record::Error),

@@ -2,7 +2,6 @@
 //!
 //! | module | contents |
 //! | --- | --- |
-//! | [`design`] | numbered runs: sweep plans and experiments |
 //! | [`plan`] | varied fields, values, seeds and measures |
 //! | [`run`] | one run, a function of plan and number only |
 //! | [`probe`] | observers that measure more than the summary |
@@ -10,14 +9,15 @@
 //! | [`row`] | the record of a run |
 //! | [`shard`] | the part of a plan that one process does, and its file of rows |
 //! | [`merge`] | the rows of all shards in order, and their consistency |
+//! | [`gain`] | differences of means over an axis |
 //! | [`aggregate`] | means, medians and intervals over the seeds |
 //! | [`pictures`] | charts of a figure over one or two axes |
 //! | [`script`] | scripts for clusters: Slurm, GNU parallel |
-//! | [`jobs`] | parallel jobs, for sweeps and experiments |
+//! | [`jobs`] | parallel jobs |
 
 pub mod aggregate;
-pub mod design;
 mod error;
+pub mod gain;
 pub mod jobs;
 pub mod merge;
 pub mod pictures;

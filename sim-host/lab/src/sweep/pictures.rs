@@ -3,9 +3,9 @@
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Plan, PlotTable};
 use crate::sweep::value::{Figure, Value};
-use staya_plot::{Chart, HeatMap, Series};
+use staya_plot::{Chart, HeatMap, Panels, Series};
 use staya_sim::record::Error;
-use staya_stats::Summary;
+use staya_stats::{Goodness, Histogram, NortonRice, Summary};
 use std::path::{Path, PathBuf};
 
 const MOST: usize = 24;
@@ -14,19 +14,29 @@ const PARTS: [usize; 2] = [4, 12];
 const RUNS: usize = 4;
 const CURVES: usize = 6;
 const UNASKED: usize = 8;
+const BINS: usize = 30;
 
-/// Pictures that a plan requests; by default its first figures over its first two axes.
+/// Pictures that a plan requests, also over axes of the command line; by default its first figures
+/// over its first two axes.
 #[must_use]
 pub fn plots(plan: &Plan) -> Vec<PlotTable> {
     if !plan.plots.is_empty() {
-        return plan.plots.clone();
+        let mut plots = plan.plots.clone();
+        for (axis, plot) in plan.added().flat_map(|axis| plan.plots.iter().map(move |plot| (axis, plot))) {
+            let (figure, and) = (plot.figure.clone(), Some(plot.over.clone()));
+            let plot = PlotTable { figure, over: axis.to_owned(), and, log: false };
+            if !plots.contains(&plot) {
+                plots.push(plot);
+            }
+        }
+        return plots;
     }
     let varies = |axis: &&str| plan.values(axis).is_some_and(|values| values.iter().any(|value| value != &values[0]));
     let mut axes = plan.axes().filter(varies).map(str::to_owned);
     let (Some(over), and) = (axes.next(), axes.next()) else {
         return Vec::new();
     };
-    let plot = |figure: &String| PlotTable { figure: figure.clone(), over: over.clone(), and: and.clone() };
+    let plot = |figure: &String| PlotTable { figure: figure.clone(), over: over.clone(), and: and.clone(), log: false };
     if plan.measures().len() <= UNASKED {
         return plan.measures().iter().map(plot).collect();
     }
@@ -58,7 +68,7 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
     let parts = if and.is_some() { (rows.len() / RUNS).isqrt() } else { rows.len() / RUNS };
     let levels = |axis| Levels::new(plan, axis, parts.clamp(PARTS[0], PARTS[1]));
     let (x, y) = (levels(over), and.map(levels));
-    let picture = Picture { plan, plot, rows, x, y };
+    let picture = Picture { plan, plot, rows, x, y, reference: reference(plan, merged, &plot.figure, over) };
     let stem = folder.join(picture.file_name());
     match &picture.y {
         Some(y) if y.is_parts || y.names.len() > CURVES || picture.x.numbers.is_none() => {
@@ -66,6 +76,62 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
         }
         _ => picture.chart().write(&stem),
     }
+}
+
+/// Values of a paper over an axis of numbers, with the first values of the other axes.
+fn reference(plan: &Plan, merged: &Merged, figure: &str, over: usize) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for row in &merged.rows {
+        let value = plan.reference.as_ref().and_then(|it| it.value(&plan.values_of(row.run), figure));
+        let Some((x, y)) = plan.run(row.run).values[over].number().zip(value) else { continue };
+        if points.iter().all(|point| point[0] != x) {
+            points.push([x, y]);
+        }
+    }
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points
+}
+
+/// Draws the distribution of a figure over the runs of each chosen point, with the Norton-Rice law
+/// of largest likelihood and its chi-square test (KUZ, figure 4).
+///
+/// # Errors
+/// A file cannot be written.
+pub fn histograms(plan: &Plan, merged: &Merged, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for (name, choice) in &plan.histograms {
+        let Some(figure) = plan.measures().iter().position(|it| it == name) else { continue };
+        let seeds = plan.seeds();
+        for rows in merged.rows.chunk_by(|a, b| a.run / seeds == b.run / seeds) {
+            let point = plan.values_of(rows[0].run);
+            let values: Vec<f64> = rows.iter().filter_map(|row| row.figures[figure].0).collect();
+            if let Some(chart) = Some(&point).filter(|point| choice.has(point)).and_then(|_| histogram(name, &values)) {
+                let stem = format!("{name}-{}", point.join("-"));
+                files.extend(Panels::new(point.join(", ")).with(chart).write(&folder.join(stem))?);
+            }
+        }
+    }
+    Ok(files)
+}
+
+fn histogram(name: &str, values: &[f64]) -> Option<Chart> {
+    let Histogram { low, width, counts } = Histogram::new(values, BINS)?;
+    let edge = |bin: usize| low + bin as f64 * width;
+    let bars = counts.iter().enumerate().map(|(bin, &count)| [edge(bin), edge(bin + 1), count as f64]);
+    let mut chart = Chart::new(name, name, "runs").with(Series::bars("runs", bars));
+    let Ok(law) = NortonRice::fit(values) else { return Some(chart) };
+    let area = values.len() as f64 * width;
+    let curve = (0..=200).map(|i| {
+        let x = low + (edge(counts.len()) - low) * f64::from(i) / 200.0;
+        [x, area * law.pdf(x)]
+    });
+    chart = chart.with(Series::line("Norton-Rice law", curve));
+    if let Some(Goodness { chi2, freedom, p_value, .. }) = law.goodness(values) {
+        let [m, alpha, beta] = [law.m(), law.alpha(), law.beta()];
+        let test = format!("chi-square {chi2:.1} with {freedom} degrees of freedom, p = {p_value:.3}");
+        chart = chart.note(format!("m = {m:.2}, alpha = {alpha:.2}, beta = {beta:.2}; {test}"));
+    }
+    Some(chart)
 }
 
 struct Levels {
@@ -132,17 +198,18 @@ struct Picture<'a> {
     rows: Vec<(Value, Option<Value>, f64)>,
     x: Levels,
     y: Option<Levels>,
+    reference: Vec<[f64; 2]>,
 }
 
 impl Picture<'_> {
     fn file_name(&self) -> String {
-        let PlotTable { figure, over, and } = self.plot;
+        let PlotTable { figure, over, and, .. } = self.plot;
         let and = and.as_ref().map_or(String::new(), |and| format!("-and-{and}"));
         format!("{figure}-over-{over}{and}").replace('[', ".").replace(']', "")
     }
 
     fn title(&self) -> String {
-        let PlotTable { figure, over, and } = self.plot;
+        let PlotTable { figure, over, and, .. } = self.plot;
         let and = and.as_ref().map_or(String::new(), |and| format!(" and {and}"));
         format!("{}: {figure} over {over}{and}", self.plan.name)
     }
@@ -165,10 +232,13 @@ impl Picture<'_> {
     }
 
     fn chart(&self) -> Chart {
-        let PlotTable { figure, over, and } = self.plot;
+        let PlotTable { figure, over, and, .. } = self.plot;
         let mut chart = Chart::new(self.title(), over, figure).note(self.note("means with 95 % intervals"));
-        if self.x.is_log {
+        if self.x.is_log || self.plot.log {
             chart = chart.log_x();
+        }
+        if self.plot.log {
+            chart = chart.log_y();
         }
         let point = |at: f64, summary: &Summary| {
             let [low, high] = summary.mean_interval95();
@@ -200,6 +270,9 @@ impl Picture<'_> {
                     Series::intervals(if self.x.is_parts { "parts of the axis" } else { "" }, curve(None)).joined(),
                 );
             }
+        }
+        if !self.reference.is_empty() {
+            chart = chart.with(Series::reference("paper", self.reference.iter().copied()));
         }
         chart
     }

@@ -1,6 +1,7 @@
 //! Probes: measures of a run that are not in its summary, named `PROBE.MEASURE`.
 
 mod alone;
+mod company;
 mod cost;
 mod flock;
 mod flow;
@@ -9,6 +10,7 @@ mod free;
 mod optimum;
 mod process;
 
+use staya_plot::Panels;
 use staya_sim::engine::{Moment, Outcome};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
@@ -20,6 +22,17 @@ pub trait Probe {
     fn tick(&mut self, moment: &Moment<'_>, robots: &[RobotRow]) -> ControlFlow<()> {
         let _ = (moment, robots);
         ControlFlow::Continue(())
+    }
+
+    /// Charts of the run over time; by default there are none.
+    fn charts(&self, title: &str) -> Option<Panels> {
+        let _ = title;
+        None
+    }
+
+    /// The run over time as CSV; by default there is none.
+    fn table(&self) -> Option<String> {
+        None
     }
 
     /// Values in the order of the probe's measures.
@@ -38,8 +51,8 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 7] =
-    [free::KIND, flow::KIND, flock::KIND, alone::KIND, cost::KIND, optimum::KIND, foresight::KIND];
+pub const KINDS: [Kind; 8] =
+    [free::KIND, flow::KIND, flock::KIND, company::KIND, alone::KIND, cost::KIND, optimum::KIND, foresight::KIND];
 
 /// Names and meanings of the measures of all probes.
 pub fn measures() -> impl Iterator<Item = (String, &'static str)> {

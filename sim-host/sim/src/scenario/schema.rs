@@ -200,6 +200,9 @@ pub struct NaturalTable {
     /// Slopes of hills: `"even"` (the default), `"rounded"`, `"wide"`, `"added"` or `"rough"`.
     #[serde(default)]
     pub hills: Hills,
+    /// Whether the cells are then put in random order: equal entropy without hills. Default: false.
+    #[serde(default)]
+    pub shuffled: bool,
 }
 
 /// `terrain.entropy`.

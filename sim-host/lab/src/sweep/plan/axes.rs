@@ -26,6 +26,13 @@ pub struct Axis {
     span: Range<usize>,
 }
 
+impl Axis {
+    /// Whether the axis is not one of the plan's file.
+    pub fn is_added(&self) -> bool {
+        self.line == 0 && self.span == (0..0)
+    }
+}
+
 /// Fields that a plan varies or sets.
 #[derive(Debug, Default)]
 pub struct Axes {

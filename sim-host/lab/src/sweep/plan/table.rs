@@ -12,8 +12,10 @@ pub struct PlanFile {
     /// One line.
     #[serde(default)]
     pub title: String,
-    /// Several scenarios are the first axis.
-    pub scenario: Files,
+    /// Several scenarios are the first axis. Required without `study`.
+    pub scenario: Option<Files>,
+    /// Kind of run instead of runs of the scenario.
+    pub study: Option<String>,
     /// Default: the scenario's own seed.
     pub seeds: Option<Seeds>,
     /// Figures of `summary.json`. Default: all except the reasons for waiting.
@@ -35,6 +37,11 @@ pub struct PlanFile {
     /// Points of which the first run is drawn.
     #[serde(default)]
     pub picture: Vec<PictureTable>,
+    /// Distributions of figures over the runs of some points.
+    #[serde(default)]
+    pub histogram: Vec<HistogramTable>,
+    #[serde(default)]
+    pub gain: Vec<GainTable>,
     /// A CSV file with values of a paper: columns of axes, then of measures.
     pub reference: Option<PathBuf>,
     #[serde(default)]
@@ -103,6 +110,9 @@ pub struct PlotTable {
     pub over: String,
     /// The second axis: curves if it has a few values, else a map.
     pub and: Option<String>,
+    /// Whether the axes of curves are logarithmic. Default: false.
+    #[serde(default)]
+    pub log: bool,
 }
 
 /// `[[picture]]`: moments of the first run of some points.
@@ -112,6 +122,29 @@ pub struct PictureTable {
     /// Values of axes; a list for several. Default: all points.
     #[serde(default, rename = "where")]
     pub at: toml::Table,
+}
+
+/// `[[histogram]]`: the distribution of a figure, with its Norton-Rice law.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HistogramTable {
+    /// A figure that the plan records.
+    pub figure: String,
+    /// Values of axes; a list for several. Default: all points.
+    #[serde(default, rename = "where")]
+    pub at: toml::Table,
+}
+
+/// `[[gain]]`: means of a figure minus those at one value of an axis.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GainTable {
+    /// A figure that the plan records.
+    pub figure: String,
+    /// The axis.
+    pub over: String,
+    /// Its value without gain.
+    pub from: f64,
 }
 
 /// `[[accept]]`: what the runs must show.

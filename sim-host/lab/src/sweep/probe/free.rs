@@ -26,8 +26,7 @@ struct Free {
 fn ways_m(scenario: &Scenario) -> impl Iterator<Item = Option<f64>> {
     scenario.plane.iter().flat_map(|plane| &plane.starts).map(|start| {
         let places = start.places.iter().map(|place| place.position_m);
-        let (way_m, _) =
-            places.fold((0.0, start.position_m), |(way_m, from), to| (way_m + crate::arena::distance_m(from, to), to));
+        let (way_m, _) = places.fold((0.0, start.position_m), |(way_m, from), to| (way_m + distance_m(from, to), to));
         (!start.places.is_empty()).then_some(way_m)
     })
 }
@@ -55,4 +54,8 @@ impl Probe for Free {
         let worst = ratios.iter().copied().reduce(f64::max);
         vec![worst.filter(|_| all), staya_stats::mean(&ratios), all.then_some(last_s)]
     }
+}
+
+fn distance_m(a: [f64; 3], b: [f64; 3]) -> f64 {
+    libm::sqrt(a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum())
 }

@@ -1,0 +1,110 @@
+//! Studies: what a plan with `study = "NAME"` does instead of runs of its scenario. Their parameters
+//! are the fields `study.*`.
+
+pub mod boids;
+pub mod flock;
+pub mod movingai;
+pub mod route;
+pub mod tune;
+mod walk;
+
+use crate::sweep::SweepError;
+use crate::sweep::run::Measured;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source};
+use std::fmt::Debug;
+use std::path::{Path, PathBuf};
+
+const LIST: &str = "docs/sweeps.md";
+
+/// Called after each tick or step with its number; returns whether the run may continue.
+pub type Watch<'a> = dyn Fn(u32) -> bool + Sync + 'a;
+
+/// A run whose fields are checked.
+pub type Job = Box<dyn FnOnce(&Watch<'_>) -> Result<Measured, String>>;
+
+/// A kind of run.
+pub trait Study: Debug + Sync {
+    /// Name in plans.
+    fn name(&self) -> &'static str;
+
+    /// Names of the measures, with their meanings.
+    fn measures(&self) -> Vec<(String, &'static str)>;
+
+    /// Whether a run needs the machine for itself because it is timed.
+    fn is_timed(&self) -> bool {
+        false
+    }
+
+    /// Reads and checks the fields of a run.
+    ///
+    /// # Errors
+    /// Names the field that is wrong, or a file that cannot be read.
+    fn read(&self, given: &Given<'_>) -> Result<Job, SweepError>;
+
+    /// Whether the fields besides `study.*` are those of a scenario.
+    fn takes_scenario(&self) -> bool {
+        false
+    }
+
+    /// Draws a run into files that begin with `stem`, and returns them. By default there are none.
+    ///
+    /// # Errors
+    /// As for [`Study::read`], or a file cannot be written.
+    fn draw(&self, given: &Given<'_>, title: &str, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
+        let _ = (given, title, stem);
+        Ok(Vec::new())
+    }
+}
+
+/// All studies.
+pub const ALL: [&dyn Study; 5] = [&boids::Boids, &flock::Flock, &movingai::MovingAi, &route::Route, &tune::Tune];
+
+/// Fields of a run.
+#[derive(Clone, Debug)]
+pub struct Given<'a> {
+    /// Fields of the scenario and, in `study`, of the study.
+    pub table: toml::Table,
+    /// File that names of files are relative to.
+    pub path: &'a Path,
+    /// Measures of the plan; empty while it is read.
+    pub measures: &'a [String],
+    /// Seed of the run.
+    pub seed: u64,
+}
+
+#[derive(Deserialize)]
+struct Only<T> {
+    study: T,
+}
+
+impl Given<'_> {
+    /// The parameters of the study.
+    ///
+    /// # Errors
+    /// A field is unknown, missing, or of another type.
+    pub fn parameters<T: DeserializeOwned>(&self) -> Result<T, ScenarioError> {
+        let own = self.table.get("study").cloned().unwrap_or_else(|| toml::Table::new().into());
+        let table = toml::Table::from_iter([("study".to_owned(), own)]);
+        let text = toml::to_string(&table).unwrap_or_default();
+        Ok(Source::new(self.path, &text)?.read::<Only<T>>(LIST)?.study)
+    }
+
+    /// The scenario: all fields except the study's.
+    ///
+    /// # Errors
+    /// The scenario is wrong.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        let mut table = self.table.clone();
+        table.remove("study");
+        let text = toml::to_string(&table).unwrap_or_default();
+        Scenario::parse(&text, self.path, &Overrides { seed: Some(self.seed), ticks: None })
+    }
+
+    /// An error about a parameter of the study.
+    pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> SweepError {
+        let (path, field) = (self.path.to_owned(), format!("study.{field}"));
+        ScenarioError::Field { path, line: 1, field, what: what.into(), remedy: remedy.into() }.into()
+    }
+}
