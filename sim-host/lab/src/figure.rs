@@ -1,7 +1,8 @@
 //! Figures of papers: plans in `papers/PAPER/FIGURE/figure.toml`.
 
+use crate::error::SweepError;
+use crate::sweep::Plan;
 use crate::sweep::report::VERDICT;
-use crate::sweep::{Plan, SweepError};
 use anyhow::Result;
 use staya_sim::record::Error;
 use staya_sim::scenario::nearest;

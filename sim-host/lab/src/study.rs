@@ -1,5 +1,5 @@
-//! Studies: what a plan with `study = "NAME"` does instead of runs of its scenario. Their parameters
-//! are the fields `study.*`.
+//! Studies: what a plan with `study = "NAME"` does instead of runs of its scenario. Their
+//! parameters are the fields `study.*`.
 
 pub mod boids;
 pub mod flock;
@@ -8,8 +8,8 @@ pub mod route;
 pub mod tune;
 mod walk;
 
-use crate::sweep::SweepError;
-use crate::sweep::run::Measured;
+use crate::error::SweepError;
+use crate::measure::Job;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source};
@@ -17,12 +17,6 @@ use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
 const LIST: &str = "docs/sweeps.md";
-
-/// Called after each tick or step with its number; returns whether the run may continue.
-pub type Watch<'a> = dyn Fn(u32) -> bool + Sync + 'a;
-
-/// A run whose fields are checked.
-pub type Job = Box<dyn FnOnce(&Watch<'_>) -> Result<Measured, String>>;
 
 /// A kind of run.
 pub trait Study: Debug + Sync {

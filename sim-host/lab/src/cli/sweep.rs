@@ -1,13 +1,14 @@
 //! `staya sweep PLAN`.
 
 use super::RowArgs;
+use crate::error::SweepError;
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Changes, PlotTable};
 use crate::sweep::report::{ROWS, Report};
 use crate::sweep::run::estimate;
 use crate::sweep::script::{self, Job};
 use crate::sweep::shard::{Existing, files};
-use crate::sweep::{Plan, SweepError, pictures};
+use crate::sweep::{Plan, pictures};
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global, Stop, print, print_json};

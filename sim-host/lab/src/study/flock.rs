@@ -4,10 +4,10 @@
 //! With exact knowledge, all robots move at once by the law alone (OLF, section VIII; PAV, sections
 //! 2 and 3), in doubles. Differences from agents are effects of radio or bodies.
 
-use super::{Given, Job, Study};
-use crate::sweep::SweepError;
-use crate::sweep::probe;
-use crate::sweep::run::{draw_by, measure};
+use super::{Given, Study};
+use crate::error::SweepError;
+use crate::measure::{Job, draw, measure};
+use crate::probe;
 use serde::Deserialize;
 use staya_controller::agent::{GOALS, GuidanceSetup, SafetySetup};
 use staya_controller::body::Body;
@@ -185,7 +185,7 @@ impl Study for Flock {
 
     fn draw(&self, given: &Given<'_>, title: &str, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
         let run = Run::read(given)?;
-        draw_by(&run.scenario, given.measures, &|each| run.simulate(each), title, stem)
+        draw(&run.scenario, given.measures, &|each| run.simulate(each), title, stem)
     }
 }
 

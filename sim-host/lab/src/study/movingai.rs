@@ -7,10 +7,10 @@
 //! are answered by the planner ([`optimal`]).
 
 use super::walk::{self, CELLS, Maker, Walks, maker, percent, whole};
-use super::{Given, Job, Study, Watch};
+use super::{Given, Study};
+use crate::error::SweepError;
+use crate::measure::{Job, Measured, Watch, write_table};
 use crate::optimal;
-use crate::sweep::SweepError;
-use crate::sweep::run::{Measured, write_table};
 use crate::walk::{Task, holds};
 use rayon::prelude::*;
 use serde::Deserialize;

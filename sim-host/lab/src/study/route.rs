@@ -1,15 +1,15 @@
-//! Routes of one robot that sees a part of the land (A. V. Kuznetsov 2017, KUZ, section 5, figures 2
-//! to 4), by the controller's router without agents and radio, over the fastest route on the whole
-//! map. Land, robot, and parameters of routing are those of the scenario.
+//! Routes of one robot that sees a part of the land (A. V. Kuznetsov 2017, KUZ, section 5, figures
+//! 2 to 4), by the controller's router without agents and radio, over the fastest route on the
+//! whole map. Land, robot, and parameters of routing are those of the scenario.
 //!
-//! The paper's robots learn no travel costs (`learned = 0`). With 256 cells of them, the path is that
-//! of the scenario's robot in the engine.
+//! The paper's robots learn no travel costs (`learned = 0`). With 256 cells of them, the path is
+//! that of the scenario's robot in the engine.
 
 use super::walk::{self, Maker, Walks, maker, percent, whole};
-use super::{Given, Job, Study};
+use super::{Given, Study};
+use crate::error::SweepError;
+use crate::measure::{Job, Measured};
 use crate::optimal;
-use crate::sweep::SweepError;
-use crate::sweep::run::Measured;
 use crate::walk::{Task, Walk};
 use serde::Deserialize;
 use staya_controller::grid::Cell;

@@ -9,9 +9,9 @@
 //! that the search has not used, beside the default gains.
 
 use super::flock::Run;
-use super::{Given, Job, Study, Watch};
-use crate::sweep::SweepError;
-use crate::sweep::run::{Measured, measure};
+use super::{Given, Study};
+use crate::error::SweepError;
+use crate::measure::{Job, Measured, Watch, measure};
 use argmin::core::{CostFunction, Executor, State as _};
 use argmin::solver::particleswarm::ParticleSwarm;
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -1,7 +1,7 @@
 //! Robots that walk alone by the controller's router ([`crate::walk`]), with a memory of any size.
 
 use super::Given;
-use crate::sweep::SweepError;
+use crate::error::SweepError;
 use crate::walk::{Task, Walk, Walker};
 use staya_controller::grid::{Cell, UNIT};
 use staya_controller::rand::Rng;

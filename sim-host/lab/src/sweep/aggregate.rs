@@ -2,21 +2,8 @@
 
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::Plan;
-use crate::sweep::value::Figure;
+use crate::sweep::value::{Figure, Point};
 use staya_stats::Summary;
-
-/// Figures of one point.
-#[derive(Clone, Debug)]
-pub struct Point {
-    /// Number of the point.
-    pub number: u64,
-    /// Values of the parameters.
-    pub values: Vec<String>,
-    /// Number of available runs.
-    pub runs: usize,
-    /// Summary of each measure; `None` if no run has a value or one is infinite.
-    pub figures: Vec<Option<Summary>>,
-}
 
 /// Aggregates all points that have runs, in order. O(rows).
 #[must_use]

@@ -1,8 +1,7 @@
 //! Gains of a figure over an axis: its means minus those at one value of the axis, else equal.
 
-use crate::sweep::aggregate::Point;
 use crate::sweep::plan::{GainTable, Plan};
-use crate::sweep::value::short;
+use crate::sweep::value::{Point, short};
 use serde::Serialize;
 
 /// Gains at all values of an axis, with equal values of the other axes.

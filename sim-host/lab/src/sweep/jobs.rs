@@ -6,9 +6,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Executes the jobs `0..count` in order, on as many threads as rayon has here, at most `at_once`.
 ///
-/// Surplus threads are available for parallel work inside jobs. `take` receives one result at a time, as soon as it is available.
-/// After it returns `Break`, no further job starts, and jobs in progress are finished and
-/// delivered, so that finished jobs form a prefix.
+/// Surplus threads are available for parallel work inside jobs. `take` receives one result at a
+/// time, as soon as it is available. After it returns `Break`, no further job starts, and jobs in
+/// progress are finished and delivered, so that finished jobs form a prefix.
 pub fn each<T: Send>(
     count: usize,
     at_once: usize,

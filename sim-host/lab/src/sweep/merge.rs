@@ -1,6 +1,6 @@
 //! Merges the rows of all shards.
 
-use crate::sweep::SweepError;
+use crate::error::SweepError;
 use crate::sweep::plan::Plan;
 use crate::sweep::row::{Outcome, Row, header};
 use crate::sweep::shard::{Rows, read_rows};

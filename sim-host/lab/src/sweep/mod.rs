@@ -4,7 +4,6 @@
 //! | --- | --- |
 //! | [`plan`] | varied fields, values, seeds and measures |
 //! | [`run`] | one run, a function of plan and number only |
-//! | [`probe`] | observers that measure more than the summary |
 //! | [`report`] | table, verdicts and files of a complete plan |
 //! | [`row`] | the record of a run |
 //! | [`shard`] | the part of a plan that one process does, and its file of rows |
@@ -16,13 +15,11 @@
 //! | [`jobs`] | parallel jobs |
 
 pub mod aggregate;
-mod error;
 pub mod gain;
 pub mod jobs;
 pub mod merge;
 pub mod pictures;
 pub mod plan;
-pub mod probe;
 pub mod report;
 pub mod row;
 pub mod run;
@@ -32,7 +29,6 @@ pub mod script;
 pub mod shard;
 mod value;
 
-pub use error::SweepError;
 pub use plan::Plan;
 pub use schema::schema;
 pub use shard::Shard;

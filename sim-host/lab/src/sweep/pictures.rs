@@ -15,6 +15,17 @@ const RUNS: usize = 4;
 const CURVES: usize = 6;
 const UNASKED: usize = 8;
 const BINS: usize = 30;
+/// Ends of names of fields and figures, and their units.
+const UNITS: [(&str, &str); 8] = [
+    ("s", "s"),
+    ("seconds", "s"),
+    ("ms", "ms"),
+    ("m", "m"),
+    ("mps", "m/s"),
+    ("mps2", "m/s²"),
+    ("percent", "%"),
+    ("cells", "cells"),
+];
 
 /// Pictures that a plan requests, also over axes of the command line; by default its first figures
 /// over its first two axes.
@@ -146,7 +157,6 @@ impl Levels {
     fn new(plan: &Plan, axis: usize, parts: usize) -> Self {
         let name = plan.axes().nth(axis).unwrap_or_default();
         let mut values: Vec<Value> = plan.values(name).unwrap_or_default().to_vec();
-        let is_log = plan.is_log(axis);
         let numbers: Option<Vec<f64>> = values.iter().map(Value::number).collect();
         let Some(mut numbers) = numbers else {
             let mut names: Vec<String> = Vec::new();
@@ -159,6 +169,7 @@ impl Levels {
         };
         numbers.sort_by(f64::total_cmp);
         numbers.dedup();
+        let is_log = plan.is_log(axis) || is_crowded(&numbers);
         let ends = [numbers[0], numbers[numbers.len() - 1]];
         let is_parts = numbers.len() > MOST;
         if is_parts {
@@ -187,6 +198,30 @@ impl Levels {
     }
 }
 
+/// Whether most of these sorted numbers would be in the first quarter of a linear axis.
+fn is_crowded(numbers: &[f64]) -> bool {
+    let [low, .., high] = numbers else { return false };
+    *low > 0.0 && numbers.len() > 3 && numbers[numbers.len() / 2] < low + (high - low) / 4.0
+}
+
+/// The words and the unit of a field or figure: "orca horizon (s)" of `plane.orca.horizon_s`.
+fn worded(path: &str) -> String {
+    let parts: Vec<&str> = path.split('.').collect();
+    let joined = parts[parts.len().saturating_sub(2)..].join("_");
+    let mut words: Vec<&str> = joined.split(['_', '[', ']']).filter(|word| !word.is_empty()).collect();
+    if let ["arrival", which, "seconds"] = words[..] {
+        words = vec![which, "arrival", "s"];
+    }
+    let unit = words.last().and_then(|last| UNITS.iter().find(|(end, _)| end == last));
+    match unit {
+        Some((_, unit)) if words.len() > 1 && words[words.len() - 2] != "per" => {
+            words.pop();
+            format!("{} ({unit})", words.join(" "))
+        }
+        _ => words.join(" "),
+    }
+}
+
 fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.2e}").parse().unwrap_or(number);
     Figure(Some(rounded)).to_string()
@@ -210,8 +245,8 @@ impl Picture<'_> {
 
     fn title(&self) -> String {
         let PlotTable { figure, over, and, .. } = self.plot;
-        let and = and.as_ref().map_or(String::new(), |and| format!(" and {and}"));
-        format!("{}: {figure} over {over}{and}", self.plan.name)
+        let and = and.as_ref().map_or(String::new(), |and| format!(" and {}", worded(and)));
+        format!("{}: {} over {}{and}", self.plan.name, worded(figure), worded(over))
     }
 
     fn note(&self, what: &str) -> String {
@@ -219,7 +254,14 @@ impl Picture<'_> {
         let others: Vec<_> = others.collect();
         let over =
             if others.is_empty() { String::new() } else { format!(", over all values of {}", others.join(", ")) };
-        format!("{what} of {} runs{over}", self.rows.len())
+        let points = self.x.names.len() * self.y.as_ref().map_or(1, |levels| levels.names.len());
+        let runs = match self.rows.len() {
+            1 => "1 run".to_owned(),
+            runs if runs == points => format!("{runs} runs"),
+            runs if runs.is_multiple_of(points) => format!("{} runs each", runs / points),
+            runs => format!("{runs} runs in all"),
+        };
+        format!("{what} of {runs}{over}")
     }
 
     fn summary(&self, x: usize, y: Option<usize>) -> Option<Summary> {
@@ -233,16 +275,20 @@ impl Picture<'_> {
 
     fn chart(&self) -> Chart {
         let PlotTable { figure, over, and, .. } = self.plot;
-        let mut chart = Chart::new(self.title(), over, figure).note(self.note("means with 95 % intervals"));
+        let mut chart =
+            Chart::new(self.title(), worded(over), worded(figure)).note(self.note("means with 95 % intervals"));
         if self.x.is_log || self.plot.log {
             chart = chart.log_x();
         }
         if self.plot.log {
             chart = chart.log_y();
         }
+        // The interval of a count ends at 0.
+        let is_positive = self.rows.iter().all(|(.., figure)| *figure >= 0.0);
+        let least = if is_positive { 0.0 } else { f64::NEG_INFINITY };
         let point = |at: f64, summary: &Summary| {
             let [low, high] = summary.mean_interval95();
-            [at, summary.mean, low, high]
+            [at, summary.mean, low.max(least), high]
         };
         let Some(numbers) = &self.x.numbers else {
             for (index, name) in self.x.names.iter().enumerate() {
@@ -258,7 +304,7 @@ impl Picture<'_> {
         match (&self.y, and) {
             (Some(levels), Some(and)) => {
                 for (y, name) in levels.names.iter().enumerate() {
-                    chart = chart.with(Series::intervals(format!("{and} = {name}"), curve(Some(y))).joined());
+                    chart = chart.with(Series::intervals(format!("{} = {name}", worded(and)), curve(Some(y))).joined());
                 }
             }
             _ => {
@@ -283,8 +329,8 @@ impl Picture<'_> {
         HeatMap {
             title: self.title(),
             note: self.note("means"),
-            x_label: self.plot.over.clone(),
-            y_label: self.plot.and.clone().unwrap_or_default(),
+            x_label: worded(&self.plot.over),
+            y_label: self.plot.and.as_deref().map_or(String::new(), worded),
             columns: self.x.names.clone(),
             rows: levels.names.clone(),
             values: (0..columns * levels.names.len()).map(value).collect(),

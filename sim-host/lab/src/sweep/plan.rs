@@ -5,10 +5,10 @@ mod axes;
 mod check;
 mod table;
 
-use crate::study::{self, Given, Job, Study};
-use crate::sweep::SweepError;
-use crate::sweep::probe;
-use crate::sweep::run::job;
+use crate::error::SweepError;
+use crate::measure::{Job, by_engine};
+use crate::probe;
+use crate::study::{self, Given, Study};
 use crate::sweep::value::Value;
 use accept::Choice;
 pub use accept::{Acceptance, Reference, Verdict};
@@ -379,7 +379,7 @@ impl Plan {
         }
         let job = match self.study {
             Some(study) => study.read(&given),
-            None => given.scenario().map(|scenario| job(scenario, &self.measures)).map_err(SweepError::Plan),
+            None => given.scenario().map(|scenario| by_engine(scenario, &self.measures)).map_err(SweepError::Plan),
         };
         job.map_err(|error| match error {
             SweepError::Plan(error) => self.said_of_plan(run, error).into(),

@@ -1,12 +1,13 @@
 //! Carries out a plan and reports it: rows, summaries of points, verdicts, pictures.
 
-use crate::sweep::aggregate::{self, Point};
+use crate::sweep::aggregate;
 use crate::sweep::gain::{self, Gain, gains};
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Plan, Verdict};
 use crate::sweep::run::{draw, perform};
 use crate::sweep::shard::{Existing, files, perform_shard};
-use crate::sweep::{Shard, pictures, schema, value::short};
+use crate::sweep::value::{Point, short};
+use crate::sweep::{Shard, pictures, schema};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_console::{Global, Progress, Stop, print, print_json};

@@ -3,7 +3,7 @@
 //! Whole lines are appended to the file, so a crash or a full disk damages only the last line. The
 //! next process makes the missing runs.
 
-use crate::sweep::SweepError;
+use crate::error::SweepError;
 use crate::sweep::jobs;
 use crate::sweep::plan::Plan;
 use crate::sweep::row::{Finished, Outcome, Row, header, is_older_header};

@@ -9,9 +9,9 @@ pub mod searches;
 #[cfg(test)]
 mod tests;
 
-use super::{Given, Job, Study, Watch};
-use crate::sweep::SweepError;
-use crate::sweep::run::Measured;
+use super::{Given, Study};
+use crate::error::SweepError;
+use crate::measure::{Job, Measured, Watch};
 use rayon::prelude::*;
 use searches::{MidpointTree, MutualPairs, Tree};
 use serde::Deserialize;

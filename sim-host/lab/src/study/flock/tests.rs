@@ -1,5 +1,5 @@
 use super::*;
-use crate::sweep::run::Measured;
+use crate::measure::Measured;
 use staya_sim::scenario::Field;
 
 fn read(scenario: &str, sets: &[(&str, toml::Value)], measures: &[&str], seed: u64) -> Result<Measured, String> {

@@ -1,7 +1,7 @@
+use crate::error::SweepError;
 use crate::study::Given;
 use crate::study::movingai::MovingAi;
 use crate::study::{Job, Study as _};
-use crate::sweep::SweepError;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

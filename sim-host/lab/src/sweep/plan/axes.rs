@@ -1,7 +1,7 @@
 //! Fields and their values: `axes`, `zip`, `sample` and `set` of a plan.
 
 use super::table::{PlanFile, RangeTable, SampleTable};
-use crate::sweep::SweepError;
+use crate::error::SweepError;
 use crate::sweep::sample::shares;
 use crate::sweep::value::Value;
 use staya_sim::scenario::Field;

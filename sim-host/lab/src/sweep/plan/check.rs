@@ -1,7 +1,8 @@
 //! Checks the runs of a plan before the first one starts.
 
 use super::Plan;
-use crate::sweep::{SweepError, jobs};
+use crate::error::SweepError;
+use crate::sweep::jobs;
 use staya_sim::engine::simulate;
 use staya_sim::scenario::{ScenarioError, Source};
 use staya_sim::summary::Summary;
