@@ -121,7 +121,7 @@ impl Parameters {
         self.flock_on(boids, [width, width * 0.75])
     }
 
-    /// Like [`Plan::flock`], on a torus with these sides, which must be above 0.
+    /// Like [`Parameters::flock`], on a torus with these sides, which must be above 0.
     #[must_use]
     pub fn flock_on(&self, boids: u32, sides: [f32; 2]) -> Flock {
         let start = |boid: u32| {
