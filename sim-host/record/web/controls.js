@@ -385,6 +385,13 @@ export class Controls {
         context.lineTo(24, 7);
         context.stroke();
       };
+    const area =
+      (colour, alpha = 1) =>
+      (context) => {
+        context.globalAlpha = alpha;
+        context.fillStyle = colour;
+        context.fillRect(1, 2, 24, 10);
+      };
     if (look.colourBy === "mode")
       scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word === "fault" ? "down" : word, `mode:${i}`));
     if (look.colourBy === "wait") {
@@ -420,6 +427,11 @@ export class Controls {
     }
     if (layers.known && app.selected !== null && scene.mode !== "recording")
       key(disc("transparent", css.ghost), "known positions of others");
+    if (layers.mind && app.robot?.orca) {
+      key(area(css.allowed), "permitted velocities");
+      key(line(css.line), "half-planes");
+      if (scene.kind !== "space") key(area(css.ghost, 0.2), "velocity obstacles");
+    }
     if (app.view.plan().length) key(line(css.selected), "planned moves");
     if (scene.land) {
       key((context) => {
@@ -429,10 +441,7 @@ export class Controls {
         context.fillStyle = shades;
         context.fillRect(1, 2, 24, 10);
       }, `land, easy to slow (${scene.land.classes})`);
-      key((context) => {
-        context.fillStyle = css.wall;
-        context.fillRect(1, 2, 24, 10);
-      }, "wall");
+      key(area(css.wall), "wall");
     }
     element("legend-body").replaceChildren(...keys);
     this.counts();

@@ -6,6 +6,7 @@ import { fromBase64 } from "staya/frame.js";
 import { Ground } from "staya/ground.js";
 import { Live } from "staya/live.js";
 import { Look } from "staya/look.js";
+import { Mind } from "staya/mind.js";
 import { Motion } from "staya/motion.js";
 import { Orders } from "staya/orders.js";
 import { Panel } from "staya/panel.js";
@@ -45,6 +46,7 @@ class App {
     this.renderer = Renderer.on(element("bodies"));
     this.lack = this.renderer ? null : NO_WEBGL;
     this.ground = new Ground(element("ground"));
+    this.mind = new Mind(this);
     this.view = new View(this, element("overlay"));
     this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
     this.panel = new Panel(this);
@@ -209,8 +211,8 @@ class App {
 
   onRobot(robot) {
     if (robot.index !== this.selected) return;
-    const plans = (robot) => Boolean(robot?.plan?.length);
-    const changes = plans(robot) !== plans(this.robot);
+    const keys = (robot) => [Boolean(robot?.plan?.length), Boolean(robot?.orca)].join();
+    const changes = keys(robot) !== keys(this.robot);
     this.robot = robot;
     if (changes) this.controls.legend();
     this.showWindow();
@@ -500,6 +502,16 @@ window.staya = {
   },
   get robot() {
     return app.robot;
+  },
+  /** Numbers of the robots that wait. */
+  get waiting() {
+    return app.scene.robots.id.filter((_, i) => app.motion.current.wait[i] !== 255);
+  },
+  get sentence() {
+    return app.mind.sentence;
+  },
+  get caption() {
+    return app.mind.caption;
   },
   get fps() {
     return app.fps;

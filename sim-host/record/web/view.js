@@ -195,7 +195,10 @@ export class View {
     if (app.look.layers.numbers) this.drawNumbers(frame, at);
     if (this.hovered !== null && this.hovered < frame.n)
       this.ring(at(this.hovered), this.hovered, app.look.css.muted, 1.5);
-    if (selected) this.ring(at(app.selected), app.selected, app.look.css.selected, 2);
+    if (selected) {
+      this.ring(at(app.selected), app.selected, app.look.css.selected, 2);
+      app.mind.draw(this);
+    }
     if (this.sketch) this.drawSketch(at);
   }
 

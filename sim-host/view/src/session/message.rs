@@ -307,6 +307,7 @@ fn orca(choice: &Choice) -> Value {
         "preferred_mps": flat(choice.wish_mps),
         "chosen_mps": flat(choice.chosen_mps),
         "max_speed_mps": choice.max_speed_mps,
+        "climb_mps": choice.chosen_mps[2],
         "lines": lines.collect::<Vec<_>>(),
     })
 }
