@@ -1,8 +1,11 @@
 """The decision of the selected robot, drawn around it and told in a sentence."""
 
+import json
+import subprocess
+
 import pytest
-from conftest import until
-from test_view import SWAP, seek
+from conftest import ROOT, STAYA, until
+from test_view import SWAP, seek, summary
 
 
 def select(page, number: int):
@@ -87,3 +90,71 @@ def test_in_space_the_plot_says_that_it_is_a_slice(view, look):
     climb = page.evaluate("staya.robot.orca.climb_mps")
     assert f"a slice at a climb of {climb:.2f} m/s" in page.evaluate("staya.caption")
     assert "slice" in page.inner_text("#robot-body h3 >> nth=0")
+
+
+def exported(path, *options) -> dict:
+    command = [STAYA, "page", SWAP, "--set", "ticks=200", "--out", path, "--json", *options]
+    return json.loads(subprocess.run(command, cwd=ROOT, check=True, capture_output=True).stdout)
+
+
+def test_an_exported_page_contains_the_chosen_minds(view, look, tmp_path):
+    plain, chosen = exported(tmp_path / "plain.html"), exported(tmp_path / "minds.html", "--minds", "5,1")
+    minds = chosen["recording_bytes"] - plain["recording_bytes"]
+    assert 10_000 < minds < 200_000 and abs(chosen["bytes"] - plain["bytes"] - minds * 4 / 3) < 9
+    page = look((tmp_path / "minds.html").as_uri() + "#t=3.5&robot=5", offline=True)
+    until(lambda: page.evaluate("staya.robot?.tick") == 70, what="the moment")
+    live = look(view(SWAP, "--set", "ticks=200", "--paused").url)
+    seek(live, 70)
+    select(live, 5)
+    [recorded, robot] = [each.evaluate("staya.robot") for each in (page, live)]
+    assert len(recorded["neighbors"]) == 15 and recorded["events"] == robot["events"]
+    for name in ["preferred_mps", "chosen_mps"]:
+        assert recorded["orca"][name] == pytest.approx(robot["orca"][name], abs=1e-4)
+    for mine, other in zip(recorded["neighbors"], robot["neighbors"], strict=True):
+        assert mine["id"] == other["id"] and mine["position_m"] == pytest.approx(other["position_m"], abs=1e-4)
+    assert page.evaluate("[staya.sentence, staya.caption]") == live.evaluate("[staya.sentence, staya.caption]")
+    # Its links are those of all links from or to it.
+    for each in (page, live):
+        each.locator("[data-layer='links']").click()
+    until(lambda: (links := live.evaluate("staya.links")) and links["tick"] == 70, what="links")
+    assert 0 < page.evaluate("staya.links.pairs") < live.evaluate("staya.links.pairs")
+    assert page.locator("#velocity-plot").is_visible()
+    page.evaluate("location.hash = 'robot=2'")
+    until(lambda: page.evaluate("staya.robot?.id") == 2, what="another robot")
+    assert page.evaluate("staya.robot.neighbors") is None
+    page.get_by_text("This page contains the knowledge of robots 1, 5.").wait_for()
+
+
+def test_a_selected_robot_has_plots_of_its_own(view, look, tmp_path):
+    ticks = exported(tmp_path / "minds.html", "--minds", "5")["last_tick"] + 1
+    page = look((tmp_path / "minds.html").as_uri() + "#t=3.5&robot=5", offline=True)
+    until(lambda: len(page.evaluate("staya.robotSeries('Speed')")) == ticks, what="all ticks")
+    until(lambda: page.evaluate("staya.robot?.tick") == 70, what="the moment")
+    robot, age = page.evaluate("staya.robot"), dict(page.evaluate("staya.robotSeries('Oldest knowledge')"))[70]
+    assert age == pytest.approx(max(other["age_s"] for other in robot["neighbors"]))
+    # The least gap of the swarm is one of some robot.
+    gaps = dict(page.evaluate("staya.robotSeries('Gap to the nearest')"))
+    least = dict(page.evaluate("staya.series('Smallest gap')"))
+    assert all(gaps[tick] >= gap - 1e-5 for tick, gap in least.items() if gap is not None and gap == gap)
+    # A live view plots the ticks that it has shown.
+    live = look(view(SWAP, "--paused").url)
+    select(live, 5)
+    live.keyboard.press(".")
+    until(lambda: len(live.evaluate("staya.robotSeries('Speed')")) == 2, what="two ticks")
+    for tick, speed in live.evaluate("staya.robotSeries('Speed')"):
+        assert speed == dict(page.evaluate("staya.robotSeries('Speed')"))[tick]
+
+
+def test_minds_do_not_change_the_run(look, tmp_path):
+    last = exported(tmp_path / "minds.html", "--minds", "3")["last_tick"]
+    page = look((tmp_path / "minds.html").as_uri() + "#t=1000", offline=True)
+    until(lambda: page.evaluate("staya.currentTick") == last, what="the end")
+    run = summary(SWAP, "--set", "ticks=200", "--out", str(tmp_path / "out"))
+    assert page.evaluate("staya.lastFigures.hash") == run["trace_hash"]
+
+
+def test_a_robot_that_does_not_exist_has_no_mind(tmp_path):
+    command = [STAYA, "page", SWAP, "--out", tmp_path / "page.html", "--minds", "4,17"]
+    told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert told.returncode != 0 and not (tmp_path / "page.html").exists()
+    assert "--minds 17: swap-circle has no robot 17; its robots have numbers 1 to 16" in told.stderr

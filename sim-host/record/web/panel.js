@@ -57,6 +57,8 @@ export class Panel {
     this.key = make("p", "caption");
     this.velocityTitle = make("h3", "");
     this.velocities.append(this.velocityTitle, this.plot, this.key);
+    this.plots = make("section");
+    this.plots.id = "robot-plots";
     this.neighbors = make("section");
     this.neighborTitle = make("h3", "");
     this.rows = make("tbody");
@@ -73,11 +75,14 @@ export class Panel {
     this.eventsPart = make("section");
     this.events = make("ul", "events");
     this.eventsPart.append(make("h3", "", "Events"), make("div", "scroll", this.events));
+    this.lack = make("p", "muted");
     this.body.append(
       this.sentence,
+      this.lack,
       make("div", "actions", this.follow, this.reboot, this.down),
       this.facts,
       this.velocities,
+      this.plots,
       this.neighbors,
       this.eventsPart,
     );
@@ -92,6 +97,9 @@ export class Panel {
     document.getElementById("robot-title").textContent = `Robot ${app.idOf(app.selected)}`;
     const { robot } = app;
     this.sentence.textContent = app.mind.sentence ?? "";
+    const minds = app.scene.mode === "recording" && !robot?.neighbors ? (app.scene.minds ?? []) : [];
+    this.lack.hidden = !minds.length;
+    this.lack.textContent = `This page contains the knowledge of ${minds.length > 1 ? "robots" : "robot"} ${minds.map((i) => app.idOf(i)).join(", ")}.`;
     this.showFacts(robot);
     this.velocities.hidden = !robot?.orca;
     if (robot?.orca) this.showVelocities(robot);
