@@ -158,3 +158,19 @@ def test_a_robot_that_does_not_exist_has_no_mind(tmp_path):
     told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert told.returncode != 0 and not (tmp_path / "page.html").exists()
     assert "--minds 17: swap-circle has no robot 17; its robots have numbers 1 to 16" in told.stderr
+
+
+def test_a_robot_without_a_free_velocity_says_so(view, look):
+    page = look(view(SWAP, "--paused").url)
+    told = """async ([kind, chosen, wait]) => {
+        const { Mind } = await import("staya/mind.js");
+        const lines = [{ point: [0.1, 0], normal: [1, 0] }, { point: [-0.1, 0], normal: [-1, 0] }];
+        const orca = { lines, chosen_mps: chosen, preferred_mps: [0.5, 0], max_speed_mps: 0.5 };
+        const robot = { id: 8, index: 7, mode: 2, wait, leader: null, orca };
+        return new Mind({ robot, scene: { ...staya.scene, kind } }).sentence;
+    }"""
+    free = "No velocity is free: robot 8 takes the one that breaks the rules least"
+    assert page.evaluate(told, ["plane", [0, 0.3], None]) == free
+    assert page.evaluate(told, ["space", [0, 0.3], None]) == free.replace("velocity", "velocity of the slice")
+    # A robot that stands takes none.
+    assert page.evaluate(told, ["plane", [0, 0], 4]) == "Robot 8 waits: other robots go first"

@@ -59,7 +59,7 @@ pub struct Scene {
     /// Robots with a recorded mind, by index.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub minds: Vec<usize>,
-    /// What the scenario is about; empty if its file does not say it.
+    /// The comment at the top of the scenario, its first paragraph; empty if there is none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
 }
