@@ -89,7 +89,7 @@ def test_in_space_the_plot_says_that_it_is_a_slice(view, look):
     select(page, 3)
     climb = page.evaluate("staya.robot.orca.climb_mps")
     assert f"a slice at a climb of {climb:.2f} m/s" in page.evaluate("staya.caption")
-    assert "slice" in page.inner_text("#robot-body h3 >> nth=0")
+    until(lambda: "slice" in page.inner_text("#robot-body h3 >> nth=0"), what="the panel's title")
 
 
 def exported(path, *options) -> dict:
