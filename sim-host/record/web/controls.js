@@ -24,8 +24,9 @@ export class Controls {
     click("undo", () => app.send({ do: "undo" }));
     click("step", () => this.step(1));
     click("back", () => this.step(-1));
-    click("zoom-in", () => app.camera.zoom(1.4));
-    click("zoom-out", () => app.camera.zoom(1 / 1.4));
+    click("zoom-in", () => this.zoom(1.4));
+    click("zoom-out", () => this.zoom(1 / 1.4));
+    click("measure", () => app.pointer.measure());
     click("fit", () => app.fit());
     click("theme", () => app.look.toggleTheme());
     click("toggle-side", () => this.toggleSide());
@@ -70,6 +71,8 @@ export class Controls {
     ]
       .filter(Boolean)
       .join(" · ");
+    element("about-panel").hidden = !scene.description;
+    element("about").textContent = scene.description ?? "";
     const root = element("app");
     root.dataset.mode = document.body.dataset.mode = scene.mode;
     root.dataset.kind = scene.kind;
@@ -80,8 +83,7 @@ export class Controls {
     show("formation", Boolean(scene.formation));
     show("relief", Boolean(scene.land));
     show("window", Boolean(scene.land) && scene.mode !== "recording");
-    show("known", scene.mode !== "recording");
-    show("links", scene.mode !== "recording");
+    for (const layer of ["known", "links", "mind"]) show(layer, app.hasMinds);
     element("colour-by").value = app.look.colourBy;
     if (this.trailsFor !== app.robots) {
       this.trailsFor = app.robots;
@@ -251,6 +253,11 @@ export class Controls {
     this.app.announce(`Speed ${select.options[next].text}`);
   }
 
+  zoom(factor) {
+    this.app.pointer.touched = true;
+    this.app.camera.zoom(factor);
+  }
+
   /** On narrow screens panels stay closed until a robot is selected. */
   showPanels() {
     if (matchMedia(NARROW).matches && element("app").classList.contains("side-closed")) this.toggleSide();
@@ -300,23 +307,25 @@ export class Controls {
       ",": () => this.step(-1),
       "[": () => this.faster(-1),
       "]": () => this.faster(1),
-      "+": () => app.camera.zoom(1.25),
-      "=": () => app.camera.zoom(1.25),
-      "-": () => app.camera.zoom(1 / 1.25),
+      "+": () => this.zoom(1.25),
+      "=": () => this.zoom(1.25),
+      "-": () => this.zoom(1 / 1.25),
       f: () => app.fit(),
       "?": () => element("help").showModal(),
       n: () => next(1),
       b: () => next(-1),
       c: () => this.toggleFollow(),
       p: () => this.toggleSide(),
+      m: () => app.pointer.measure(),
       z: () => element("undo").click(),
       d: () => app.look.toggleTheme(),
       l: () => {
-        if (app.scene?.mode !== "recording") document.querySelector("[data-layer='links']").click();
+        if (app.hasMinds) document.querySelector("[data-layer='links']").click();
       },
       Escape: () => {
         if (app.pointer.corners.length) app.pointer.choose("polygon");
         else if (app.pointer.drag) app.pointer.cancel();
+        else if (app.pointer.measures) app.pointer.measure();
         else if (app.pointer.tool !== "select") app.pointer.choose("select");
         else app.select(null);
       },
@@ -385,6 +394,13 @@ export class Controls {
         context.lineTo(24, 7);
         context.stroke();
       };
+    const area =
+      (colour, alpha = 1) =>
+      (context) => {
+        context.globalAlpha = alpha;
+        context.fillStyle = colour;
+        context.fillRect(1, 2, 24, 10);
+      };
     if (look.colourBy === "mode")
       scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word === "fault" ? "down" : word, `mode:${i}`));
     if (look.colourBy === "wait") {
@@ -418,8 +434,13 @@ export class Controls {
       key(line(css.vermillion), "packet lost");
       key(line(css.orange, [2, 2]), "packet damaged");
     }
-    if (layers.known && app.selected !== null && scene.mode !== "recording")
+    if (layers.known && app.robot?.neighbors)
       key(disc("transparent", css.ghost), "known positions of others");
+    if (layers.mind && app.robot?.orca) {
+      key(area(css.allowed), "permitted velocities");
+      key(line(css.line), "half-planes");
+      if (scene.kind !== "space") key(area(css.ghost, 0.2), "velocity obstacles");
+    }
     if (app.view.plan().length) key(line(css.selected), "planned moves");
     if (scene.land) {
       key((context) => {
@@ -429,10 +450,7 @@ export class Controls {
         context.fillStyle = shades;
         context.fillRect(1, 2, 24, 10);
       }, `land, easy to slow (${scene.land.classes})`);
-      key((context) => {
-        context.fillStyle = css.wall;
-        context.fillRect(1, 2, 24, 10);
-      }, "wall");
+      key(area(css.wall), "wall");
     }
     element("legend-body").replaceChildren(...keys);
     this.counts();

@@ -1,6 +1,6 @@
 // The connection to a running view, which reconnects by itself.
 
-import { fromBase64, parseFrame } from "staya/frame.js";
+import { fromBase64, pairsOf, parseFrame } from "staya/frame.js";
 import { PLOTTED } from "staya/plots.js";
 
 const FIRST_RETRY_MS = 500;
@@ -105,9 +105,4 @@ function* figuresOf(encoded) {
 
 function floatsOf(encoded) {
   return new Float32Array(fromBase64(encoded).buffer);
-}
-
-/** Pairs of sender and (receiver << 2 | result). */
-function pairsOf(encoded) {
-  return new Uint32Array(fromBase64(encoded).buffer);
 }

@@ -6,17 +6,20 @@ import { fromBase64 } from "staya/frame.js";
 import { Ground } from "staya/ground.js";
 import { Live } from "staya/live.js";
 import { Look } from "staya/look.js";
+import { Mind } from "staya/mind.js";
 import { Motion } from "staya/motion.js";
 import { Orders } from "staya/orders.js";
 import { Panel } from "staya/panel.js";
 import { Player } from "staya/player.js";
 import { Picture, download } from "staya/picture.js";
-import { Plots, plotted } from "staya/plots.js";
+import { Plots, ROBOT_PLOTS, plotted } from "staya/plots.js";
 import { Pointer } from "staya/pointer.js";
 import { Renderer } from "staya/renderer.js";
 import { View } from "staya/view.js";
 
 const PLOTS_EVERY_MS = 120;
+// The camera keeps up to this many robots in sight.
+const MOST_IN_SIGHT = 20000;
 const TOAST_MS = 6000;
 const TOP_RATIO = 2;
 // Robots of another branch are shown up to this number.
@@ -45,9 +48,11 @@ class App {
     this.renderer = Renderer.on(element("bodies"));
     this.lack = this.renderer ? null : NO_WEBGL;
     this.ground = new Ground(element("ground"));
+    this.mind = new Mind(this);
     this.view = new View(this, element("overlay"));
     this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
     this.panel = new Panel(this);
+    this.robotPlots = new Plots(element("robot-plots"), (tick) => this.seek(tick), ROBOT_PLOTS);
     this.orders = new Orders(this);
     this.picture = new Picture(this);
     this.controls = new Controls(this);
@@ -57,10 +62,11 @@ class App {
     this.banner(this.lack);
     new ResizeObserver(() => this.resize()).observe(element("stage"));
     // A plot in a closed panel has no size and is drawn when the panel opens.
-    new ResizeObserver(() => {
-      this.plots.stale = this.dirty = true;
+    const plots = new ResizeObserver(() => {
+      this.plots.stale = this.robotPlots.stale = this.dirty = true;
       this.plottedAt = 0;
-    }).observe(element("plots"));
+    });
+    for (const id of ["plots", "robot-plots"]) plots.observe(element(id));
     addEventListener("hashchange", () => this.scene && this.state && this.openAddress());
     this.resize();
   }
@@ -99,6 +105,8 @@ class App {
     if (isNewRun) {
       this.motion.reset();
       this.plots.reset();
+      this.robotPlots.reset();
+      this.lastFrame = null;
       this.renderer?.trails.reset();
     }
     const balls = scene.kind === "space" ? this.solids.filter(({ kind }) => kind === "ball") : [];
@@ -116,6 +124,8 @@ class App {
       this.look.colourBy = groups > 1 ? "group" : this.robots <= 8 ? "robot" : "mode";
       this.select(null);
       this.fit();
+      // The panels of narrow screens are closed at first.
+      if (scene.description && element("app").classList.contains("side-closed")) this.toast(scene.description);
     }
     this.controls.scene();
     this.orders.scene();
@@ -130,13 +140,14 @@ class App {
     if (before && before.branch !== state.branch) {
       this.shownBefore = before.branch;
       this.plots.changeBranch();
+      this.robotPlots.reset();
       this.renderer?.trails.reset();
     }
     if (this.timed) {
-      this.plots.forgetAfter(state.last);
+      for (const plots of [this.plots, this.robotPlots]) plots.forgetAfter(state.last);
       this.renderer?.trails.forgetAfter(state.last);
     }
-    this.plots.setRange(state.first, this.horizon);
+    for (const plots of [this.plots, this.robotPlots]) plots.setRange(state.first, this.horizon);
     if (this.otherBranch !== other) {
       this.other = null;
       this.controls.legend();
@@ -162,10 +173,29 @@ class App {
     if (!this.scene) return;
     this.motion.offer(frame);
     this.figures = frame.figures;
+    this.lastFrame = frame;
+    this.sample(frame, this.robot);
     // A live run sends the figures of all ticks.
     if (!this.live) this.plots.add(frame.tick, plotted(frame.figures));
     // Frames and other messages are not ordered, so that a frame may be of the branch before.
     if (!this.live && this.suitTrails(frame)) this.renderer.trails.store(frame.tick, frame.x, frame.y, frame.z);
+  }
+
+  /** Adds a moment of the selected robot to its plots; its knowledge may be of another tick. */
+  sample(frame, robot, every = 1) {
+    const i = this.selected;
+    if (i === null || i >= frame.n) return;
+    const far = (j) => Math.hypot(frame.x[j] - frame.x[i], frame.y[j] - frame.y[i], frame.z ? frame.z[j] - frame.z[i] : 0);
+    let gap = Infinity;
+    for (let j = 0; j < frame.n; j++) if (j !== i) gap = Math.min(gap, far(j) - this.radii[i] - this.radii[j]);
+    const known = robot?.tick === frame.tick ? (robot.neighbors ?? []) : [];
+    const figures = {
+      speed_mps: Math.hypot(frame.vx[i], frame.vy[i], frame.vz?.[i] ?? 0),
+      gap_m: gap < Infinity ? gap : null,
+      age_s: known.length ? Math.max(...known.map(({ age_s }) => age_s)) : null,
+    };
+    this.robotPlots.add(frame.tick, plotted(figures, ROBOT_PLOTS), every);
+    if (frame === this.lastFrame) this.robotFigures = figures;
   }
 
   /** Passes figures to the plots; `every` is the distance between ticks. */
@@ -209,9 +239,10 @@ class App {
 
   onRobot(robot) {
     if (robot.index !== this.selected) return;
-    const plans = (robot) => Boolean(robot?.plan?.length);
-    const changes = plans(robot) !== plans(this.robot);
+    const keys = (robot) => ["plan", "orca", "neighbors"].map((name) => Boolean(robot?.[name]?.length ?? robot?.[name]));
+    const changes = `${keys(robot)}` !== `${keys(this.robot)}`;
     this.robot = robot;
+    if (this.lastFrame?.tick === robot.tick) this.sample(this.lastFrame, robot);
     if (changes) this.controls.legend();
     this.showWindow();
     this.panelStale = true;
@@ -274,6 +305,11 @@ class App {
     return this.scene?.mode === "live";
   }
 
+  /** Whether there is more to show about a robot than its body. */
+  get hasMinds() {
+    return this.scene?.mode !== "recording" || Boolean(this.scene.minds?.length);
+  }
+
   get timed() {
     return this.scene && this.scene.mode !== "watch";
   }
@@ -297,6 +333,8 @@ class App {
     if (index === this.selected) return;
     this.selected = index;
     this.robot = null;
+    this.robotFigures = {};
+    this.robotPlots.reset();
     this.follow = this.follow && index !== null;
     if (this.source) this.send({ do: "select", robot: index });
     this.showWindow();
@@ -361,14 +399,41 @@ class App {
     return [frame.tx[i], frame.ty[i], frame.tz ? frame.tz[i] : 0];
   }
 
+  /** The scene's bounds and heights, moved and grown so far that all robots are inside; a function
+      of the shown moment. */
+  get sight() {
+    const { scene, motion } = this;
+    const [west, south, east, north] = scene.bounds_m;
+    const ranges = [[west, east], [south, north], scene.height_m ?? [0, 0]];
+    const n = Math.min(motion.current?.n ?? 0, this.robots);
+    if (!n || n > MOST_IN_SIGHT) return ranges;
+    const [low, high] = [Array(3).fill(Infinity), Array(3).fill(-Infinity)];
+    const place = [0, 0, 0];
+    for (let i = 0; i < n; i++) {
+      motion.place(i, place);
+      for (let k = 0; k < 3; k++) {
+        low[k] = Math.min(low[k], place[k] - this.radii[i]);
+        high[k] = Math.max(high[k], place[k] + this.radii[i]);
+      }
+    }
+    return ranges.map(([from, to], k) => {
+      const size = Math.max(to - from, high[k] - low[k]);
+      const start = Math.max(high[k] - size, Math.min(low[k], from));
+      return k < 2 ? [start, start + size] : [Math.min(from, low[k]), Math.max(to, high[k])];
+    });
+  }
+
+  /** Shows all robots, and keeps them in sight until the camera is moved by hand. */
   fit() {
     const { scene, camera } = this;
     if (!scene) return;
+    this.pointer.touched = false;
+    const [[west, east], [south, north], heights] = this.sight;
     const phone = camera.width < 720;
     const left = this.live && !phone ? 58 : 12;
     camera.fit(
-      scene.bounds_m,
-      scene.height_m ?? [0, 0],
+      [west, south, east, north],
+      heights,
       scene.kind === "space",
       phone ? [8, this.live ? 56 : 8, 8, 44] : [left, 14, 58, 54],
     );
@@ -379,7 +444,7 @@ class App {
   restyle() {
     this.look.read();
     this.ground.setLook(this.look.layers.relief, this.look.css);
-    this.plots.stale = true;
+    this.plots.stale = this.robotPlots.stale = true;
     this.controls.legend();
     this.panel.update();
     this.dirty = true;
@@ -422,6 +487,11 @@ class App {
     const news = motion.advance(now, paused);
     if (this.follow && this.selected !== null && motion.current)
       camera.centre(...motion.place(this.selected, [0, 0, 0]));
+    else if (!this.pointer.touched && (news !== "none" || this.wasMoving)) {
+      const sight = this.sight.join();
+      if (sight !== this.seen) this.fit();
+      this.seen = sight;
+    }
     this.askForTrail(now);
     // Messages about a robot come before its frame is taken.
     if (this.panelStale && this.robot) {
@@ -464,6 +534,7 @@ class App {
     if (now - (this.plottedAt ?? 0) > PLOTS_EVERY_MS) {
       this.plottedAt = now;
       this.plots.draw(motion.current?.tick ?? 0, this.figures, look.css);
+      if (this.selected !== null) this.robotPlots.draw(motion.current?.tick ?? 0, this.robotFigures, look.css);
       this.controls.counts();
       this.controls.clock();
     } else {
@@ -501,6 +572,20 @@ window.staya = {
   get robot() {
     return app.robot;
   },
+  /** Numbers of the robots that wait. */
+  get waiting() {
+    return app.scene.robots.id.filter((_, i) => app.motion.current.wait[i] !== 255);
+  },
+  /** Corners of a measuring line, and its text. */
+  get ruler() {
+    return app.view.ruler && { ...app.view.ruler, text: app.view.rulerText };
+  },
+  get sentence() {
+    return app.mind.sentence;
+  },
+  get caption() {
+    return app.mind.caption;
+  },
   get fps() {
     return app.fps;
   },
@@ -514,6 +599,7 @@ window.staya = {
   },
   /** Known values of a plot, `[tick, value]`. */
   series: (name) => app.plots.series(name),
+  robotSeries: (name) => app.robotPlots.series(name),
   /** The drawn lines of a plot, each a list of [tick, value]. */
   lines: (name) => app.plots.lines(name),
   /** Places of the written labels on the picture: left, top, right, bottom. */

@@ -21,21 +21,28 @@ const PLOTS = [
   },
   { name: "Smallest gap", unit: "m", lines: [{ of: (f) => f.gap_m, colour: "violet" }], digits: 3 },
 ];
-const LINES = PLOTS.flatMap((plot) => plot.lines);
-export const PLOTTED = LINES.length;
+// Plotted figures of the selected robot.
+export const ROBOT_PLOTS = [
+  { name: "Speed", unit: "m/s", lines: [{ of: (r) => r.speed_mps, colour: "accent" }], digits: 3 },
+  { name: "Gap to the nearest", unit: "m", lines: [{ of: (r) => r.gap_m, colour: "violet" }], digits: 3 },
+  { name: "Oldest knowledge", unit: "s", lines: [{ of: (r) => r.age_s, colour: "warn" }], digits: 2 },
+];
+const linesOf = (plots) => plots.flatMap((plot) => plot.lines);
+export const PLOTTED = linesOf(PLOTS).length;
 
-/** The plotted values of the figures of a frame, NaN for none. */
-export function plotted(figures) {
-  return LINES.map((line) => line.of(figures) ?? NaN);
+/** The plotted values of figures, NaN for none. */
+export function plotted(figures, plots = PLOTS) {
+  return linesOf(plots).map((line) => line.of(figures) ?? NaN);
 }
 
 export class Plots {
-  constructor(element, onSeek) {
+  constructor(element, onSeek, plots = PLOTS) {
     this.element = element;
+    this.columns = linesOf(plots);
     this.onSeek = onSeek;
     this.first = 0;
     this.last = 1;
-    this.rows = PLOTS.map((plot) => this.row(plot));
+    this.rows = plots.map((plot) => this.row(plot));
     this.reset();
   }
 
@@ -76,9 +83,9 @@ export class Plots {
 
   /** Starts with another branch; the lines of the one before stay as faint lines. */
   changeBranch() {
-    const { samples, known, count, spacing, every } = this;
+    const { samples, known, count, spacing, every, columns } = this;
     this.reset();
-    this.before = { samples, known, count, spacing, every };
+    this.before = { samples, known, count, spacing, every, columns };
   }
 
   add(tick, values, every = 1) {
@@ -86,7 +93,7 @@ export class Plots {
     const at = Math.floor(tick / this.spacing);
     if (at >= this.known.length) this.grow(at + 1);
     this.known[at] = 1;
-    this.samples.set(values, at * PLOTTED);
+    this.samples.set(values, at * this.columns.length);
     this.count = Math.max(this.count, at + 1);
     this.every = Math.max(this.every, every);
     this.stale = true;
@@ -97,15 +104,15 @@ export class Plots {
     const { known, samples } = this;
     this.known = new Uint8Array(size);
     this.known.set(known);
-    this.samples = new Float32Array(size * PLOTTED);
+    this.samples = new Float32Array(size * this.columns.length);
     this.samples.set(samples);
   }
 
   coarsen() {
     const { known, samples, count } = this;
     for (let i = 0; i < count; i++) {
-      const [from, to] = [i * PLOTTED, (i >> 1) * PLOTTED];
-      if (known[i]) samples.copyWithin(to, from, from + PLOTTED);
+      const [from, to] = [i * this.columns.length, (i >> 1) * this.columns.length];
+      if (known[i]) samples.copyWithin(to, from, from + this.columns.length);
       known[i >> 1] = known[i] | (i & 1 ? known[i >> 1] : 0);
     }
     this.spacing *= 2;
@@ -132,15 +139,19 @@ export class Plots {
   /** The drawn pieces of a plot's first line. */
   lines(name) {
     const same = (value) => value;
-    return pieces(this, LINES.indexOf(PLOTS.find((plot) => plot.name === name).lines[0]), same, same);
+    return pieces(this, this.column(name), same, same);
+  }
+
+  column(name) {
+    return this.columns.indexOf(this.rows.find(({ plot }) => plot.name === name).plot.lines[0]);
   }
 
   /** The known samples of a plot's first line, `[tick, value]`. */
   series(name) {
-    const line = LINES.indexOf(PLOTS.find((plot) => plot.name === name).lines[0]);
+    const line = this.column(name);
     const found = [];
     for (let i = 0; i < this.count; i++)
-      if (this.known[i]) found.push([i * this.spacing, this.samples[i * PLOTTED + line]]);
+      if (this.known[i]) found.push([i * this.spacing, this.samples[i * this.columns.length + line]]);
     return found;
   }
 
@@ -176,7 +187,7 @@ export class Plots {
   /** Whether a line of `from..to` has a known value. */
   hasValues(from, to) {
     for (let i = 0; i < this.count; i++) {
-      for (let k = from; this.known[i] && k < to; k++) if (!Number.isNaN(this.samples[i * PLOTTED + k])) return true;
+      for (let k = from; this.known[i] && k < to; k++) if (!Number.isNaN(this.samples[i * this.columns.length + k])) return true;
     }
     return false;
   }
@@ -194,7 +205,7 @@ export class Plots {
     if (!plot.greatest) {
       for (let i = 0; i < this.count; i++) {
         for (let k = 0; this.known[i] && k < plot.lines.length; k++) {
-          const value = this.samples[i * PLOTTED + from + k];
+          const value = this.samples[i * this.columns.length + from + k];
           if (value > greatest) greatest = value;
         }
       }
@@ -244,7 +255,7 @@ export class Plots {
 
 /** Joined points of a line; each gap in time or value starts a new piece. Of the samples with one
     place on the x axis, it keeps the first, least, greatest and last one. */
-function pieces({ samples, known, count, spacing, every }, line, x, y) {
+function pieces({ samples, known, count, spacing, every, columns }, line, x, y) {
   const joined = Math.max(every, spacing);
   const found = [];
   let before = -Infinity,
@@ -258,7 +269,7 @@ function pieces({ samples, known, count, spacing, every }, line, x, y) {
     column = null;
   };
   for (let i = 0; i < count; i++) {
-    const value = samples[i * PLOTTED + line];
+    const value = samples[i * columns.length + line];
     if (!known[i] || Number.isNaN(value)) {
       if (known[i]) before = -Infinity;
       continue;

@@ -28,6 +28,8 @@ export class View {
     this.above = new Lines();
     // The action of the pointer: `{kind, ...}` or null.
     this.sketch = null;
+    // The ends of the measuring line, or null.
+    this.ruler = null;
     this.hovered = null;
   }
 
@@ -195,8 +197,12 @@ export class View {
     if (app.look.layers.numbers) this.drawNumbers(frame, at);
     if (this.hovered !== null && this.hovered < frame.n)
       this.ring(at(this.hovered), this.hovered, app.look.css.muted, 1.5);
-    if (selected) this.ring(at(app.selected), app.selected, app.look.css.selected, 2);
+    if (selected) {
+      this.ring(at(app.selected), app.selected, app.look.css.selected, 2);
+      app.mind.draw(this);
+    }
     if (this.sketch) this.drawSketch(at);
+    if (this.ruler) this.drawRuler();
   }
 
   pixelRadius(i, at) {
@@ -363,6 +369,28 @@ export class View {
       context.fillStyle = app.look.css.accent;
       context.fill();
     });
+  }
+
+  get rulerText() {
+    const { from, to } = this.ruler;
+    return to && metres(Math.hypot(...from.map((value, axis) => to[axis] - value)));
+  }
+
+  drawRuler() {
+    const { app, context, ruler } = this;
+    const ends = [ruler.from, ruler.to].map((place) => place && app.camera.project(...place));
+    if (!ends[0] || !ends[1]) return;
+    context.strokeStyle = context.fillStyle = app.look.css.accent;
+    context.lineWidth = 2;
+    context.beginPath();
+    for (const [x, y] of ends) context.lineTo(x, y);
+    context.stroke();
+    for (const [x, y] of ends) {
+      context.beginPath();
+      context.arc(x, y, 3, 0, 2 * Math.PI);
+      context.fill();
+    }
+    this.write(this.rulerText, (ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2 - 8, "center", 12);
   }
 
   drawSketch(at) {

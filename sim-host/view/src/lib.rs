@@ -11,4 +11,4 @@ pub mod server;
 pub mod session;
 pub mod watch;
 
-use staya_record::{frame, page, recording, scene};
+use staya_record::{frame, mind, page, recording, scene};

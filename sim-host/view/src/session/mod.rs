@@ -14,6 +14,7 @@ pub(crate) use message::trail;
 pub use text::Configuration;
 
 use crate::frame::{FrameData, Framer};
+use crate::mind::Events;
 use crate::pace::{Pace, SLICE};
 use crate::server::{Client, FromPage, Server, WORDS};
 use branch::{Branch, Branches, changes_scene};
@@ -22,7 +23,7 @@ use staya_sim::engine::{Engine, operated};
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{Overrides, Scenario, ScenarioError};
 use staya_sim::world::Misplaced;
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -30,7 +31,6 @@ const FRAME: Duration = Duration::from_millis(16);
 const STATE: Duration = Duration::from_millis(500);
 const SCENE: Duration = Duration::from_millis(250);
 const FIGURES: Duration = Duration::from_millis(100);
-const EVENTS: usize = 20;
 /// Ticks of one request for past positions.
 const TRAIL: usize = 240;
 /// Limit of deferred requests; the page that sends another one is disconnected.
@@ -65,7 +65,7 @@ pub struct Session {
     bytes: Vec<u8>,
     branch: Branch,
     branches: Branches,
-    events: HashMap<usize, VecDeque<(u32, String)>>,
+    events: Events,
     pace: Pace,
     /// The engine repeats the run up to this tick after a seek.
     catches_up_to: Option<u32>,
@@ -116,7 +116,7 @@ impl Session {
             bytes: Vec::new(),
             branch: Branch::default(),
             branches: Branches::default(),
-            events: HashMap::new(),
+            events: Events::default(),
             catches_up_to: None,
             runs_on_to: None,
             deferred: VecDeque::new(),
@@ -212,13 +212,7 @@ impl Session {
         self.repeat_orders();
         self.has_work |= !self.engine.is_over();
         for index in 0..self.scenario.robots.len() {
-            for event in self.engine.events(index) {
-                let events = self.events.entry(index).or_default();
-                if events.len() >= EVENTS {
-                    events.pop_front();
-                }
-                events.push_back((self.tick, message::event(event)));
-            }
+            self.events.add(&self.engine, index, self.tick);
         }
     }
 
