@@ -1,4 +1,4 @@
-"""What the picture shows, addresses of moments, and saved pictures."""
+"""Content of the picture, addresses of moments, and saved pictures."""
 
 import base64
 import re

@@ -1,4 +1,4 @@
-// What the selected robot decides: one sentence from its state, and the velocities that its safety
+// The decision of the selected robot: one sentence from its state, and the velocities that its safety
 // layer permits, drawn around it.
 
 import { niceStep } from "staya/ground.js";
@@ -41,7 +41,7 @@ export class Mind {
     this.app = app;
   }
 
-  /** What the selected robot does and why, as far as its state says; null if unknown. */
+  /** The selected robot's action and its reason, as far as its state says; null if unknown. */
   get sentence() {
     const { robot, scene } = this.app;
     if (!robot) return null;
@@ -86,7 +86,7 @@ export class Mind {
     return this.app.scene.kind === "space";
   }
 
-  /** What the drawn velocities are; null if none are drawn. */
+  /** The meaning of the drawn velocities; null if none are drawn. */
   get caption() {
     const { robot, look } = this.app;
     if (!robot?.orca || !look.layers.mind) return null;

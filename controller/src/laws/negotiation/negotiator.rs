@@ -58,7 +58,7 @@ pub struct Report {
     /// Where it is.
     #[serde(with = "fixint")]
     pub cell: Cell,
-    /// What it sees.
+    /// The land that it sees.
     pub sight: Sight,
     /// The nearest robots that it heard in this step: the lowest byte of the number, and the
     /// offsets to the east and to the north plus 8, in the low and in the high four bits. Before

@@ -337,3 +337,30 @@ impl Picture<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_fields_and_figures_become_words_and_units() {
+        let words = [
+            ("plane.orca.horizon_s", "orca horizon (s)"),
+            ("arrival_last_seconds", "last arrival (s)"),
+            ("flow.per_s", "flow per s"),
+            ("terrain.change[0].drift.share", "drift share"),
+            ("collisions", "collisions"),
+        ];
+        for (path, text) in words {
+            assert_eq!(worded(path), text, "{path}");
+        }
+    }
+
+    #[test]
+    fn an_axis_of_powers_is_logarithmic() {
+        assert!(is_crowded(&[0.5, 1.0, 2.0, 4.0, 8.0]));
+        for even in [&[1.0, 2.0, 3.0, 4.0][..], &[0.0, 0.1, 1.0, 10.0], &[1.0, 10.0, 100.0]] {
+            assert!(!is_crowded(even), "{even:?}");
+        }
+    }
+}
