@@ -14,7 +14,7 @@ use staya_console::{Ended, Global};
 pub enum Command {
     /// Run a scenario thousands of times with other values in its fields, here or on a cluster.
     Sweep(Box<sweep::SweepArgs>),
-    /// Rerun experiments from papers, and benchmarks; without a name, list them.
+    /// Rerun experiments from papers, and benchmarks; without a name, they are listed.
     Experiment(Box<figure::FigureArgs>),
 }
 
