@@ -226,6 +226,21 @@ fn a_robot_in_the_cell_of_another_leaves_it_and_others_make_way() {
     assert_eq!(next(&[member(1, 4, None), member(2, 4, west), blocked]), [5, 4, 3]);
 }
 
+/// Robots 2 and 3 are in the cell of robot 1; each leaves it to its side.
+#[test]
+fn all_robots_that_share_a_cell_leave_it() {
+    let cell = Cell::new(4, 1);
+    let mut robot: Negotiator<8, 4> = Negotiator::new(RobotId(1), cell, Moves::FOUR);
+    let said = robot.see(cell, &Sight::new(cell, |_| false));
+    for (id, by) in [(2, Dir::West), (3, Dir::East)] {
+        robot.hear(RobotId(id), &said);
+        robot.share(RobotId(id), by);
+    }
+    robot.decide(Sensed::Nothing);
+    let expected = [2, 3].map(|id| robot.expects(RobotId(id)));
+    assert_eq!(expected, [Some(Cell::new(3, 1)), Some(Cell::new(5, 1))]);
+}
+
 const CORRIDOR: &str = "
     ...####################...
     ..........................
