@@ -66,12 +66,12 @@ impl Progress {
             ProgressDrawTarget::hidden()
         };
         let bar = ProgressBar::with_draw_target(Some(total), target);
-        // Label and message are cut at the last column, so that the line does not wrap.
-        let style = "[{bar:10}] {pos}/{len}, {eta} left, {wide_msg}";
+        // The message is cut at the last column, so that the line does not wrap.
+        let style = "[{bar:10}] {eta} left, {pos}/{len}{wide_msg}";
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style.progress_chars("=> "));
         }
-        bar.set_message(label.to_owned());
+        bar.set_message(spaced(label));
         Self { bar, label: label.to_owned(), lines: (!terminal && !global.quiet).then(Instant::now) }
     }
 
@@ -84,7 +84,8 @@ impl Progress {
     pub fn set(&mut self, done: u64, message: impl FnOnce() -> String) {
         self.bar.set_position(done);
         if !self.bar.is_hidden() {
-            self.bar.set_message(format!("{}{}", self.label, spaced(&message())));
+            let message = message();
+            self.bar.set_message(spaced(if message.is_empty() { &self.label } else { &message }));
         } else if self.lines.is_some_and(|at| at.elapsed() >= LINE_EVERY) {
             self.lines = Some(Instant::now());
             let (label, total, left) = (&self.label, self.bar.length().unwrap_or(0), self.bar.eta().as_secs());
@@ -102,7 +103,7 @@ impl Progress {
 fn spaced(message: &str) -> String {
     match message {
         "" => String::new(),
-        _ => format!(": {message}"),
+        _ => format!(" {message}"),
     }
 }
 
@@ -113,6 +114,6 @@ mod tests {
     #[test]
     fn only_a_non_empty_message_is_spaced() {
         assert_eq!(spaced(""), "");
-        assert_eq!(spaced("ticks"), ": ticks");
+        assert_eq!(spaced("ticks"), " ticks");
     }
 }
