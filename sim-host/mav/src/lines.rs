@@ -2,22 +2,12 @@ use super::endpoint::Endpoint;
 use super::inbox::{Inbox, Peer, Received};
 use super::traffic::{Counts, Outgoing, Shared};
 use super::{stream, udp};
-use std::io;
+use anyhow::{Result, anyhow};
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
 use std::time::Duration;
-
-/// Why a link cannot be opened.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot open {endpoint}: {source}; give another address or port, or end the program that uses it")]
-pub struct OpenError {
-    /// The link.
-    pub endpoint: Endpoint,
-    /// Cause.
-    pub source: io::Error,
-}
 
 struct Line {
     outgoing: Box<dyn Outgoing>,
@@ -40,7 +30,7 @@ impl Lines {
     ///
     /// # Errors
     /// The first link that cannot be opened. An absent peer is not an error.
-    pub fn open(endpoints: &[Endpoint]) -> Result<Self, OpenError> {
+    pub fn open(endpoints: &[Endpoint]) -> Result<Self> {
         let inbox = Arc::<Inbox>::default();
         let mut lines = Self { lines: Vec::new(), inbox: Arc::clone(&inbox) };
         for (line, endpoint) in endpoints.iter().enumerate() {
@@ -52,7 +42,11 @@ impl Lines {
                 Endpoint::TcpIn(address) => stream::listen(*address, &shared),
                 Endpoint::Serial(port) => stream::serial(port, &shared),
             };
-            let (outgoing, threads) = opened.map_err(|source| OpenError { endpoint: endpoint.clone(), source })?;
+            let (outgoing, threads) = opened.map_err(|error| {
+                anyhow!(
+                    "cannot open {endpoint}: {error}; give another address or port, or end the program that uses it"
+                )
+            })?;
             lines.lines.push(Line { outgoing, shared, threads });
         }
         Ok(lines)

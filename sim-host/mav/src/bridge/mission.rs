@@ -66,9 +66,9 @@ struct Upload {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mission {
     items: Vec<Item>,
-    current: u16,
+    pub(super) current: u16,
     /// Whether the last item is completed, or started if it is a return.
-    is_complete: bool,
+    pub(super) is_complete: bool,
     upload: Option<Upload>,
 }
 
@@ -85,11 +85,6 @@ impl Mission {
     }
 
     #[must_use]
-    pub const fn current(&self) -> u16 {
-        self.current
-    }
-
-    #[must_use]
     pub fn item(&self, seq: u16) -> Option<&Item> {
         self.items.get(usize::from(seq))
     }
@@ -102,21 +97,11 @@ impl Mission {
         is_there
     }
 
-    pub const fn complete(&mut self) {
-        self.is_complete = true;
-    }
-
-    #[must_use]
-    pub const fn is_complete(&self) -> bool {
-        self.is_complete
-    }
-
     pub fn count(&mut self, from: Sender, told: &MISSION_COUNT_DATA, now_us: u64) -> MavMessage {
         if told.mission_type != MAV_MISSION_TYPE_MISSION {
             return ack(from, told.mission_type, MAV_MISSION_UNSUPPORTED);
         }
-        let is_another = |upload: &Upload| !same(upload.from, from);
-        if self.upload.as_ref().is_some_and(is_another) {
+        if self.upload.as_ref().is_some_and(|upload| !same(upload.from, from)) {
             return ack(from, told.mission_type, MAV_MISSION_DENIED);
         }
         if told.count > ITEMS {
@@ -165,8 +150,7 @@ impl Mission {
         let from = upload.from;
         if upload.tries >= TRIES {
             self.upload = None;
-            let cancelled = MAV_MISSION_OPERATION_CANCELLED;
-            return Some(ack(from, MAV_MISSION_TYPE_MISSION, cancelled));
+            return Some(ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_OPERATION_CANCELLED));
         }
         upload.tries += 1;
         upload.asked_us = now_us;
@@ -275,7 +259,7 @@ mod tests {
         assert_eq!(give(&mut mission, 1), 2);
         assert!(mission.is_empty(), "the mission is replaced only after its last item");
         assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_ACCEPTED));
-        assert_eq!((mission.len(), mission.current()), (3, 1));
+        assert_eq!((mission.len(), mission.current), (3, 1));
         assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_INVALID_SEQUENCE));
         let MavMessage::MISSION_ITEM_INT(told) = mission.tell(GCS, 2, 0, true) else {
             panic!("an item");

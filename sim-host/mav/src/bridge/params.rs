@@ -26,15 +26,6 @@ pub struct Parameters {
     left: usize,
 }
 
-/// Why a parameter was not set.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NotSet {
-    /// No parameter has this name.
-    Unknown,
-    /// The value is outside these limits.
-    OutOf([f32; 2]),
-}
-
 impl Parameters {
     /// Creates the parameters of a robot from those of its controller and their values.
     #[must_use]
@@ -100,30 +91,23 @@ impl Parameters {
         Some(self.entries[self.index_of(setting)?].value)
     }
 
-    fn index_of(&self, setting: &str) -> Option<usize> {
+    /// Index of a setting; `None` if the vehicle lacks it.
+    pub fn index_of(&self, setting: &str) -> Option<usize> {
         self.entries.iter().position(|entry| entry.setting == setting)
     }
 
     /// Sets a parameter by index. Returns the setting that changed.
     ///
     /// # Errors
-    /// [`NotSet`]; the value is unchanged.
-    pub fn set(&mut self, index: usize, value: f32) -> Result<&'static str, NotSet> {
-        let entry = self.entries.get_mut(index).ok_or(NotSet::Unknown)?;
+    /// The value is outside these limits, and unchanged.
+    pub fn set(&mut self, index: usize, value: f32) -> Result<&'static str, [f32; 2]> {
+        let entry = &mut self.entries[index];
         let [least, greatest] = entry.range;
         if !(least..=greatest).contains(&value) {
-            return Err(NotSet::OutOf(entry.range));
+            return Err(entry.range);
         }
         entry.value = value;
         Ok(entry.setting)
-    }
-
-    /// Sets a parameter by its setting. Returns the setting that changed.
-    ///
-    /// # Errors
-    /// [`NotSet`]; the value is unchanged.
-    pub fn set_setting(&mut self, setting: &str, value: f32) -> Result<&'static str, NotSet> {
-        self.set(self.index_of(setting).ok_or(NotSet::Unknown)?, value)
     }
 
     /// Overwrites a value with the one that the controller uses. Returns its index.
@@ -202,13 +186,13 @@ mod tests {
         let limit = model().max_speed_mps;
         for bad in [-0.1, limit * 1.01, f32::NAN, f32::INFINITY] {
             let before = parameters.clone();
-            assert_eq!(parameters.set(speed, bad), Err(NotSet::OutOf([0.0, limit])));
+            assert_eq!(parameters.set(speed, bad), Err([0.0, limit]));
             assert_eq!(parameters, before);
         }
         assert_eq!(parameters.set(speed, limit), Ok(SPEED.name));
         assert_eq!(parameters.get(SPEED.name), Some(limit));
-        assert!(parameters.set_setting(RADIUS.name, model().radius_m * 0.9).is_err());
-        assert_eq!(parameters.set(99, 1.0), Err(NotSet::Unknown));
+        let radius = parameters.index_of(RADIUS.name).expect("it is there");
+        assert!(parameters.set(radius, model().radius_m * 0.9).is_err());
     }
 
     #[test]

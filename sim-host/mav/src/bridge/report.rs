@@ -42,7 +42,7 @@ impl Refused {
 
 /// Statistics of a bridge run. The `frames_in` of all links are `frames_heard` + `frames_ignored` +
 /// `frames_refused` + `lost_in` + `frames_waiting`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct BridgeReport {
     /// Number of vehicles, one for each robot.
     pub vehicles: usize,

@@ -8,7 +8,7 @@ mod sight;
 mod telemetry;
 mod vehicle;
 
-pub use options::{Options, RunError};
+pub use options::Options;
 pub use sight::{Seen, Sight};
 
 use super::config::{Config, VehicleSetup};
@@ -22,6 +22,7 @@ use crate::framed::framed;
 use crate::geo::{Origin, ned};
 use crate::tlog::micros_since_1970;
 use crate::{Endpoint, Lines, Received};
+use anyhow::{Result, anyhow, bail};
 use demo::Demo;
 use machine::{Host, Machine};
 use options::DEMO_S;
@@ -81,14 +82,14 @@ struct Companions<'a> {
 /// A log that cannot be written does not end the run. At any end, controlled vehicles stop.
 ///
 /// # Errors
-/// [`RunError`] if something cannot be opened at the start, or standard output fails in a dry run.
-/// An absent autopilot is not an error.
+/// A key, link or network cannot be opened at the start, no autopilot is heard in the time that the
+/// options set, or standard output fails in a dry run.
 pub fn run(
     config: &Config,
     options: &mut Options,
     is_wanted: impl Fn() -> bool,
     mut look: impl FnMut(&Sight<'_>),
-) -> Result<CompanionReport, RunError> {
+) -> Result<CompanionReport> {
     let seal = config.key.as_deref().map(Seal::read).transpose()?;
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
     let remarks =
@@ -119,7 +120,7 @@ pub fn run(
     companions.say_farewell();
     companions.close_log();
     match companions.output_error.take() {
-        Some(error) => Err(RunError::Output(error)),
+        Some(error) => bail!("cannot write to standard output: {error}"),
         None => Ok(companions.report(config, seconds, interrupted)),
     }
 }
@@ -213,15 +214,21 @@ impl<'a> Companions<'a> {
     }
 
     /// The error if all autopilots have been silent for too long since the start.
-    fn no_autopilot(&self) -> Option<RunError> {
+    fn no_autopilot(&self) -> Option<anyhow::Error> {
         let wait = self.options.wait.filter(|&wait| self.now() >= wait)?;
         let is_silent = self.vehicles.iter().all(|vehicle| vehicle.offboard.tally().heartbeats == 0);
         let links = self.links.iter().map(|link| match &link.trouble {
             Some(why) => format!("{} ({why})", link.name),
             None => link.name.clone(),
         });
-        is_silent
-            .then(|| RunError::NoAutopilot { seconds: wait.as_secs_f64(), links: links.collect::<Vec<_>>().join(", ") })
+        is_silent.then(|| {
+            anyhow!(
+                "no autopilot heard within {} s on {}; start the vehicles or correct `link`, wait longer with --wait N \
+                 (0: forever), or try --demo, which simulates the vehicles",
+                wait.as_secs_f64(),
+                links.collect::<Vec<_>>().join(", ")
+            )
+        })
     }
 
     fn now(&self) -> Duration {

@@ -1,10 +1,4 @@
-//! Options of companions, and why they cannot start or continue.
-
-use crate::companion::medium::MediumError;
-use crate::companion::seal::SealError;
-use crate::{OpenError, Tlog};
-use staya_sim::key::KeyError;
-use std::io;
+use crate::Tlog;
 use std::time::Duration;
 
 /// Longest demo, seconds.
@@ -28,35 +22,4 @@ pub struct Options {
     pub wait: Option<Duration>,
     /// Log of all sent and accepted messages.
     pub tlog: Option<Tlog>,
-}
-
-/// Why companions cannot start or continue.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// A link cannot be opened.
-    #[error(transparent)]
-    Line(#[from] OpenError),
-    /// The LAN is unavailable.
-    #[error(transparent)]
-    Medium(#[from] MediumError),
-    /// The key of packets is unusable.
-    #[error(transparent)]
-    Seal(#[from] SealError),
-    /// The key of links is unusable.
-    #[error(transparent)]
-    Key(#[from] KeyError),
-    /// No autopilot was heard.
-    #[error(
-        "no autopilot heard within {seconds} s on {links}; start the vehicles or correct `link`, wait longer with --wait N \
-         (0: forever), or try --demo, which simulates the vehicles"
-    )]
-    NoAutopilot {
-        /// The time, seconds.
-        seconds: f64,
-        /// The links, with the reason where one has no connection.
-        links: String,
-    },
-    /// Standard output cannot be written during a dry run.
-    #[error("cannot write to standard output: {0}")]
-    Output(io::Error),
 }
