@@ -12,7 +12,7 @@ use std::time::Duration;
 struct Line {
     outgoing: Box<dyn Outgoing>,
     shared: Shared,
-    threads: Vec<JoinHandle<()>>,
+    thread: Option<JoinHandle<()>>,
 }
 
 /// Open links with one queue of received frames. Sending never waits: frames that cannot be sent
@@ -42,50 +42,37 @@ impl Lines {
                 Endpoint::TcpIn(address) => stream::listen(*address, &shared),
                 Endpoint::Serial(port) => stream::serial(port, &shared),
             };
-            let (outgoing, threads) = opened.map_err(|error| {
+            let (outgoing, thread) = opened.map_err(|error| {
                 anyhow!(
                     "cannot open {endpoint}: {error}; give another address or port, or end the program that uses it"
                 )
             })?;
-            lines.lines.push(Line { outgoing, shared, threads });
+            lines.lines.push(Line { outgoing, shared, thread: Some(thread) });
         }
         Ok(lines)
     }
 
     /// Local address of link `line`; `None` for a serial port.
-    #[must_use]
     pub fn local(&self, line: usize) -> Option<SocketAddr> {
-        self.lines.get(line)?.outgoing.local()
+        self.lines[line].outgoing.local()
     }
 
     /// Sends a frame to all peers of all links.
     pub fn send_all(&self, frame: &[u8]) {
-        self.lines.iter().for_each(|line| line.outgoing.send(frame));
+        self.lines.iter().for_each(|line| line.outgoing.send(None, frame));
     }
 
-    /// Sends a frame to all peers of a link. An unknown index does nothing.
-    pub fn send(&self, line: usize, frame: &[u8]) {
-        if let Some(line) = self.lines.get(line) {
-            line.outgoing.send(frame);
-        }
-    }
-
-    /// Sends a frame to one peer of a link.
-    pub fn send_to(&self, line: usize, peer: Peer, frame: &[u8]) {
-        if let Some(line) = self.lines.get(line) {
-            line.outgoing.send_to(peer, frame);
-        }
+    /// Sends a frame to one peer of a link, or to all.
+    pub fn send(&self, line: usize, peer: Option<Peer>, frame: &[u8]) {
+        self.lines[line].outgoing.send(peer, frame);
     }
 
     /// Marks a peer as known after a valid (with a key, authentic) frame; a silent peer expires.
     pub fn believe(&self, line: usize, peer: Peer) {
-        if let Some(line) = self.lines.get(line) {
-            line.outgoing.believe(peer);
-        }
+        self.lines[line].outgoing.believe(peer);
     }
 
     /// The next received frame of any link, or `None` after the timeout. Peers are served in turn.
-    #[must_use]
     pub fn receive(&self, timeout: Duration) -> Option<Received> {
         self.inbox.next(timeout)
     }
@@ -97,16 +84,13 @@ impl Lines {
     }
 
     /// Traffic counters of link `line`.
-    #[must_use]
     pub fn counts(&self, line: usize) -> Counts {
-        let line = self.lines.get(line);
-        line.map_or_else(Counts::default, |line| line.shared.tally.counts())
+        self.lines[line].shared.tally.counts()
     }
 
     /// Why the last connection attempt of link `line` failed; `None` without a failure.
-    #[must_use]
     pub fn trouble(&self, line: usize) -> Option<String> {
-        self.lines.get(line).and_then(|line| line.shared.tally.trouble())
+        self.lines[line].shared.tally.trouble()
     }
 
     /// Closes all links. Frames already received remain available.
@@ -114,15 +98,12 @@ impl Lines {
         for line in &self.lines {
             line.shared.closed.store(true, Ordering::Relaxed);
         }
-        for line in &mut self.lines {
-            for thread in line.threads.drain(..) {
-                let _ = thread.join();
-            }
+        for thread in self.lines.iter_mut().filter_map(|line| line.thread.take()) {
+            let _ = thread.join();
         }
     }
 
     /// Number of queued frames.
-    #[must_use]
     pub fn waiting(&self) -> u64 {
         self.inbox.len()
     }

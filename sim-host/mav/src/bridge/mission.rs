@@ -21,7 +21,6 @@ const fn scale(frame: u8) -> f64 {
 }
 
 /// A position that is not finite becomes one that fails validation.
-#[must_use]
 pub fn from_float(item: &MISSION_ITEM_DATA) -> Item {
     let int = |x: f32| match x.is_finite() {
         true => libm::round(f64::from(x) * scale(item.frame)) as i32,
@@ -73,18 +72,15 @@ pub struct Mission {
 }
 
 impl Mission {
-    #[must_use]
     pub fn len(&self) -> u16 {
         self.items.len() as u16
     }
 
     /// A mission with home alone is empty.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.items.len() < 2
     }
 
-    #[must_use]
     pub fn item(&self, seq: u16) -> Option<&Item> {
         self.items.get(usize::from(seq))
     }
@@ -158,7 +154,6 @@ impl Mission {
     }
 
     /// Lists other than missions (fences, rally points) are empty.
-    #[must_use]
     pub fn list(&self, from: Sender, mission_type: u8) -> MavMessage {
         let is_known = mission_type == MAV_MISSION_TYPE_MISSION;
         MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
@@ -169,7 +164,6 @@ impl Mission {
         })
     }
 
-    #[must_use]
     pub fn tell(&self, from: Sender, seq: u16, mission_type: u8, as_int: bool) -> MavMessage {
         let item = self.item(seq);
         let Some(item) = item.filter(|_| mission_type == MAV_MISSION_TYPE_MISSION) else {
@@ -208,7 +202,6 @@ const fn request(to: Sender, seq: u16) -> MavMessage {
     })
 }
 
-#[must_use]
 pub const fn ack(to: Sender, mission_type: u8, result: u8) -> MavMessage {
     MavMessage::MISSION_ACK(MISSION_ACK_DATA {
         target_system: to.system,

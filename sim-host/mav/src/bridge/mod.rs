@@ -19,7 +19,7 @@ mod streams;
 mod swarm;
 mod telemetry;
 #[cfg(test)]
-mod testing;
+mod test_support;
 mod vehicle;
 
 pub use report::{BridgeReport, LineReport, Refused};

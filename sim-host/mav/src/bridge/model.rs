@@ -26,7 +26,6 @@ pub struct VehicleModel {
 
 impl VehicleModel {
     /// Describes the vehicles of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario, origin: Origin) -> Self {
         let on_grid = scenario.plane.is_none();
         let plane = scenario.plane.as_ref();
@@ -46,7 +45,6 @@ impl VehicleModel {
     }
 
     /// The grid cell at a position in metres; `None` off the map, inside a wall, or without a grid.
-    #[must_use]
     pub fn cell(&self, [x, y, _]: [f64; 3]) -> Option<Cell> {
         let land = self.grid.as_ref()?;
         let at = |metres: f64, axis: usize| {
@@ -59,7 +57,6 @@ impl VehicleModel {
     }
 
     /// Whether a vehicle fits at a position in metres.
-    #[must_use]
     pub fn has_room(&self, place_m: [f64; 3]) -> bool {
         if self.grid.is_some() {
             return self.cell(place_m).is_some();
@@ -119,7 +116,6 @@ impl FlightMode {
     }
 
     /// The mode with this number; `None` if these vehicles do not have it.
-    #[must_use]
     pub fn from_number(number: u32, flies: bool) -> Option<Self> {
         let mut modes = Self::ALL.into_iter();
         modes.find(|mode| mode.number(flies) == number && (flies || *mode != Self::LAND))

@@ -28,7 +28,6 @@ pub struct Parameters {
 
 impl Parameters {
     /// Creates the parameters of a robot from those of its controller and their values.
-    #[must_use]
     pub fn new(model: &VehicleModel, values: &[(&'static Parameter, f32)]) -> Self {
         let of_bodies = [RADIUS, SPEED, TOLERANCE].map(|row| row.name);
         let own = values.iter().filter(|(row, _)| model.grid.is_none() || !of_bodies.contains(&row.name));
@@ -53,7 +52,6 @@ impl Parameters {
     }
 
     /// Number of parameters.
-    #[must_use]
     pub const fn count(&self) -> usize {
         self.entries.len()
     }
@@ -64,7 +62,6 @@ impl Parameters {
     }
 
     /// Whether parameters remain to be listed.
-    #[must_use]
     pub const fn is_listing(&self) -> bool {
         self.left > 0
     }
@@ -78,7 +75,6 @@ impl Parameters {
     }
 
     /// Index of the parameter that `param_id` names.
-    #[must_use]
     pub fn find(&self, id: &[u8; 16]) -> Option<usize> {
         let end = id.iter().position(|letter| *letter == 0);
         let id = &id[..end.unwrap_or(id.len())];
@@ -86,7 +82,6 @@ impl Parameters {
     }
 
     /// Value of a setting; `None` if the vehicle lacks it.
-    #[must_use]
     pub fn get(&self, setting: &str) -> Option<f32> {
         Some(self.entries[self.index_of(setting)?].value)
     }
@@ -118,7 +113,6 @@ impl Parameters {
     }
 
     /// PARAM_VALUE of the parameter at `index`.
-    #[must_use]
     pub fn message(&self, index: usize) -> Option<PARAM_VALUE_DATA> {
         let entry = self.entries.get(index)?;
         Some(PARAM_VALUE_DATA {
@@ -133,7 +127,7 @@ impl Parameters {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{greatest, model, on_grid};
+    use super::super::test_support::{greatest, model, on_grid};
     use super::*;
 
     fn padded(name: &str) -> [u8; 16] {

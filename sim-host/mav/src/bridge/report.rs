@@ -33,7 +33,6 @@ pub struct Refused {
 
 impl Refused {
     /// Sum over all reasons.
-    #[must_use]
     pub const fn total(&self) -> u64 {
         let Self { unsigned, forged, replayed, ahead, no_room, unanswerable } = *self;
         unsigned + forged + replayed + ahead + no_room + unanswerable

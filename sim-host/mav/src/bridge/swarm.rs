@@ -137,7 +137,6 @@ impl Swarm {
     }
 
     /// The open links.
-    #[must_use]
     pub const fn lines(&self) -> &Lines {
         &self.lines
     }

@@ -85,7 +85,6 @@ impl Kind {
 
 impl Vehicle {
     /// Creates a vehicle that has just started, disarmed unless `starts_armed`, with its streams.
-    #[must_use]
     pub fn new(
         system: u8,
         model: Arc<VehicleModel>,
@@ -116,7 +115,6 @@ impl Vehicle {
     }
 
     /// Action to perform at the start of the robot.
-    #[must_use]
     pub const fn initial_action(&self) -> Option<Action> {
         if self.starts_armed { None } else { Some(Action::Wish(Wish::Off)) }
     }

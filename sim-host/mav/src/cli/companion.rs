@@ -6,8 +6,7 @@ use crate::companion::{Config, Options, Sight, run};
 use anyhow::Result;
 use clap::Args;
 use page::Page;
-use staya_console::WatchArgs;
-use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_console::{Ended, Global, Stop, WatchArgs, print, print_json};
 use staya_sim::record::Files;
 use staya_view::watch::Watcher;
 use std::path::PathBuf;
@@ -54,26 +53,22 @@ impl CompanionArgs {
     /// The configuration is invalid, a link cannot be opened, or a log cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let mut config = Config::load(&self.config)?;
-        for (given, kept) in [(&self.key, &mut config.key), (&self.link_key, &mut config.link_key)] {
-            if given.is_some() {
-                kept.clone_from(given);
-            }
-        }
+        config.key = self.key.clone().or(config.key);
+        config.link_key = self.link_key.clone().or(config.link_key);
+        let inputs = config.scenario.files.iter().chain(&config.key).chain(&config.link_key);
+        let mut files = Files::reading(inputs);
+        let tlog = self.tlog.as_deref().map(|path| Tlog::create(path, &mut files)).transpose()?;
+        let stop = Stop::on_ctrl_c()?;
+        let page = Watcher::by_options(&self.page, &config.scenario)?;
         let mut options = Options {
             dry_run: self.dry_run,
             quiet: global.quiet,
             seconds: self.seconds,
             demo: self.demo,
-            is_real_time: false,
+            is_real_time: page.is_some(),
             wait: (self.wait > 0.0).then(|| Duration::from_secs_f64(self.wait)),
-            tlog: None,
+            tlog,
         };
-        let inputs = config.scenario.files.iter().chain(&config.key).chain(&config.link_key);
-        let mut files = Files::reading(inputs);
-        options.tlog = self.tlog.as_deref().map(|path| Tlog::create(path, &mut files)).transpose()?;
-        let stop = Stop::on_ctrl_c()?;
-        let page = Watcher::by_options(&self.page, &config.scenario)?;
-        options.is_real_time = page.is_some();
         let mut page = page.map(|watcher| Page::new(watcher, &config.scenario)).transpose()?;
         let look = |sight: &Sight<'_>| {
             if let Some(page) = &mut page {

@@ -143,7 +143,6 @@ pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
 }
 
 /// `None` if the message is not one of Staya's.
-#[must_use]
 pub fn tunnelled(message: &TUNNEL_DATA) -> Option<&[u8]> {
     let frames = message.payload.get(..message.payload_length.into())?;
     (message.payload_type == PAYLOAD_TYPE).then_some(frames)

@@ -9,12 +9,11 @@ mod controller;
 mod kind;
 mod medium;
 mod offboard;
-#[cfg(test)]
-mod replay;
 mod report;
 mod roll;
 mod run;
 mod seal;
 
 pub use config::Config;
-pub use run::{Options, Seen, Sight, run};
+pub(crate) use run::Vehicle;
+pub use run::{Options, Sight, run};

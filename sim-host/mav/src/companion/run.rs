@@ -9,7 +9,8 @@ mod telemetry;
 mod vehicle;
 
 pub use options::Options;
-pub use sight::{Seen, Sight};
+pub use sight::Sight;
+pub(crate) use vehicle::Vehicle;
 
 use super::config::{Config, VehicleSetup};
 use super::controller::Controller;
@@ -19,7 +20,7 @@ use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
 use crate::framed::framed;
-use crate::geo::{Origin, ned};
+use crate::geo::ned;
 use crate::tlog::micros_since_1970;
 use crate::{Endpoint, Lines, Received};
 use anyhow::{Result, anyhow, bail};
@@ -39,10 +40,11 @@ use staya_sim::record;
 use std::io::{self, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use vehicle::{Vehicle, is_within};
+use vehicle::is_within;
 
 /// Longest waits: with a LAN to poll, and without.
-const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(20)];
+const LAN_GLANCE: Duration = Duration::from_millis(5);
+const GLANCE: Duration = Duration::from_millis(20);
 /// Zero-velocity setpoints at the end, and their interval.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
@@ -59,11 +61,7 @@ struct Link {
 }
 
 struct Companions<'a> {
-    origin: Origin,
-    reach_m: f64,
-    tick: Duration,
-    glance: Duration,
-    is_tunnel: bool,
+    config: &'a Config,
     machine: Box<dyn Machine>,
     links: Vec<Link>,
     next_look: Duration,
@@ -121,7 +119,7 @@ pub fn run(
     companions.close_log();
     match companions.output_error.take() {
         Some(error) => bail!("cannot write to standard output: {error}"),
-        None => Ok(companions.report(config, seconds, interrupted)),
+        None => Ok(companions.report(seconds, interrupted)),
     }
 }
 
@@ -134,7 +132,7 @@ fn rules(setup: &VehicleSetup, options: &Options) -> Rules {
 
 impl<'a> Companions<'a> {
     fn new(
-        config: &Config,
+        config: &'a Config,
         options: &'a Options,
         seal: Option<&Seal>,
         link_key: Option<KeyFile>,
@@ -173,14 +171,8 @@ impl<'a> Companions<'a> {
             heard: 0,
             refused: 0,
         };
-        let [lan, else_] = GLANCES;
-        let is_lan = matches!(config.air, MediumSetup::Multicast { .. } | MediumSetup::Peers { .. });
         Companions {
-            origin: config.origin,
-            reach_m: config.reach_m,
-            tick: Duration::from_micros(config.scenario.tick_us.into()),
-            glance: if is_lan { lan } else { else_ },
-            is_tunnel: config.air == MediumSetup::Tunnel,
+            config,
             machine,
             links: config.lines.iter().enumerate().map(link).collect(),
             next_look: Duration::ZERO,
@@ -208,7 +200,7 @@ impl<'a> Companions<'a> {
                 break;
             }
             self.turn();
-            look(&self.sight());
+            look(&Sight { vehicles: &self.vehicles, origin: &self.config.origin, now: self.now() });
         }
         (self.now().as_secs_f64(), interrupted)
     }
@@ -239,7 +231,11 @@ impl<'a> Companions<'a> {
         let now = self.now();
         let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.offboard.due(now));
         let due = self.vehicles.iter().map(due).min().unwrap_or_default();
-        let mut wait = due.saturating_sub(now).min(self.glance);
+        let glance = match self.config.air {
+            MediumSetup::Multicast { .. } | MediumSetup::Peers { .. } => LAN_GLANCE,
+            MediumSetup::Here | MediumSetup::Tunnel => GLANCE,
+        };
+        let mut wait = due.saturating_sub(now).min(glance);
         // Limited, so that a flood of frames does not block the loop.
         for _ in 0..1024 {
             let Some(received) = self.machine.receive(wait) else {
@@ -344,7 +340,7 @@ impl<'a> Companions<'a> {
     }
 
     fn step(&mut self, index: usize) {
-        let (now, tick) = (self.now(), self.tick);
+        let (now, tick) = (self.now(), Duration::from_micros(self.config.scenario.tick_us.into()));
         let vehicle = &mut self.vehicles[index];
         if now < vehicle.next_step {
             return;
@@ -353,8 +349,9 @@ impl<'a> Companions<'a> {
         let missed = now.saturating_sub(vehicle.next_step).as_micros() / tick.as_micros().max(1);
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
-        let body = vehicle.body(&self.origin, now);
-        let is_far = vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.reach_m));
+        let body = vehicle.body(&self.config.origin, now);
+        let is_far =
+            vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.config.reach_m));
         let is_news = is_far && !vehicle.is_far;
         vehicle.is_far = is_far;
         if is_news {
@@ -403,7 +400,7 @@ impl<'a> Companions<'a> {
         if !self.options.dry_run {
             self.machine.tell_others(said);
         }
-        if self.is_tunnel {
+        if self.config.air == MediumSetup::Tunnel {
             for message in tunnel(&self.wire, said) {
                 self.send(index, &message);
             }

@@ -73,7 +73,6 @@ impl Seal {
     }
 
     /// The wire format of an agent, encrypted with this key; the previous key is accepted too.
-    #[must_use]
     pub fn wire(&self, format: Format) -> HostWire {
         let wire = HostWire::keyed(format, self.old.as_ref().unwrap_or(&self.key), self.starts, 0, key::timestamp());
         let mut wire = wire.expect("the counter of starts was validated when read");
@@ -87,13 +86,11 @@ impl Seal {
     }
 
     /// Whether there is a previous key.
-    #[must_use]
     pub const fn has_old(&self) -> bool {
         self.old.is_some()
     }
 
     /// Starts to watch the key file.
-    #[must_use]
     pub fn watch(&self) -> KeyWatch {
         KeyWatch::start(self.path.clone(), self.key.clone())
     }

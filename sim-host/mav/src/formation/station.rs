@@ -38,7 +38,6 @@ pub struct Given {
 
 impl Given {
     /// Robots that have not confirmed their places, or the goal if they got one.
-    #[must_use]
     pub fn silent(&self, has_goal: bool) -> BTreeSet<u8> {
         let confirms = |robot: &u8| self.placed.contains(robot) && (!has_goal || self.heading_for_goal.contains(robot));
         self.robots.iter().copied().filter(|robot| !confirms(robot)).collect()
@@ -182,7 +181,6 @@ impl Station<'_> {
 }
 
 /// Formats numbers as ranges: "1 to 4, 7".
-#[must_use]
 pub fn numbers(robots: &BTreeSet<u8>) -> String {
     let mut runs: Vec<[u8; 2]> = Vec::new();
     for &robot in robots {

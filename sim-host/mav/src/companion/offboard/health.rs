@@ -27,7 +27,6 @@ pub enum Doubt {
 }
 
 impl Doubt {
-    #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::Gps => "GPS lost its fix",
@@ -41,6 +40,7 @@ impl Doubt {
 pub struct Health {
     had_fix: bool,
     fixed_at: [Option<Duration>; 2],
+    /// By [`Doubt`].
     is_bad: [bool; 3],
     well_at: Duration,
     pub reports: u64,
@@ -78,12 +78,7 @@ impl Health {
         };
         self.reports += u64::from(doubt == Doubt::Estimator);
         let is_new = is_bad && self.is_trusted(now);
-        let [gps, estimator, sensors] = &mut self.is_bad;
-        match doubt {
-            Doubt::Gps => *gps = is_bad,
-            Doubt::Estimator => *estimator = is_bad,
-            Doubt::Sensors => *sensors = is_bad,
-        }
+        self.is_bad[doubt as usize] = is_bad;
         if self.is_bad.contains(&true) {
             self.well_at = now + WELL_FOR;
         }
@@ -93,9 +88,7 @@ impl Health {
     /// A vehicle that never had a fix does not need GPS.
     fn has_lost_fix(&mut self, receiver: usize, fix_type: u8, now: Duration) -> bool {
         let has_fix = fix_type >= GPS_FIX_TYPE_3D_FIX;
-        if let Some(fixed_at) = self.fixed_at.get_mut(receiver) {
-            *fixed_at = has_fix.then_some(now);
-        }
+        self.fixed_at[receiver] = has_fix.then_some(now);
         self.had_fix |= has_fix;
         let is_fixed = |at: &Option<Duration>| at.is_some_and(|at| now.saturating_sub(at) <= REPORT_VALID);
         self.had_fix && !self.fixed_at.iter().any(is_fixed)

@@ -70,10 +70,7 @@ impl Machine for Host {
     }
 
     fn send(&mut self, line: usize, peer: Option<Peer>, frame: &[u8]) {
-        match peer {
-            Some(peer) => self.lines.send_to(line, peer, frame),
-            None => self.lines.send(line, frame),
-        }
+        self.lines.send(line, peer, frame);
     }
 
     fn believe(&mut self, line: usize, peer: Peer) {

@@ -1,5 +1,4 @@
 use super::{Companions, FEW_TIMESTAMPS, LOOK, Link, Vehicle, shown, status_text};
-use crate::companion::config::Config;
 use crate::companion::offboard::{AUTOPILOT, State};
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
 use staya_controller::agent::Event as AgentEvent;
@@ -114,7 +113,7 @@ impl Companions<'_> {
         self.tell(index, &text);
     }
 
-    pub(super) fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
+    pub(super) fn report(&self, seconds: f64, interrupted: bool) -> CompanionReport {
         let vehicles = self.vehicles.iter().map(|vehicle| VehicleReport {
             robot: vehicle.setup.robot.0,
             system: vehicle.setup.system,
@@ -122,7 +121,7 @@ impl Companions<'_> {
             state: vehicle.offboard.state(),
             agent: vehicle.controller.agent().mode(),
             has_arrived: vehicle.has_arrived,
-            position_m: vehicle.offboard.fix().and_then(|fix| self.origin.to_enu_m(&fix.place)),
+            position_m: vehicle.offboard.fix().and_then(|fix| self.config.origin.to_enu_m(&fix.place)),
             tally: vehicle.offboard.tally(),
             packets_heard: vehicle.heard,
             packets_refused: vehicle.refused,
@@ -137,7 +136,7 @@ impl Companions<'_> {
             is_exhausted: signing.as_ref().is_some_and(|signing| signing.left() == 0),
         });
         CompanionReport {
-            scenario: config.scenario.name.clone(),
+            scenario: self.config.scenario.name.clone(),
             seconds,
             interrupted,
             dry_run: self.options.dry_run,

@@ -1,7 +1,7 @@
 mod replayed;
 
 use super::*;
-use crate::geo::Global;
+use crate::geo::{Global, Origin};
 use crate::{Counts, Peer};
 use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
 use staya_mavlink::frame::{MAX_FRAME_LEN, encode_message};
@@ -244,7 +244,7 @@ fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<Comp
     let ended = catch_unwind(AssertUnwindSafe(move || {
         let (seconds, interrupted) = companions.run(|| true, &mut |_| {});
         companions.say_farewell();
-        companions.report(config, seconds, interrupted)
+        companions.report(seconds, interrupted)
     }));
     (Rc::into_inner(world).expect("the loop has ended").into_inner(), ended.ok())
 }
@@ -327,7 +327,7 @@ fn used_up_timestamps_are_reported_while_signing_is_possible() {
     let last = (1 << 48) - 1;
     companions.links[0].signing = Some(Signing::new(staya_controller::auth::Key::new([7; 32]), 0, last - 3));
     let (seconds, _) = companions.run(|| true, &mut |_| {});
-    let report = companions.report(&config, seconds, false);
+    let report = companions.report(seconds, false);
     drop(companions);
     let world = world.borrow();
     assert_eq!(world.lines.iter().filter(|line| line.contains("signing timestamps are nearly used up")).count(), 1);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::companion::replay::Recording;
+use crate::companion::offboard::tests::replay::Recording;
 
 struct Replay {
     now: Duration,
