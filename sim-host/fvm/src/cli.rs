@@ -1,11 +1,11 @@
 //! The commands of `staya-voxel`: `staya voxel` and `staya orca`.
 
-mod options;
+pub(crate) mod options;
 mod orca;
 
 use crate::build::MOST_BYTES;
 use crate::draw::{m_images, sheet};
-use crate::swarm::{Models, Outcome, Source, Swap};
+use crate::swarm::{Outcome, Source, Swap};
 use crate::{
     HalfPlaneErrors, Measured, Reading, System, Template, Templated, VelocityForm, build, half_planes, measure,
 };
@@ -255,7 +255,7 @@ impl EvaluateArgs {
         let bytes = read(&self.model)?;
         let about = || self.model.display().to_string();
         let variables = Header::read(&bytes).with_context(about)?.variables;
-        let at = numbers(&self.at).map_err(|error| anyhow!(error))?;
+        let at = numbers(&self.at)?;
         let reading = if self.nearest { Reading::Nearest } else { Reading::Blend };
         let found = if variables == 2 {
             let local = local::<2>(&bytes, &at, reading)?;
@@ -382,14 +382,15 @@ impl SwarmArgs {
         let room = options::room(self.room.as_deref())?;
         let model = |template: &Template, resolution| made(&template.function()?, resolution, self.depth);
         let room_model = model(&Template::Room(room.clone(), System::R1), self.room_resolution)?;
-        let neighbor = model(&Template::Neighbor(VelocityForm::Distance), self.neighbor_resolution)?;
+        let neighbor_model = model(&Template::Neighbor(VelocityForm::Distance), self.neighbor_resolution)?;
         let swap = Swap {
             room,
             robots: self.robots,
             circle_m: self.circle,
             seed: self.seed,
             limit_s: self.limit,
-            models: Models { room: &room_model, neighbor: &neighbor },
+            room_model: &room_model,
+            neighbor_model: &neighbor_model,
         };
         if let Some(robot) = swap.blocked() {
             return Err(anyhow!("robot {robot} would start or end in a wall; give another --circle or fewer --robots"));
@@ -406,7 +407,7 @@ impl SwarmArgs {
         let mut text = format!(
             "models: room {} bytes, neighbours {} bytes\n{:<10} {:<10} {:>7} {:>8} {:>10} {:>10} {:>8}\n",
             room_model.len(),
-            neighbor.len(),
+            neighbor_model.len(),
             "neighbours",
             "walls",
             "arrived",

@@ -13,8 +13,8 @@ mod template;
 #[cfg(test)]
 mod tests;
 
-pub use build::{BuildError, Grid, build};
+pub use build::{Grid, build};
 pub use function::{Function, System};
 pub use measure::{Errors, HalfPlaneErrors, Measured, Reading, half_planes, measure};
-pub use room::{Room, RoomError};
-pub use template::{Pair, Template, TemplateError, Templated, VelocityForm};
+pub use room::Room;
+pub use template::{Pair, Template, Templated, VelocityForm};

@@ -3,7 +3,7 @@
 use crate::Room;
 use serde::Serialize;
 use staya_controller::body::Body;
-use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::geom::Vec2;
 use staya_controller::neighbor::Nearby;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::{Analytic, AvoidParams, Avoider, HalfSpaces, VoxelTable2k};
@@ -44,17 +44,10 @@ pub struct Swap<'a> {
     pub seed: u64,
     /// Time limit, seconds.
     pub limit_s: f32,
-    /// Models of the room and of neighbours.
-    pub models: Models<'a>,
-}
-
-/// The bytes of the models.
-#[derive(Clone, Copy, Debug)]
-pub struct Models<'a> {
-    /// Model of [`Template::Room`](crate::Template::Room).
-    pub room: &'a [u8],
-    /// Model of [`Template::Neighbor`](crate::Template::Neighbor).
-    pub neighbor: &'a [u8],
+    /// Bytes of the model of [`Template::Room`](crate::Template::Room).
+    pub room_model: &'a [u8],
+    /// Bytes of the model of [`Template::Neighbor`](crate::Template::Neighbor).
+    pub neighbor_model: &'a [u8],
 }
 
 /// Result of a run.
@@ -106,20 +99,23 @@ impl Swap<'_> {
     /// # Errors
     /// An invalid model.
     pub fn run(&self, neighbors: Source, walls: Source) -> Result<Outcome, FileError> {
-        let outcome = match neighbors {
-            Source::Formula => self.go(Analytic, walls)?,
-            Source::Table => self.go(VoxelTable2k, walls)?,
-            Source::Model => self.go(VoxelNeighbor::new(Model::from_bytes(self.models.neighbor)?), walls)?,
-        };
-        Ok(Outcome { neighbors, ..outcome })
+        match neighbors {
+            Source::Formula => self.go([neighbors, walls], Analytic),
+            Source::Table => self.go([neighbors, walls], VoxelTable2k),
+            Source::Model => self.go([neighbors, walls], VoxelNeighbor::new(Model::from_bytes(self.neighbor_model)?)),
+        }
     }
 
-    fn go<P: HalfSpaces<f32, Velocity = Vec2<f32>> + Clone>(&self, by: P, walls: Source) -> Result<Outcome, FileError> {
-        let model = Model::<f32, 2>::from_bytes(self.models.room)?;
+    fn go<P: HalfSpaces<f32, Velocity = Vec2<f32>> + Clone>(
+        &self,
+        [neighbors, walls]: [Source; 2],
+        by: P,
+    ) -> Result<Outcome, FileError> {
+        let model = Model::<f32, 2>::from_bytes(self.room_model)?;
         let truth = self.room.function(crate::System::R1);
         let mut robots: Vec<Robot<P>> = (0..self.robots).map(|index| self.robot(index, by.clone())).collect();
         let mut outcome = Outcome {
-            neighbors: Source::Formula,
+            neighbors,
             walls,
             arrived: 0,
             time_s: self.limit_s,
@@ -207,11 +203,8 @@ impl Swap<'_> {
             step_s: STEP_S,
         };
         let way = goal - at;
-        let wish = Vec2::new(way.x, way.y) * (1.0 / STEP_S);
+        let wish = (way * (1.0 / STEP_S)).clamp_norm(SPEED_MPS);
         let mut rng = Rng::keyed(self.seed, PURPOSE, own as u32, tick + 1);
-        let wish = wish.clamp_norm(SPEED_MPS);
-        let found = robots[own].avoider.velocity(&body, wish, Some(way), &nearby, &around, &mut rng);
-        let Vec3 { x, y, .. } = found.velocity_mps.extend(0.0);
-        Vec2::new(x, y)
+        robots[own].avoider.velocity(&body, wish, Some(way), &nearby, &around, &mut rng).velocity_mps
     }
 }

@@ -2,13 +2,13 @@
 //! template, and [`pictures`] of the paper's figures.
 
 pub mod pictures;
-mod view;
+pub(crate) mod view;
 
+use crate::Errors;
 use serde::Serialize;
 use staya_controller::geom::Vec2;
 use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable2k};
 use staya_controller::rand::Rng;
-use staya_stats::{mean, quantile};
 use std::f64::consts::TAU;
 use std::fmt;
 
@@ -20,17 +20,6 @@ pub struct Sample {
     pub pairs: u32,
     /// Seed; equal seeds give equal pairs.
     pub seed: u64,
-}
-
-/// Statistics of errors.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Errors {
-    /// Mean.
-    pub mean: f64,
-    /// 99th percentile.
-    pub p99: f64,
-    /// Maximum.
-    pub max: f64,
 }
 
 /// Errors of the template against the analytic form.
@@ -97,18 +86,8 @@ impl Sample {
             seed: self.seed,
             bytes: table.bytes(),
             nodes: table.shape(),
-            angle_deg: Errors::of(&angles),
-            distance: Errors::of(&distances),
-        }
-    }
-}
-
-impl Errors {
-    fn of(values: &[f64]) -> Self {
-        Self {
-            mean: mean(values).unwrap_or(0.0),
-            p99: quantile(values, 0.99).unwrap_or(0.0),
-            max: values.iter().copied().fold(0.0, f64::max),
+            angle_deg: Errors::of(&angles).unwrap_or_default(),
+            distance: Errors::of(&distances).unwrap_or_default(),
         }
     }
 }
@@ -131,8 +110,7 @@ impl fmt::Display for Report {
         let Errors { mean, p99, max } = self.angle_deg;
         write!(text, "{:<14}{:>8}{nodes:>14}{mean:>10.4}{p99:>8.3}{max:>8.3}", "Template2k", self.bytes)?;
         let Errors { mean, p99, max } = self.distance;
-        writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")?;
-        Ok(())
+        writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")
     }
 }
 
