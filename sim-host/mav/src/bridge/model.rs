@@ -1,6 +1,6 @@
 use crate::geo::Origin;
 use staya_controller::agent::SafetyKind;
-use staya_controller::grid::{BLOCKED, Cell};
+use staya_controller::grid::Cell;
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
@@ -47,13 +47,7 @@ impl VehicleModel {
     /// The grid cell at a position in metres; `None` off the map, inside a wall, or without a grid.
     pub fn cell(&self, [x, y, _]: [f64; 3]) -> Option<Cell> {
         let land = self.grid.as_ref()?;
-        let at = |metres: f64, axis: usize| {
-            let cells = libm::floor((metres - land.origin_m[axis]) / land.cell_m);
-            (0.0..f64::from(i16::MAX)).contains(&cells).then_some(cells as i16)
-        };
-        let cell = Cell::new(at(x, 0)?, at(y, 1)?);
-        land.index(cell)?;
-        (land.get(cell) != BLOCKED).then_some(cell)
+        land.cell_at([x, y]).filter(|cell| land.is_passable(*cell))
     }
 
     /// Whether a vehicle fits at a position in metres.

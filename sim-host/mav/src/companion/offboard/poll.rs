@@ -127,13 +127,7 @@ impl OffboardStateMachine {
             return self.end_entry(Some(Event::GaveUp));
         }
         *request = Some(Request { ask, attempt, at: now });
-        match ask {
-            Ask::Mode => out.push(out::set_mode(self.system, self.kind)),
-            Ask::Arm => out.push(out::arm(self.system)),
-            // PX4 climbs by its setpoints.
-            Ask::Takeoff if self.kind.needs_stream() => {}
-            Ask::Takeoff => out.push(out::takeoff(self.system, self.rules.altitude_m.unwrap_or(0.0))),
-        }
+        out.extend(out::request(self.system, self.kind, ask, self.rules.altitude_m.unwrap_or(0.0)));
     }
 
     fn rehearse_entry(&mut self, out: &mut Vec<MavMessage>) {
@@ -141,10 +135,9 @@ impl OffboardStateMachine {
             return;
         }
         let Rules { arm, takeoff, altitude_m, .. } = self.rules;
-        out.push(out::set_mode(self.system, self.kind));
-        out.extend(arm.then(|| out::arm(self.system)));
-        let height = altitude_m.filter(|_| takeoff && !self.kind.needs_stream());
-        out.extend(height.map(|altitude_m| out::takeoff(self.system, altitude_m)));
+        let asks = [(Ask::Mode, true), (Ask::Arm, arm), (Ask::Takeoff, takeoff && altitude_m.is_some())];
+        let asks = asks.into_iter().filter(|(_, is_asked)| *is_asked);
+        out.extend(asks.filter_map(|(ask, _)| out::request(self.system, self.kind, ask, altitude_m.unwrap_or(0.0))));
     }
 
     /// Zero velocity, if the companion has control; send it a few times before the end.
