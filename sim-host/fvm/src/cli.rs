@@ -287,6 +287,12 @@ fn local<const V: usize>(bytes: &[u8], at: &[f64], reading: Reading) -> Result<L
         .ok_or_else(|| anyhow!("{at:?} is outside the model; give a point in its extent {extent:?}"))
 }
 
+/// Head of the table.
+const MEASURED: &str = concat!(
+    "       nodes  bits    bytes  reading                 value              gradient               angle, degrees\n",
+    "                                           mean      worst       mean      worst       mean      p99    worst\n",
+);
+
 #[derive(Debug, Serialize)]
 struct Row {
     nodes: Vec<u16>,
@@ -323,20 +329,7 @@ impl MeasureArgs {
         if global.json {
             return print_json(&rows);
         }
-        let mut text = format!(
-            "{:>12} {:>5} {:>8} {:>8} {:>21} {:>21} {:>28}\n{:>36} {:>21} {:>21} {:>28}\n",
-            "nodes",
-            "bits",
-            "bytes",
-            "reading",
-            "value",
-            "gradient",
-            "angle, degrees",
-            "",
-            "mean      worst",
-            "mean      worst",
-            "mean      p99    worst"
-        );
+        let mut text = String::from(MEASURED);
         for Row { nodes, depth, bytes, reading, errors, half_planes } in rows {
             let nodes: Vec<String> = nodes.iter().map(ToString::to_string).collect();
             let reading = if reading == Reading::Nearest { "nearest" } else { "blend" };
@@ -405,16 +398,10 @@ impl SwarmArgs {
             return print_json(&outcomes);
         }
         let mut text = format!(
-            "models: room {} bytes, neighbours {} bytes\n{:<10} {:<10} {:>7} {:>8} {:>10} {:>10} {:>8}\n",
+            "models: room {} bytes, neighbours {} bytes\n\
+             neighbours walls      arrived  time, s     gap, m    wall, m overlaps\n",
             room_model.len(),
-            neighbor_model.len(),
-            "neighbours",
-            "walls",
-            "arrived",
-            "time, s",
-            "gap, m",
-            "wall, m",
-            "overlaps"
+            neighbor_model.len()
         );
         let name = |source| match source {
             Source::Formula => "formula",

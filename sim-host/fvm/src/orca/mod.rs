@@ -92,6 +92,11 @@ impl Sample {
     }
 }
 
+const HEAD: &str = concat!(
+    "                                         angle of normals, deg   change of velocity, (R_A+R_B)/tau\n",
+    "template         bytes         nodes      mean     p99     max            mean       p99       max\n",
+);
+
 impl fmt::Display for Report {
     fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -99,12 +104,7 @@ impl fmt::Display for Report {
             "half-planes from the voxel template against the exact ones, {} pairs, seed {}",
             self.pairs, self.seed
         )?;
-        writeln!(text, "{:36}{:>26}{:>36}", "", "angle of normals, deg", "change of velocity, (R_A+R_B)/tau")?;
-        writeln!(
-            text,
-            "{:<14}{:>8}{:>14}{:>10}{:>8}{:>8}{:>16}{:>10}{:>10}",
-            "template", "bytes", "nodes", "mean", "p99", "max", "mean", "p99", "max"
-        )?;
+        text.write_str(HEAD)?;
         let [levels, directions] = self.nodes;
         let nodes = format!("{levels} x {directions}");
         let Errors { mean, p99, max } = self.angle_deg;
