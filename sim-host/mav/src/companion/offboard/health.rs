@@ -1,11 +1,7 @@
 //! Trust in an autopilot's position estimate. An estimator that lost GPS keeps sending positions
 //! that look fresh but drift, so status messages decide. An autopilot that sends none is trusted.
 
-use staya_mavlink::constants::{
-    EKF_GPS_GLITCHING, EKF_UNINITIALIZED, ESTIMATOR_ACCEL_ERROR, ESTIMATOR_ATTITUDE, ESTIMATOR_CONST_POS_MODE,
-    ESTIMATOR_GPS_GLITCH, ESTIMATOR_POS_HORIZ_ABS, ESTIMATOR_VELOCITY_HORIZ, GPS_FIX_TYPE_3D_FIX, MAV_SYS_STATUS_AHRS,
-    MAV_SYS_STATUS_SENSOR_GPS,
-};
+use staya_mavlink::constants::*;
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 

@@ -21,10 +21,7 @@ use super::kind::Kind;
 use crate::geo::Global;
 use health::Health;
 use serde::{Deserialize, Serialize};
-use staya_mavlink::constants::{
-    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_COMP_ID_AUTOPILOT1,
-    MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_LANDING, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
-};
+use staya_mavlink::constants::*;
 use staya_mavlink::dialect::MavMessage;
 use std::collections::VecDeque;
 use std::time::Duration;

@@ -1,13 +1,6 @@
 use super::{AUTOPILOT, Ask, Kind};
-use staya_mavlink::constants::{
-    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
-    MAV_FRAME_LOCAL_NED,
-};
-use staya_mavlink::dialect::{
-    COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
-    GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GPS2_RAW_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavMessage,
-    SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA,
-};
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
 use std::time::Duration;
 

@@ -6,14 +6,8 @@ use crate::companion::offboard::{AUTOPILOT, Entry};
 use crate::framed::framed;
 use crate::geo::{Origin, enu, ned};
 use crate::{Counts, Peer, Received, Tlog};
-use staya_mavlink::constants::{
-    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
-    MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
-};
-use staya_mavlink::dialect::{
-    COMMAND_ACK_DATA, COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
-    GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavMessage,
-};
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
 use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::mavlink_core::MessageData as _;
 use staya_sim::record;
