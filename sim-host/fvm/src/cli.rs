@@ -287,7 +287,7 @@ fn local<const V: usize>(bytes: &[u8], at: &[f64], reading: Reading) -> Result<L
         .ok_or_else(|| anyhow!("{at:?} is outside the model; give a point in its extent {extent:?}"))
 }
 
-/// Head of the table.
+/// Head of the table of errors.
 const MEASURED: &str = concat!(
     "       nodes  bits    bytes  reading                 value              gradient               angle, degrees\n",
     "                                           mean      worst       mean      worst       mean      p99    worst\n",

@@ -13,7 +13,7 @@ pub mod companion;
 mod endpoint;
 mod formation;
 mod framed;
-mod geo;
+pub mod geo;
 mod inbox;
 mod lines;
 mod stream;

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use staya_sim::scenario::{Intervention, Scenario};
 use staya_sim::world::plane::Shape;
 
-/// What a page looks at closely.
+/// The robot and the links of which a page gets details.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Looks {
     pub robot: Option<usize>,
