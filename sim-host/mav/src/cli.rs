@@ -46,7 +46,7 @@ fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone
 }
 
 /// Tells the operator something. Standard error may be closed.
-fn say(remark: &str) {
+pub(crate) fn say(remark: &str) {
     let _ = writeln!(io::stderr(), "staya: {remark}");
 }
 

@@ -2,14 +2,10 @@
 
 mod demo;
 mod machine;
-mod options;
 mod shown;
-mod sight;
 mod telemetry;
 mod vehicle;
 
-pub use options::Options;
-pub use sight::Sight;
 pub(crate) use vehicle::Vehicle;
 
 use super::config::{Config, VehicleSetup};
@@ -19,14 +15,14 @@ use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules, State, stat
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
+use crate::cli::say;
 use crate::framed::framed;
-use crate::geo::ned;
+use crate::geo::{Origin, ned};
 use crate::tlog::micros_since_1970;
-use crate::{Endpoint, Lines, Received};
+use crate::{Endpoint, Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
 use demo::Demo;
 use machine::{Host, Machine};
-use options::DEMO_S;
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
 use staya_mavlink::dialect::MavMessage;
@@ -37,7 +33,7 @@ use staya_sim::engine::PlaneGround;
 use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
 use staya_sim::record;
-use std::io::{self, Write as _};
+use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use vehicle::is_within;
@@ -52,6 +48,38 @@ const FEW_TIMESTAMPS: u64 = 1000;
 const LOOK: Duration = Duration::from_secs(1);
 /// Smallest age limit of positions in a dry run.
 const SELDOM: Duration = Duration::from_secs(3);
+
+/// Longest demo, seconds.
+const DEMO_S: f64 = 600.0;
+
+/// Options of the command line.
+#[derive(Debug, Default)]
+pub struct Options {
+    /// Show the messages that would be sent, and send nothing.
+    pub dry_run: bool,
+    /// Do not show changes of state.
+    pub quiet: bool,
+    /// Duration in seconds; `None` runs until stopped.
+    pub seconds: Option<f64>,
+    /// Simulated autopilots in place of the configured links; the run ends when all vehicles have
+    /// arrived, or after ten minutes.
+    pub demo: bool,
+    /// Runs the demo in real time.
+    pub is_real_time: bool,
+    /// Ends with an error if no autopilot is heard within this time; `None` waits forever.
+    pub wait: Option<Duration>,
+    /// Log of all sent and accepted messages.
+    pub tlog: Option<Tlog>,
+}
+
+/// The vehicles of this process at one moment, in the order of the configuration.
+#[derive(Clone, Copy)]
+pub struct Sight<'a> {
+    pub(crate) vehicles: &'a [Vehicle],
+    pub(crate) origin: &'a Origin,
+    /// Time since the start.
+    pub(crate) now: Duration,
+}
 
 struct Link {
     name: String,
@@ -90,12 +118,8 @@ pub fn run(
 ) -> Result<CompanionReport> {
     let seal = config.key.as_deref().map(Seal::read).transpose()?;
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
-    let remarks =
-        [seal.as_ref().and_then(|seal| seal.remark.as_ref()), link_key.as_ref().and_then(|file| file.remark.as_ref())];
-    for remark in remarks.into_iter().flatten() {
-        // Standard error may be closed.
-        let _ = writeln!(io::stderr(), "staya: {remark}");
-    }
+    let remarks = [seal.as_ref().map(|seal| &seal.remark), link_key.as_ref().map(|file| &file.remark)];
+    remarks.into_iter().flatten().flatten().for_each(|remark| say(remark));
     let tlog = options.tlog.take();
     let machine: Box<dyn Machine> = if options.demo {
         Box::new(Demo::new(config, tlog, options.is_real_time))
@@ -316,7 +340,9 @@ impl<'a> Companions<'a> {
         }
         self.log(frame.bytes());
         let Some(message) = frame.message() else { return };
-        self.machine.believe(received.line, received.peer);
+        if let Some(lines) = self.machine.lines() {
+            lines.believe(received.line, received.peer);
+        }
         let (sender, now) = (frame.sender(), self.now());
         if let MavMessage::TUNNEL(tunnel) = &message {
             // Packets of other companions. Own packets may return.

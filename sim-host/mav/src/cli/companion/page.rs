@@ -11,7 +11,7 @@ use staya_sim::scenario::{Robot, Scenario};
 use staya_view::watch::{About, Insight, Watcher};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -75,7 +75,7 @@ pub struct Page {
 }
 
 impl Page {
-    pub fn new(watcher: Watcher, scenario: &Scenario) -> Result<Self> {
+    pub fn new(mut watcher: Watcher, scenario: &Scenario) -> Result<Self> {
         let radius_m = |index| scenario.plane.as_ref().map_or(0.0, |setup| setup.group(index).radius_m);
         let robot = |(index, robot): (usize, &Robot)| RobotRow {
             id: robot.id.0,
@@ -95,7 +95,20 @@ impl Page {
         let is_wanted = Arc::new(AtomicBool::new(false));
         let (sender, copies) = sync_channel(1);
         let wanted = Arc::clone(&is_wanted);
-        let serve = move || serve(watcher, &copies, &wanted, tick_s, &rows);
+        let serve = move || {
+            loop {
+                let copy: Option<Copied> = match copies.recv_timeout(EVERY) {
+                    Ok(copy) => Some(copy),
+                    Err(RecvTimeoutError::Timeout) => None,
+                    Err(RecvTimeoutError::Disconnected) => return,
+                };
+                let is_due = watcher.is_due();
+                wanted.store(watcher.pages() > 0, Ordering::Relaxed);
+                if let Some(copy) = copy.filter(|_| is_due) {
+                    show(&mut watcher, &copy, tick_s, &rows);
+                }
+            }
+        };
         let thread = thread::Builder::new().name("vehicles".to_owned()).spawn(serve);
         let thread = thread.context("cannot start a thread for the page")?;
         Ok(Self { is_wanted, copies: Some(sender), copied: Instant::now(), thread: Some(thread), unseen })
@@ -119,21 +132,6 @@ impl Drop for Page {
         self.copies = None;
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
-        }
-    }
-}
-
-fn serve(mut watcher: Watcher, copies: &Receiver<Copied>, is_wanted: &AtomicBool, tick_s: f64, unseen: &[RobotRow]) {
-    loop {
-        let copy = match copies.recv_timeout(EVERY) {
-            Ok(copy) => Some(copy),
-            Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => return,
-        };
-        let is_due = watcher.is_due();
-        is_wanted.store(watcher.pages() > 0, Ordering::Relaxed);
-        if let Some(copy) = copy.filter(|_| is_due) {
-            show(&mut watcher, &copy, tick_s, unseen);
         }
     }
 }

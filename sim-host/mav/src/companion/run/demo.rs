@@ -5,7 +5,7 @@ use crate::companion::config::{Config, VehicleSetup};
 use crate::companion::offboard::{AUTOPILOT, Entry};
 use crate::framed::framed;
 use crate::geo::{Origin, enu, ned};
-use crate::{Counts, Peer, Received, Tlog};
+use crate::{Peer, Received, Tlog};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::{RawFrame, Sender};
@@ -32,7 +32,6 @@ pub struct Demo {
     origin: Origin,
     autopilots: Vec<Autopilot>,
     frames: VecDeque<Received>,
-    counts: Vec<Counts>,
     tlog: Option<Tlog>,
 }
 
@@ -76,7 +75,6 @@ impl Demo {
             origin: config.origin,
             autopilots: config.vehicles.iter().map(autopilot).collect(),
             frames: VecDeque::new(),
-            counts: vec![Counts::default(); config.lines.len()],
             tlog,
         }
     }
@@ -92,11 +90,7 @@ impl Demo {
             for autopilot in &mut self.autopilots {
                 autopilot.advance(self.now);
                 for message in autopilot.telemetry(self.now, &self.origin) {
-                    let received = autopilot.packed(&message);
-                    let counts = &mut self.counts[received.line];
-                    counts.frames_in += 1;
-                    counts.bytes_in += received.frame.len() as u64;
-                    self.frames.push_back(received);
+                    self.frames.push_back(autopilot.packed(&message));
                 }
             }
         }
@@ -226,8 +220,6 @@ impl Machine for Demo {
     }
 
     fn send(&mut self, line: usize, _: Option<Peer>, frame: &[u8]) {
-        self.counts[line].frames_out += 1;
-        self.counts[line].bytes_out += frame.len() as u64;
         let Some(message) = RawFrame::new(frame).and_then(|frame| frame.message()) else { return };
         let target = match &message {
             MavMessage::COMMAND_LONG(command) => command.target_system,
@@ -248,10 +240,6 @@ impl Machine for Demo {
             }
             _ => {}
         }
-    }
-
-    fn counts(&self, line: usize) -> Counts {
-        self.counts[line]
     }
 
     fn log(&mut self, frame: &[u8]) -> Result<(), record::Error> {

@@ -36,13 +36,17 @@ impl Companions<'_> {
         }
     }
 
+    fn trouble(&self, line: usize) -> Option<String> {
+        self.machine.lines()?.trouble(line)
+    }
+
     pub(super) fn look_at_links(&mut self, now: Duration) {
         if now < self.next_look {
             return;
         }
         self.next_look = now + LOOK;
         for index in 0..self.links.len() {
-            let trouble = self.machine.trouble(index);
+            let trouble = self.trouble(index);
             let link = &mut self.links[index];
             if trouble != link.trouble {
                 let line = match &trouble {
@@ -130,8 +134,8 @@ impl Companions<'_> {
         let links = self.links.iter().enumerate().filter(|_| !self.options.demo);
         let links = links.map(|(line, Link { name, signing, .. })| LineReport {
             link: name.clone(),
-            counts: self.machine.counts(line),
-            trouble: self.machine.trouble(line),
+            counts: self.machine.lines().map(|lines| lines.counts(line)).unwrap_or_default(),
+            trouble: self.trouble(line),
             refused: signing.as_ref().map_or(0, |signing| signing.counts().refused()),
             is_exhausted: signing.as_ref().is_some_and(|signing| signing.left() == 0),
         });

@@ -1,8 +1,8 @@
 mod replayed;
 
 use super::*;
-use crate::geo::{Global, Origin};
-use crate::{Counts, Peer};
+use crate::Peer;
+use crate::geo::Global;
 use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
 use staya_mavlink::frame::{MAX_FRAME_LEN, encode_message};
 use staya_sim::record;
@@ -166,16 +166,6 @@ impl Machine for Shared {
             }
             _ => {}
         }
-    }
-
-    fn believe(&mut self, _: usize, _: Peer) {}
-
-    fn counts(&self, _: usize) -> Counts {
-        Counts::default()
-    }
-
-    fn trouble(&self, _: usize) -> Option<String> {
-        None
     }
 
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8])) {

@@ -29,16 +29,6 @@ impl Machine for Replay {
 
     fn send(&mut self, _: usize, _: Option<Peer>, _: &[u8]) {}
 
-    fn believe(&mut self, _: usize, _: Peer) {}
-
-    fn counts(&self, _: usize) -> Counts {
-        Counts::default()
-    }
-
-    fn trouble(&self, _: usize) -> Option<String> {
-        None
-    }
-
     fn hear_others(&mut self, _: &mut dyn FnMut(&[u8])) {}
 
     fn tell_others(&mut self, _: &[u8]) {}
