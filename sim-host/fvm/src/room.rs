@@ -1,7 +1,6 @@
 //! Rooms from files: an outline and obstacles.
 
 use crate::{Function, System, shape};
-use anyhow::{Result, anyhow, bail};
 use serde::Deserialize;
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::obstacle::Obstacle;
@@ -38,7 +37,23 @@ pub struct Polygon {
     pub corners: Vec<[f64; 2]>,
 }
 
-pub const CORNERS: &str = "give three corners or more, finite, no two in a row equal";
+/// Why a room is invalid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RoomError {
+    /// Not TOML, or unknown fields.
+    #[error("{0}")]
+    Toml(String),
+    /// A field has an invalid value.
+    #[error("{field}: {remedy}")]
+    Field {
+        /// Name of the field.
+        field: String,
+        /// Valid values.
+        remedy: &'static str,
+    },
+}
+
+const CORNERS: &str = "give three corners or more, finite, no two in a row equal";
 
 impl Default for Room {
     /// The documentation's room: 8 m by 6 m with a niche, a round and a square pillar.
@@ -55,28 +70,29 @@ impl Room {
     /// Parses the text of a file.
     ///
     /// # Errors
-    /// The text with line or field and the remedy.
-    pub fn read(text: &str) -> Result<Self> {
-        let room: Self = toml::from_str(text).map_err(|error| anyhow!("{}", error.to_string().trim()))?;
+    /// [`RoomError`] with line or field.
+    pub fn read(text: &str) -> Result<Self, RoomError> {
+        let room: Self = toml::from_str(text).map_err(|error| RoomError::Toml(error.to_string().trim().to_owned()))?;
         room.check()?;
         Ok(room)
     }
 
-    fn check(&self) -> Result<()> {
+    fn check(&self) -> Result<(), RoomError> {
+        let bad = |field: String, remedy| Err(RoomError::Field { field, remedy });
         if !is_polygon(&self.outline) {
-            bail!("outline: {CORNERS}");
+            return bad("outline".into(), CORNERS);
         }
-        for (number, circle) in (1..).zip(&self.circles) {
+        for (index, circle) in self.circles.iter().enumerate() {
             if !circle.center.iter().all(|x| x.is_finite()) {
-                bail!("circle {number}: center: give two finite numbers");
+                return bad(format!("circle {}: center", index + 1), "give two finite numbers");
             }
             if !(circle.radius > 0.0 && circle.radius.is_finite()) {
-                bail!("circle {number}: radius: give a number above 0");
+                return bad(format!("circle {}: radius", index + 1), "give a number above 0");
             }
         }
-        for (number, polygon) in (1..).zip(&self.polygons) {
+        for (index, polygon) in self.polygons.iter().enumerate() {
             if !is_polygon(&polygon.corners) {
-                bail!("polygon {number}: corners: {CORNERS}");
+                return bad(format!("polygon {}: corners", index + 1), CORNERS);
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! Named functions: circle, ball, polygon, room, and velocity obstacles.
 
-use crate::room::{CORNERS, extent, is_polygon};
+use crate::room::{extent, is_polygon};
 use crate::{Function, Room, System, shape};
 use anyhow::{Result, bail};
 
@@ -66,7 +66,7 @@ impl Template {
             &Self::Ball(center, radius) => Templated::Space(shape::ball(center, radius), around(center, radius)?),
             Self::Polygon(corners) => {
                 if !is_polygon(corners) {
-                    bail!("corners: {CORNERS}");
+                    bail!("corners: give three or more, finite, no two in a row equal");
                 }
                 let [[left, right], [bottom, top]] = extent(corners, 0.0);
                 let margin = 0.25 * (right - left).max(top - bottom);

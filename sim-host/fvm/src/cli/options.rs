@@ -208,7 +208,7 @@ mod tests {
             ("circle --radius 0", "above 0"),
             ("circle --extent 1,2,3", "4 in all"),
             ("ball --extent 1,2,3,4", "6 in all"),
-            ("polygon --corners 1,2", "three corners or more"),
+            ("polygon --corners 1,2", "three or more"),
             ("room --system r2", "not r0, r1"),
             ("room --room /nowhere.toml", "cannot read /nowhere.toml"),
             ("velocity-obstacle --horizon 0", "horizon above 0"),
