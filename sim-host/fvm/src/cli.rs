@@ -5,7 +5,7 @@ mod orca;
 
 use crate::build::MOST_BYTES;
 use crate::draw::{m_images, sheet};
-use crate::swarm::{Outcome, Source, Swap};
+use crate::swarm::{Crowd, Outcome, Source, Swap};
 use crate::{
     HalfPlaneErrors, Measured, Reading, System, Template, Templated, VelocityForm, build, half_planes, measure,
 };
@@ -125,18 +125,8 @@ struct SwarmArgs {
     /// A room as TOML (`outline`, `[[circle]]`, `[[polygon]]`) [default: the documentation's].
     #[arg(long, value_name = "FILE")]
     room: Option<PathBuf>,
-    /// Number of robots.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=64))]
-    robots: u32,
-    /// Radius of the circle of starts around the origin, metres.
-    #[arg(long, value_name = "M", default_value_t = 2.5)]
-    circle: f32,
-    /// Seed; equal seeds give equal starts.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Time limit of a run, seconds.
-    #[arg(long, value_name = "S", default_value_t = 60.0)]
-    limit: f32,
+    #[command(flatten)]
+    crowd: Crowd,
     /// Nodes along the longest axis of the room's model.
     #[arg(long, value_name = "N", default_value_t = 65, value_parser = clap::value_parser!(u16).range(2..))]
     room_resolution: u16,
@@ -376,15 +366,7 @@ impl SwarmArgs {
         let model = |template: &Template, resolution| made(&template.function()?, resolution, self.depth);
         let room_model = model(&Template::Room(room.clone(), System::R1), self.room_resolution)?;
         let neighbor_model = model(&Template::Neighbor(VelocityForm::Distance), self.neighbor_resolution)?;
-        let swap = Swap {
-            room,
-            robots: self.robots,
-            circle_m: self.circle,
-            seed: self.seed,
-            limit_s: self.limit,
-            room_model: &room_model,
-            neighbor_model: &neighbor_model,
-        };
+        let swap = Swap { crowd: self.crowd, room, room_model: &room_model, neighbor_model: &neighbor_model };
         if let Some(robot) = swap.blocked() {
             return Err(anyhow!("robot {robot} would start or end in a wall; give another --circle or fewer --robots"));
         }

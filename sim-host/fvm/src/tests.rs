@@ -1,5 +1,5 @@
 use crate::draw::{m_images, sheet};
-use crate::swarm::{Source, Swap};
+use crate::swarm::{Crowd, Source, Swap};
 use crate::*;
 use proptest::prelude::*;
 use staya_controller::geom::Vec2;
@@ -221,11 +221,8 @@ fn models_and_formulas_give_similar_swarms() {
     let of_room = plane(&Template::Room(room.clone(), System::R1), [65, 50], 16);
     let of_neighbor = space(&Template::Neighbor(VelocityForm::Distance), [17, 9, 5], 16);
     let swap = Swap {
+        crowd: Crowd { robots: 6, circle: 2.5, seed: 1, limit: 40.0 },
         room,
-        robots: 6,
-        circle_m: 2.5,
-        seed: 1,
-        limit_s: 40.0,
         room_model: &of_room,
         neighbor_model: &of_neighbor,
     };

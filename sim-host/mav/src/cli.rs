@@ -38,7 +38,7 @@ impl Command {
 }
 
 /// Parses a number within limits.
-fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+pub(crate) fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     move |text| {
         let value = text.parse().ok().filter(|value| (least..=most).contains(value));
         value.ok_or_else(|| format!("give a number from {least} to {most}"))

@@ -19,20 +19,10 @@ pub struct OrcaArgs {
 #[derive(Clone, Debug, Subcommand)]
 enum Action {
     /// Measure the errors of half-planes from voxel templates, by template size.
-    Table(TableArgs),
+    Table(Sample),
     /// Draw a velocity obstacle of two robots, its half-plane, R-function, M-images and template
     /// (default: the worked example of the functional voxel paper).
     Draw(Box<DrawArgs>),
-}
-
-#[derive(Args, Clone, Copy, Debug)]
-struct TableArgs {
-    /// Number of pairs of robots to compare.
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
-    pairs: u32,
-    /// Seed; equal seeds give equal pairs.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
 }
 
 #[derive(Args, Clone, Debug)]
@@ -48,21 +38,13 @@ struct DrawArgs {
 impl OrcaArgs {
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.action {
-            Action::Table(args) => args.run(global)?,
+            Action::Table(sample) => {
+                let report = sample.report();
+                if global.json { print_json(&report)? } else { print(&report.to_string())? }
+            }
             Action::Draw(args) => args.run(global)?,
         }
         Ok(Ended::Done)
-    }
-}
-
-impl TableArgs {
-    fn run(&self, global: &Global) -> Result<()> {
-        let sample = Sample { pairs: self.pairs, seed: self.seed };
-        let report = sample.report();
-        if global.json {
-            return print_json(&report);
-        }
-        print(&report.to_string())
     }
 }
 

@@ -5,6 +5,7 @@ pub mod pictures;
 pub(crate) mod view;
 
 use crate::Errors;
+use clap::Args;
 use serde::Serialize;
 use staya_controller::geom::Vec2;
 use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable2k};
@@ -14,11 +15,13 @@ use std::fmt;
 
 /// Random pairs of robots: radii 0.1 to 0.5 m, centres within 5 m without overlap, speeds up to 1.5
 /// m/s, horizon 2 s, the whole correction. Positions and velocities are uniform in discs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Args, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// Number of pairs.
+    /// Number of pairs of robots to compare.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub pairs: u32,
     /// Seed; equal seeds give equal pairs.
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }
 

@@ -15,12 +15,13 @@ use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules, State, stat
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
-use crate::cli::say;
+use crate::cli::{number, say};
 use crate::framed::framed;
 use crate::geo::{Origin, ned};
 use crate::tlog::micros_since_1970;
 use crate::{Endpoint, Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
+use clap::Args;
 use demo::Demo;
 use machine::{Host, Machine};
 use staya_controller::robot::Mode;
@@ -52,24 +53,28 @@ const SELDOM: Duration = Duration::from_secs(3);
 /// Longest demo, seconds.
 const DEMO_S: f64 = 600.0;
 
-/// Options of the command line.
-#[derive(Debug, Default)]
+/// Options of a run.
+#[derive(Args, Clone, Copy, Debug, Default)]
 pub struct Options {
     /// Show the messages that would be sent, and send nothing.
+    #[arg(long)]
     pub dry_run: bool,
-    /// Do not show changes of state.
-    pub quiet: bool,
-    /// Duration in seconds; `None` runs until stopped.
-    pub seconds: Option<f64>,
-    /// Simulated autopilots in place of the configured links; the run ends when all vehicles have
-    /// arrived, or after ten minutes.
+    /// Simulate the configured vehicles in this process, without links; ends when all have
+    /// arrived.
+    #[arg(long, conflicts_with = "dry_run")]
     pub demo: bool,
+    /// End with an error if no autopilot is heard in this many seconds; 0 waits forever.
+    #[arg(long, value_name = "N", default_value = "60", value_parser = number(0.0, 1e6))]
+    pub wait: f64,
+    /// Stop after this many seconds [default: run until Ctrl-C].
+    #[arg(long, value_name = "N", value_parser = number(0.0, 1e6))]
+    pub seconds: Option<f64>,
+    /// Do not show changes of state.
+    #[arg(skip)]
+    pub quiet: bool,
     /// Runs the demo in real time.
+    #[arg(skip)]
     pub is_real_time: bool,
-    /// Ends with an error if no autopilot is heard within this time; `None` waits forever.
-    pub wait: Option<Duration>,
-    /// Log of all sent and accepted messages.
-    pub tlog: Option<Tlog>,
 }
 
 /// The vehicles of this process at one moment, in the order of the configuration.
@@ -103,7 +108,8 @@ struct Companions<'a> {
 }
 
 /// Runs the companions of a configuration until the time is over or `is_wanted` returns false.
-/// `look` observes them between two steps and must be fast.
+/// `look` observes them between two steps and must be fast. `tlog` gets all sent and accepted
+/// messages.
 ///
 /// A log that cannot be written does not end the run. At any end, controlled vehicles stop.
 ///
@@ -112,7 +118,8 @@ struct Companions<'a> {
 /// options set, or standard output fails in a dry run.
 pub fn run(
     config: &Config,
-    options: &mut Options,
+    options: &Options,
+    tlog: Option<Tlog>,
     is_wanted: impl Fn() -> bool,
     mut look: impl FnMut(&Sight<'_>),
 ) -> Result<CompanionReport> {
@@ -120,7 +127,6 @@ pub fn run(
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
     let remarks = [seal.as_ref().map(|seal| &seal.remark), link_key.as_ref().map(|file| &file.remark)];
     remarks.into_iter().flatten().flatten().for_each(|remark| say(remark));
-    let tlog = options.tlog.take();
     let machine: Box<dyn Machine> = if options.demo {
         Box::new(Demo::new(config, tlog, options.is_real_time))
     } else {
@@ -231,7 +237,7 @@ impl<'a> Companions<'a> {
 
     /// The error if all autopilots have been silent for too long since the start.
     fn no_autopilot(&self) -> Option<anyhow::Error> {
-        let wait = self.options.wait.filter(|&wait| self.now() >= wait)?;
+        let wait = Some(self.options.wait).filter(|&wait| wait > 0.0 && self.now().as_secs_f64() >= wait)?;
         let is_silent = self.vehicles.iter().all(|vehicle| vehicle.offboard.tally().heartbeats == 0);
         let links = self.links.iter().map(|link| match &link.trouble {
             Some(why) => format!("{} ({why})", link.name),
@@ -239,9 +245,8 @@ impl<'a> Companions<'a> {
         });
         is_silent.then(|| {
             anyhow!(
-                "no autopilot heard within {} s on {}; start the vehicles or correct `link`, wait longer with --wait N \
+                "no autopilot heard within {wait} s on {}; start the vehicles or correct `link`, wait longer with --wait N \
                  (0: forever), or try --demo, which simulates the vehicles",
-                wait.as_secs_f64(),
                 links.collect::<Vec<_>>().join(", ")
             )
         })

@@ -340,7 +340,7 @@ fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
 
 #[test]
 fn silent_autopilots_end_the_run_with_their_links_named() {
-    let options = Options { wait: Some(Duration::from_secs(3)), ..Options::default() };
+    let options = Options { wait: 3.0, ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(Some((Call::Receive, Failure::From(1))))));
     let config = config();
     let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(world)));
@@ -356,8 +356,8 @@ fn simulated_vehicles_of_each_kind_arrive_and_the_demo_ends() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions");
     for name in ["six-rovers-crossing", "six-copters-crossing", "six-px4-crossing", "one-rover"] {
         let config = Config::load(&folder.join(format!("{name}.toml"))).unwrap();
-        let mut options = Options { demo: true, quiet: true, ..Options::default() };
-        let report = run(&config, &mut options, || true, |_| {}).unwrap();
+        let options = Options { demo: true, quiet: true, ..Options::default() };
+        let report = run(&config, &options, None, || true, |_| {}).unwrap();
         assert!(report.seconds < 60.0 && report.links.is_empty(), "{name}: {report}");
         for vehicle in &report.vehicles {
             let height_m = vehicle.position_m.expect("a position")[2];
