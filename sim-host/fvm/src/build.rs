@@ -21,8 +21,8 @@ pub(crate) const MOST_BYTES: usize = 64 << 20;
 /// sides. `depth`: bits per component, 4 to 16.
 ///
 /// # Errors
-/// The variables are not two or three, the depth or an axis is invalid, the model exceeds 64 MiB, or
-/// the function is not finite or too steep at a node.
+/// The variables are not two or three, the depth or an axis is invalid, the model exceeds 64 MiB,
+/// or the function is not finite or too steep at a node.
 pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) -> Result<Vec<u8>> {
     let header = header(grid, depth)?;
     let step = |axis: usize| f64::from(header.step[axis]);

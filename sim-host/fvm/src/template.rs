@@ -58,8 +58,8 @@ impl Template {
     /// The function and its default extent.
     ///
     /// # Errors
-    /// A number is not finite, a radius or horizon is not above 0, corners are not a polygon, or robots
-    /// overlap.
+    /// A number is not finite, a radius or horizon is not above 0, corners are not a polygon, or
+    /// robots overlap.
     pub fn function(&self) -> Result<Templated> {
         Ok(match self {
             &Self::Circle(center, radius) => Templated::Plane(shape::circle(center, radius), around(center, radius)?),

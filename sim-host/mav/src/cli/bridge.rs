@@ -166,7 +166,8 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
          commands        {commands}\n  \
          frames          {frames_heard} handled, {frames_ignored} for other systems, {frames_waiting} still queued\n  \
          frames rejected {frames_refused}: {unsigned} unsigned, {forged} forged, {replayed} replayed, \
-         {ahead} with future timestamps, {no_room} from new senders with the table full, {unanswerable} not answerable\n\
+         {ahead} with future timestamps, {no_room} from new senders with the table full, {unanswerable} not \
+         answerable\n\
          {signing}  collisions      {}\n  trace hash      {}\n",
         report.collisions, report.trace_hash
     );

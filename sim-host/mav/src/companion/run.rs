@@ -245,8 +245,8 @@ impl<'a> Companions<'a> {
         });
         is_silent.then(|| {
             anyhow!(
-                "no autopilot heard within {wait} s on {}; start the vehicles or correct `link`, wait longer with --wait N \
-                 (0: forever), or try --demo, which simulates the vehicles",
+                "no autopilot heard within {wait} s on {}; start the vehicles or correct `link`, wait longer with \
+                 --wait N (0: forever), or try --demo, which simulates the vehicles",
                 links.collect::<Vec<_>>().join(", ")
             )
         })

@@ -54,7 +54,8 @@ impl Seal {
             // From 0 the counter would make recorded packets valid again.
             ErrorKind::NotFound => anyhow!(
                 "{name} is missing, it counts how often this computer used the key; if the key is unused here, run \
-                 `echo 0 > {name}`; else write a number into it that is greater than all earlier ones, or give a new key"
+                 `echo 0 > {name}`; else write a number into it that is greater than all earlier ones, or give a new \
+                 key"
             ),
             _ => anyhow!("cannot read the counter of starts in {name}: {error}; {}", read_remedy(&error)),
         })?;
