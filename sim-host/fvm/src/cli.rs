@@ -1,17 +1,18 @@
 //! The commands of `staya-voxel`: `staya voxel` and `staya orca`.
 
-pub(crate) mod options;
+mod options;
 mod orca;
 
 use crate::build::MOST_BYTES;
 use crate::draw::{m_images, sheet};
+use crate::numbers::numbers;
 use crate::swarm::{Crowd, Outcome, Source, Swap};
 use crate::{
     HalfPlaneErrors, Measured, Reading, System, Template, Templated, VelocityForm, build, half_planes, measure,
 };
 use anyhow::{Context as _, Result, anyhow};
 use clap::{Args, Subcommand};
-use options::{TemplateArgs, grid, numbers};
+use options::{TemplateArgs, grid};
 use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
 use staya_sim::file::read_remedy;

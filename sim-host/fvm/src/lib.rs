@@ -5,6 +5,7 @@ pub mod cli;
 pub mod draw;
 mod function;
 mod measure;
+mod numbers;
 pub mod orca;
 mod room;
 pub mod shape;

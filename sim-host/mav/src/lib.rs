@@ -17,6 +17,7 @@ pub mod geo;
 mod inbox;
 mod lines;
 mod stream;
+mod terminal;
 mod tlog;
 mod traffic;
 mod udp;

@@ -1,5 +1,6 @@
 //! Template options and number parsing.
 
+use crate::numbers::{fixed, numbers};
 use crate::{Grid, Pair, Room, System, Template, Templated, VelocityForm};
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -130,19 +131,6 @@ pub fn room(file: Option<&Path>) -> Result<Room> {
     let text = read_text(file, TEXT)
         .map_err(|error| anyhow!("cannot read {}: {error}; {}", file.display(), read_remedy(&error)))?;
     Room::read(&text).with_context(|| file.display().to_string())
-}
-
-pub fn numbers(text: &str) -> Result<Vec<f64>> {
-    let number = |word: &str| {
-        let word = word.trim();
-        word.parse().map_err(|_| anyhow!("`{word}` is not a number; give numbers with commas, such as 1.5,-2"))
-    };
-    text.split(',').map(number).collect()
-}
-
-pub fn fixed<const V: usize>(text: &str) -> Result<[f64; V]> {
-    let found = numbers(text)?.try_into();
-    found.map_err(|_| anyhow!("`{text}`: give {V} numbers with commas, such as 1.5,-2"))
 }
 
 /// Equal steps along all axes, `resolution` nodes along the longest, at least two along others.

@@ -5,7 +5,7 @@ use super::view::{
     LEFT, NUMBER, PIXELS, SIDE, SMALL_SIDE, TOP, View, arrow, canvas, contoured, grey, image, label, left_of, note,
     opaque, picture,
 };
-use crate::cli::options::fixed;
+use crate::numbers::fixed;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use staya_controller::orca::{HalfPlane, MovingBall, Params, VelocityObstacle, VoxelTable2k, half_plane};

@@ -1,6 +1,7 @@
-use super::{number, say, signing};
+use super::signing;
 use crate::bridge::{BridgeReport, LineReport, Options, Refused, Swarm};
 use crate::geo::{Global as Place, Origin};
+use crate::terminal::{number, say};
 use crate::{Counts, Endpoint};
 use anyhow::Result;
 use clap::Args;

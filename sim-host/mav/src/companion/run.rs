@@ -15,9 +15,9 @@ use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules, State, stat
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
-use crate::cli::{number, say};
 use crate::framed::framed;
 use crate::geo::{Origin, ned};
+use crate::terminal::{number, say};
 use crate::tlog::micros_since_1970;
 use crate::{Endpoint, Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
