@@ -93,6 +93,16 @@ def test_groups_have_the_colours_of_saved_pictures_at_once(view, look, tmp_path)
     assert robots == [page.evaluate("staya.scene.robots.group").count(group) for group in groups]
 
 
+def test_columns_of_blown_air_are_below_flyers_only(view, look, tmp_path):
+    for scenario, columns in [("scenarios/downwash.toml", 16), (SWAP, 0)]:
+        page = look(view(scenario, "--paused").url, color_scheme="light")
+        assert ("column of blown air" in page.inner_text("#legend")) == (columns > 0)
+        with page.expect_download() as download:
+            page.locator("#save-svg").click()
+        download.value.save_as(tmp_path / "flyers.svg")
+        assert (tmp_path / "flyers.svg").read_text().count('fill-opacity="0.25"') == columns
+
+
 def test_many_robots_are_larger_than_their_goals(view, look):
     page = look(view("scenarios/scale-plane-small.toml", "--paused").url)
     assert page.evaluate("staya.marks.goal < staya.marks.robot && staya.marks.robot < 4")

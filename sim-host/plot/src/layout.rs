@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Point, Stroke, Text};
 use super::chart::{Chart, Kind};
-use super::colour::{GRID, INK};
+use super::colour::{Colour, GRID, INK, MUTED};
 use super::font;
 use super::look::{Look, looks};
 use super::scale::Axes;
@@ -15,6 +15,7 @@ const SMALL: f64 = 11.5;
 const PAD: f64 = 14.0;
 const ROW: f64 = 19.0;
 const SAMPLE: f64 = 24.0;
+const RAMP: f64 = 45.0;
 /// Largest ratio of the width of an SVG reader's sans-serif font to the measured one.
 pub const OTHER_FONTS: f64 = 1.15;
 
@@ -177,21 +178,52 @@ impl Numbers<'_> {
     }
 }
 
-/// Draws a sample of a legend.
-type Sample<'a> = dyn Fn(&mut Canvas, Point) + 'a;
-
 /// A sample with its name in a legend.
 pub struct Entry<'a> {
     wide: f64,
     name: String,
     /// Draws the sample to the right of a point.
-    draw: Box<Sample<'a>>,
+    draw: Box<dyn Fn(&mut Canvas, Point) + 'a>,
 }
 
 impl<'a> Entry<'a> {
     /// Creates an entry with a sample of that width.
     pub fn new(wide: f64, name: impl Into<String>, draw: impl Fn(&mut Canvas, Point) + 'a) -> Self {
         Self { wide, name: name.into(), draw: Box::new(draw) }
+    }
+
+    /// Creates an entry for a line.
+    pub fn line(name: impl Into<String>, stroke: Stroke) -> Self {
+        Self::new(SAMPLE, name, move |canvas, [x, y]| canvas.line(vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]], stroke))
+    }
+
+    /// Creates an entry for a mark, which is drawn around a point.
+    pub fn mark(name: impl Into<String>, draw: impl Fn(&mut Canvas, Point) + 'a) -> Self {
+        Self::new(14.0, name, move |canvas, [x, y]| draw(canvas, [x + 7.0, y]))
+    }
+
+    /// Creates an entry for a body or place of a colour.
+    pub fn disc(name: impl Into<String>, colour: Colour) -> Self {
+        Self::mark(name, move |canvas, at| canvas.circle(at, 5.0, Some(colour), None))
+    }
+
+    /// Creates an entry for areas of a colour.
+    pub fn square(name: impl Into<String>, colour: Colour) -> Self {
+        Self::mark(name, move |canvas, [x, y]| {
+            canvas.rectangle([x - 6.0, y - 6.0, 12.0, 12.0], Some(colour), Some(Stroke::new(MUTED, 0.8)));
+        })
+    }
+
+    /// Creates an entry for colours at shares from 0 to 1.
+    pub fn ramp(name: impl Into<String>, steps: u32, colour: impl Fn(f64) -> Colour + 'a) -> Self {
+        Self::new(RAMP, name, move |canvas, [x, y]| {
+            let wide = RAMP / f64::from(steps);
+            for step in 0..steps {
+                let colour = colour(f64::from(step) / f64::from(steps - 1));
+                canvas.rectangle([x + f64::from(step) * wide, y - 5.0, wide, 10.0], Some(colour), None);
+            }
+            canvas.rectangle([x, y - 5.0, RAMP, 10.0], None, Some(Stroke::new(MUTED, 0.8)));
+        })
     }
 }
 
