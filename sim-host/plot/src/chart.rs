@@ -110,6 +110,7 @@ pub struct Chart {
     pub(super) y_label: String,
     pub(super) x_range: Option<[f64; 2]>,
     pub(super) y_range: Option<[f64; 2]>,
+    pub(super) x_names: Vec<String>,
     pub(super) log_x: bool,
     pub(super) log_y: bool,
     pub(super) size: [f64; 2],
@@ -127,6 +128,7 @@ impl Chart {
             y_label: y_label.into(),
             x_range: None,
             y_range: None,
+            x_names: Vec::new(),
             log_x: false,
             log_y: false,
             size: [720.0, 420.0],
@@ -157,6 +159,13 @@ impl Chart {
     #[must_use]
     pub fn x_range(self, low: f64, high: f64) -> Self {
         Self { x_range: Some([low, high]), ..self }
+    }
+
+    /// Writes names instead of the numbers 1, 2, ... below the x axis, which has no label then.
+    #[must_use]
+    pub fn names(self, names: Vec<String>) -> Self {
+        let x_range = Some([0.5, names.len() as f64 + 0.5]);
+        Self { x_names: names, x_range, x_label: String::new(), ..self }
     }
 
     /// Makes the x axis logarithmic; values of 0 and below are skipped.

@@ -90,7 +90,7 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
 
     let right = x + width - PAD - 12.0;
     let mut bottom = y + height - PAD - SMALL - 8.0;
-    if !chart.x_label.is_empty() {
+    if !chart.x_label.is_empty() || !chart.x_names.is_empty() {
         bottom -= LABEL * 1.5;
     }
     let left = (x + left).min(right - 40.0);
@@ -161,10 +161,16 @@ impl Numbers<'_> {
     pub fn draw(self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4]) {
         let (bottom, [small, large]) = (top + height, self.sizes);
         let [x, y] = self.marks;
-        for (label, along) in x {
-            let half = font::width(&label, small, false) / 2.0;
+        // Wide names alternate between two rows; an axis with names has no label.
+        let room = x.windows(2).map(|pair| pair[1].1 - pair[0].1).fold(width, f64::min);
+        let widest = font::widest(x.iter().map(|(label, _)| label), small) * OTHER_FONTS;
+        let needs_rows = self.labels[0].is_empty() && widest > room;
+        for (index, (label, along)) in x.into_iter().enumerate() {
+            let (label, size) = font::fit(&label, small, false, if needs_rows { 2.0 * room } else { f64::INFINITY });
+            let half = font::width(&label, size, false) / 2.0;
             let x = (left + along).max(self.ends[0] + half).min(self.ends[1] - half);
-            canvas.text(Text::new([x, bottom + self.gaps[0] + small], small, Anchor::Middle, label).muted());
+            let below = self.gaps[0] + small + if needs_rows && index % 2 == 1 { 1.3 * small } else { 0.0 };
+            canvas.text(Text::new([x, bottom + below], size, Anchor::Middle, label).muted());
         }
         for (label, up) in y {
             let (label, size) = font::fit(&label, small, false, 160.0);

@@ -42,7 +42,7 @@ fn classes(terrain: &Terrain) -> u8 {
 pub(crate) fn entries(terrain: &Terrain, shades: Shades) -> Vec<Entry<'static>> {
     let land = match classes(terrain) {
         1 => Entry::square("open", shades[0]),
-        most => Entry::ramp(format!("cost of a cell, 1 to {most}"), most.min(9).into(), move |share| {
+        most => Entry::ramp(format!("cost 1 to {most}"), most.min(9).into(), move |share| {
             shades[0].towards(shades[1], share)
         }),
     };
@@ -170,7 +170,7 @@ impl<'a> Map<'a> {
     pub fn footer(&self, canvas: &mut Canvas, left: f64, right: f64) {
         let middle = self.area[1] + self.area[3] + FOOTER / 2.0 + 3.0;
         let [_, _, width, height] = self.area;
-        let longest = (width.max(height) * 0.25).min(200.0);
+        let longest = (width.max(height) * 0.25).min(120.0);
         let cell_m = self.terrain.cell_m;
         let from = scale_bar(canvas, [left, middle], self.cell / cell_m, longest, |length_m| {
             let exact = length_m / cell_m;

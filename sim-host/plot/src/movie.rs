@@ -7,7 +7,7 @@ use super::colour::WHITE;
 use super::flock::marks;
 use super::map::scale_bar;
 use super::raster;
-use super::story::{MOST_TRAILS, Story};
+use super::story::{MOST_TRAILS, Story, evenly};
 use super::view::View;
 use gif::{DisposalMethod, Encoder, Repeat};
 use palette::{CLEAR, Palette};
@@ -45,7 +45,8 @@ pub fn of_run(scenario: &Scenario, history: &History, look: Look) -> Result<Vec<
 }
 
 fn encode(scenario: &Scenario, history: &History, look: Look) -> std::io::Result<Vec<u8>> {
-    let chosen = choose(history.frames(), look.seconds.saturating_mul(MOST_PER_SECOND));
+    let most = look.seconds.saturating_mul(MOST_PER_SECOND) as usize;
+    let chosen: Vec<&Frame> = evenly(history.frames().len(), most).map(|at| &history.frames()[at]).collect();
     let mut frames = Frames::new(scenario, history, look.width)?;
     // The palette comes from some sample frames: drawing these twice costs less than storing them.
     let mut samples = Vec::new();
@@ -88,14 +89,6 @@ fn encode(scenario: &Scenario, history: &History, look: Look) -> std::io::Result
     }
     drop(encoder);
     Ok(bytes)
-}
-
-/// Evenly spaced frames, with the first and the last one.
-fn choose(frames: &[Frame], most: u32) -> Vec<&Frame> {
-    let last = frames.len().saturating_sub(1);
-    let count = frames.len().min(most.max(2) as usize);
-    let at = |number: usize| last * number / count.saturating_sub(1).max(1);
-    (0..count).map(|number| &frames[at(number)]).collect()
 }
 
 /// Left, top, width, height; at least one pixel.

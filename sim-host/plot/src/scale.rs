@@ -60,8 +60,13 @@ impl Axes {
         let x_range = x_range(chart, &extent);
         let x = |most: usize| axis(x_range, chart.log_x, most);
         let most = ((width / 50.0) as usize).clamp(2, 14);
-        let x = (2..=most).rev().map(x).find(|axis| axis.labels_fit(width)).unwrap_or_else(|| x(2));
-        let most = ((height / 36.0) as usize).clamp(2, 10);
+        let mut x = (2..=most).rev().map(x).find(|axis| axis.labels_fit(width)).unwrap_or_else(|| x(2));
+        if !chart.x_names.is_empty() {
+            let names = (1_u32..).zip(&chart.x_names);
+            x.ticks = names.map(|(at, name)| Tick { value: at.into(), label: name.clone() }).collect();
+        }
+        // Counts have no fractions.
+        let most = ((height / 36.0).min(extent.count) as usize).clamp(1, 10);
         let y = axis(y_range(chart, &extent, most), chart.log_y, most);
         Self { x, y, empty: extent.x.is_none() }
     }
@@ -72,14 +77,20 @@ struct Extent {
     y: Option<[f64; 2]>,
     marks: bool,
     bars: bool,
+    /// Greatest height of bars if all heights are whole numbers, else infinite.
+    count: f64,
 }
 
 impl Extent {
     fn new(chart: &Chart, looks: &[Look<'_>]) -> Self {
-        let mut this = Self { x: None, y: None, marks: false, bars: false };
+        let mut this = Self { x: None, y: None, marks: false, bars: false, count: f64::INFINITY };
         for Look { series, .. } in looks {
             this.marks |= [Kind::Points, Kind::Intervals].contains(&series.kind);
-            this.bars |= series.kind == Kind::Bars;
+            let is_bars = series.kind == Kind::Bars;
+            this.bars |= is_bars;
+            if is_bars && series.values.iter().all(|[_, height, ..]| libm::trunc(*height) == *height) {
+                this.count = series.values.iter().map(|[_, height, ..]| *height).fold(1.0, f64::max);
+            }
             for [x, y, low, high] in &series.values {
                 if series.kind == Kind::Bars {
                     this.add(chart, *x, *y);

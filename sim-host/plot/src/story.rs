@@ -3,6 +3,7 @@
 use super::canvas::{extent, longest};
 use super::colour::{self, Colour};
 use super::flock::{Body, Snapshot, corners, marks};
+use super::view::View;
 use staya_controller::robot::Mode;
 use staya_record::scene::{self, ColourBy, MODES};
 use staya_sim::nearby::Space;
@@ -13,6 +14,9 @@ use std::sync::Arc;
 /// Larger swarms have no past paths.
 pub const MOST_TRAILS: usize = 100;
 const MOMENTS: usize = 4;
+/// Width of a moment's picture, and what axes and title take of it, units.
+const SIDE: f64 = 430.0;
+const ABOVE: f64 = 72.0;
 const TRAIL_POINTS: usize = 400;
 /// Obstacles larger than this multiple of the extent of the robots are clipped.
 const LARGE: f64 = 2.0;
@@ -47,11 +51,12 @@ impl<'a> Story<'a> {
                 land: (has_land && !is_space).then(|| Arc::new(scenario.terrain.clone())),
                 is_space,
                 downwash: scene::downwash(scenario),
-                size: if is_space { [460.0, 420.0] } else { Snapshot::default().size },
                 ..Snapshot::default()
             },
         };
         this.stage.span_m = this.span();
+        let [width, height] = View::sides(is_space, this.stage.span());
+        this.stage.size = [SIDE, ABOVE + (SIDE - ABOVE) * (height / width).clamp(0.4, 1.0)];
         this.stage.fastest_mps = this.moments().flat_map(|at| this.velocities(at)).map(speed).fold(0.0, f64::max);
         this
     }
@@ -61,12 +66,9 @@ impl<'a> Story<'a> {
         format!("{} (seed {})", self.scenario.name, self.scenario.seed)
     }
 
-    /// Evenly spaced frames, with the first and the last one.
+    /// Frames of the run's pictures.
     pub fn moments(&self) -> impl Iterator<Item = usize> + use<> {
-        let (count, last) = (self.frames.len(), self.frames.len().saturating_sub(1));
-        let mut moments: Vec<_> = (0..MOMENTS).map(|moment| last * moment / (MOMENTS - 1)).collect();
-        moments.dedup();
-        moments.into_iter().filter(move |&at| at < count)
+        evenly(self.frames.len(), MOMENTS)
     }
 
     /// Goals, and bodies without velocities.
@@ -251,6 +253,12 @@ impl<'a> Story<'a> {
             })
             .collect()
     }
+}
+
+/// Indices of evenly spaced items, at most `most` and at least two, with the first and the last one.
+pub fn evenly(items: usize, most: usize) -> impl Iterator<Item = usize> {
+    let (last, count) = (items.saturating_sub(1), items.min(most.max(2)));
+    (0..count).map(move |number| last * number / (count - 1).max(1))
 }
 
 fn moved(from: [f64; 3], velocity_mps: [f64; 3], time_s: f64) -> [f64; 3] {

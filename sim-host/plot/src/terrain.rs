@@ -13,7 +13,7 @@ const PAD: f64 = 12.0;
 /// Height of the line above the map, units.
 const TOP: f64 = 34.0;
 /// Of the scale and the legend, units.
-const MIN_WIDTH: f64 = 400.0;
+const MIN_WIDTH: f64 = 480.0;
 
 /// Pixels per cell for a map of about `pixels` along the longer side; at least 1.
 #[must_use]
@@ -84,11 +84,13 @@ mod tests {
         let svg = dir.path().join("a.svg");
         draw(&land, 7, &svg).unwrap();
         let text = std::fs::read_to_string(&svg).unwrap();
-        for part in ["width=\"700\"", "cost of a cell, 1 to 9", "blocked", "100 × 1 cells of 1 m", " cells<"] {
+        for part in ["width=\"700\"", "cost 1 to 9", "blocked", "100 × 1 cells of 1 m", " cells<"] {
             assert!(text.contains(part), "{part}: {text}");
         }
-        let open = picture(&Terrain::from_cells(2, 2, vec![1; 4]).unwrap(), 5.0);
-        crate::tests::assert_texts_apart(&open);
+        land.cell_m = 92.5;
+        for cell in [0.5, 3.0, 20.0] {
+            crate::tests::assert_texts_apart(&picture(&land, cell));
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::colour::{self, Colour, INK, WHITE};
 use super::crowd::{self, Density};
 use super::layout::{Entry, OTHER_FONTS, heading, legend};
 use super::map::{self, Map};
+use super::story::evenly;
 use super::{font, raster, ticks};
 use staya_controller::grid::Cell;
 use staya_record::scene::ColourBy;
@@ -26,7 +27,7 @@ const MAX_POINTS: usize = 60_000;
 const SMALL_MAP: f64 = 100.0;
 const MOMENTS: usize = 8;
 const PAD: f64 = 16.0;
-const MIN_WIDTH: f64 = 460.0;
+const MIN_WIDTH: f64 = 480.0;
 const SMALL: f64 = 11.5;
 
 /// Points closer to the previous one are skipped; units.
@@ -282,25 +283,6 @@ fn moment_colour(share: f64) -> Colour {
     Colour::hex(0xb0_8c_f0).towards(Colour::hex(0x1f_06_4a), share)
 }
 
-fn moments(frames: &[Frame]) -> Vec<(&Frame, f64)> {
-    let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
-        return Vec::new();
-    };
-    let span = f64::from(last.tick.wrapping_sub(first.tick));
-    let mut chosen: Vec<(&Frame, f64)> = Vec::new();
-    for moment in 0..MOMENTS {
-        let share = moment as f64 / (MOMENTS - 1) as f64;
-        let since = |frame: &Frame| f64::from(frame.tick.wrapping_sub(first.tick));
-        let at = frames.partition_point(|frame| since(frame) < share * span);
-        if let Some(frame) = frames.get(at)
-            && chosen.last().is_none_or(|(other, _)| other.tick != frame.tick)
-        {
-            chosen.push((frame, share));
-        }
-    }
-    chosen
-}
-
 fn draw_formation(
     canvas: &mut Canvas,
     map: &Map<'_>,
@@ -308,7 +290,9 @@ fn draw_formation(
     edges: &[(u32, u32)],
     ways: &BTreeMap<u32, Way>,
 ) {
-    for (frame, share) in moments(frames) {
+    let moments: Vec<usize> = evenly(frames.len(), MOMENTS).collect();
+    for (number, &at) in moments.iter().enumerate() {
+        let (frame, share) = (&frames[at], number as f64 / (moments.len() - 1).max(1) as f64);
         let places: BTreeMap<u32, Point> = frame
             .samples
             .iter()

@@ -452,8 +452,8 @@ export class Controls {
         shades.addColorStop(1, css.landHigh);
         context.fillStyle = shades;
         context.fillRect(1, 2, 24, 10);
-      }, `land, easy to slow (${scene.land.classes})`);
-      key(area(css.wall), "wall");
+      }, `cost 1 to ${scene.land.classes}`);
+      key(area(css.wall), "blocked");
     }
     element("legend-body").replaceChildren(...keys);
     this.counts();

@@ -244,6 +244,15 @@ export class Plots {
         context.globalAlpha = 1;
       }
     });
+    if (greatest > 0) {
+      // The scale: the value at the upper edge; the lower edge is 0.
+      context.font = "9px system-ui, sans-serif";
+      context.textAlign = "right";
+      context.lineWidth = 2.5;
+      context.strokeStyle = colours.panel;
+      context.fillStyle = colours.muted;
+      for (const draw of ["strokeText", "fillText"]) context[draw](+greatest.toFixed(plot.digits), width, 9);
+    }
     context.strokeStyle = colours.cursor;
     context.lineWidth = 1;
     context.beginPath();

@@ -23,10 +23,11 @@ const MOST_STEMS: usize = 200;
 const MOST_CROSSES: usize = 200;
 /// More goals are not drawn.
 const MOST_GOALS: usize = 2000;
-/// Length of the fastest body's arrow outside its disc, units.
-const ARROW: f64 = 11.0;
-const DART: f64 = 4.2;
-const SMALL_DART: f64 = 2.2;
+/// Length of the fastest body's arrow outside its disc, units; it grows with the smallest radius.
+const ARROW: f64 = 4.0;
+/// Larger swarms have no arrows on discs with a smaller radius than that, units.
+const MOST_ARROWS: usize = 100;
+const LEAST_DISC: f64 = 2.6;
 
 pub fn ground(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
     let [low, high] = snapshot.span();
@@ -178,15 +179,15 @@ const fn least_radius(bodies: usize) -> f64 {
         0..=12 => 4.5,
         13..=100 => 3.0,
         101..=1000 => 2.0,
-        _ => 1.2,
+        1001..=MOST_DISCS => 1.2,
+        _ => 0.8,
     }
 }
 
-/// Bodies with a size are discs with arrows, others and those of crowds are darts; stationary ones of
-/// these are dots.
+/// Bodies with a size are discs with arrows, others and the small ones of many are darts; stationary
+/// ones of these are dots.
 fn bodies(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
     let (count, fastest) = (snapshot.bodies.len(), fastest(snapshot));
-    let is_crowd = count > MOST_DISCS;
     let mut seen: Vec<(Seen, f64, Option<&Body>)> = Vec::new();
     seen.extend(
         snapshot.bodies.iter().filter_map(|body| Some((view.see(body.position_m)?, body.radius_m, Some(body)))),
@@ -204,10 +205,11 @@ fn bodies(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
             stone(canvas, at, radius_m * scale);
             continue;
         };
-        let is_disc = radius_m > 0.0 && !is_crowd;
+        let is_small = radius_m * scale < LEAST_DISC && count > MOST_ARROWS;
+        let is_disc = radius_m > 0.0 && count <= MOST_DISCS && !is_small;
         let radius = if is_disc { (radius_m * scale).clamp(least_radius(count), 1e5) } else { 0.0 };
         let speed = speed(body.velocity_mps);
-        let length = (radius + ARROW * speed / fastest) / scale;
+        let length = (radius + (ARROW + 1.6 * least_radius(count)) * speed / fastest) / scale;
         let ahead = [0, 1, 2].map(|axis| body.position_m[axis] + body.velocity_mps[axis] / speed * length);
         // Without a speed this is not a number.
         let tip = view.at(ahead);
@@ -218,7 +220,7 @@ fn bodies(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
             disc(canvas, at, radius, body);
             arrows.extend(tip.into_iter().flat_map(|tip| arrow(at, tip)));
         } else if let Some(tip) = tip {
-            darts.push((dart(at, tip, if is_crowd { SMALL_DART } else { DART }), body.colour));
+            darts.push((dart(at, tip, 1.4 * least_radius(count)), body.colour));
         } else {
             dots.push((at, body.colour));
         }
@@ -226,8 +228,8 @@ fn bodies(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
     for (colour, lines) in by_colour(darts.into_iter()) {
         canvas.shapes.push(Shape::Path { lines, closed: true, stroke: None, fill: Some(colour) });
     }
-    self::dots(canvas, dots.into_iter(), if is_crowd { 1.6 } else { 4.0 });
-    canvas.lines(arrows, Stroke::new(INK, 1.0));
+    self::dots(canvas, dots.into_iter(), 2.0 * least_radius(count));
+    canvas.lines(arrows, Stroke::new(INK.with_alpha(190), 1.0));
 }
 
 fn disc(canvas: &mut Canvas, at: Point, radius: f64, body: &Body) {

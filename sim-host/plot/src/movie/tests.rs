@@ -80,10 +80,9 @@ fn what_has_changed_is_all_that_is_kept() {
 
 #[test]
 fn frames_are_chosen_evenly_with_first_and_last() {
-    let frames: Vec<_> = (0..101).map(|tick| Frame { tick, ..Frame::default() }).collect();
-    let ticks = |most| choose(&frames, most).iter().map(|frame| frame.tick).collect::<Vec<_>>();
-    assert_eq!(ticks(5), [0, 25, 50, 75, 100]);
-    assert_eq!(ticks(1), [0, 100]);
-    assert_eq!(ticks(1000).len(), 101);
-    assert!(choose(&[], 5).is_empty());
+    let of = |items, most| evenly(items, most).collect::<Vec<_>>();
+    assert_eq!(of(101, 5), [0, 25, 50, 75, 100]);
+    assert_eq!(of(101, 1), [0, 100]);
+    assert_eq!(of(101, 1000).len(), 101);
+    assert_eq!((of(0, 5), of(1, 5)), (vec![], vec![0]));
 }

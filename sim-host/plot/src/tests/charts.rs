@@ -1,4 +1,4 @@
-use super::{assert_readable, assert_texts_apart, assert_well_formed, decode};
+use super::{assert_readable, assert_texts_apart, assert_well_formed, decode, text_boxes};
 use crate::canvas::{Canvas, Pixels, Point, Shape};
 use crate::colour::{self, PALETTE};
 use crate::{Chart, Panels, Series, svg};
@@ -26,6 +26,31 @@ fn drawn(canvas: &Canvas) -> Vec<Point> {
         _ => Vec::new(),
     };
     canvas.shapes.iter().flat_map(points).collect()
+}
+
+#[test]
+fn names_stand_below_their_values_in_one_row_or_two() {
+    for (count, rows) in [(3, 1), (12, 2)] {
+        let names: Vec<String> = (0..count).map(|at| format!("scenario-{at}")).collect();
+        let marks = (1..=count).map(|at| [f64::from(at), 1.0]);
+        let canvas = Chart::new("Loss", "scenario", "loss").with(Series::points("", marks)).names(names.clone()).draw();
+        assert_texts_apart(&canvas);
+        let boxes = text_boxes(&canvas);
+        let mut bottoms: Vec<_> =
+            boxes.iter().filter(|(text, _)| names.contains(text)).map(|(_, area)| area[3]).collect();
+        assert_eq!(bottoms.len(), names.len());
+        bottoms.dedup();
+        assert_eq!(bottoms.len(), if rows == 1 { 1 } else { names.len() }, "{bottoms:?}");
+    }
+}
+
+#[test]
+fn counts_have_whole_numbers() {
+    let chart =
+        Chart::new("Arrivals", "ticks", "runs").with(Series::bars("runs", [[0.0, 10.0, 3.0], [10.0, 20.0, 1.0]]));
+    let texts = text_boxes(&chart.draw());
+    let shown = |text: &str| texts.iter().any(|(shown, _)| shown == text);
+    assert!(["1", "2", "3"].into_iter().all(shown) && !["0.5", "1.0"].into_iter().any(shown), "{texts:?}");
 }
 
 #[test]
