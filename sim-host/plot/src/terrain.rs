@@ -52,9 +52,10 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
 
 /// `cell`: units per cell.
 fn picture(terrain: &Terrain, cell: f64) -> Canvas {
-    let map = Map::of_scale(terrain, [PAD, TOP], cell).alone();
-    let [_, _, width, height] = map.area;
-    let right = PAD + width.max(MIN_WIDTH);
+    let room = (f64::from(terrain.width()) * cell).max(MIN_WIDTH);
+    let left = PAD + (room - f64::from(terrain.width()) * cell) / 2.0;
+    let map = Map::of_scale(terrain, [left, TOP], cell).alone();
+    let (height, right) = (map.area[3], PAD + room);
     let mut canvas = Canvas::new(right + PAD, TOP + height + FOOTER, size(terrain));
     canvas.text(Text::new([PAD, TOP - 12.0], 12.5, Anchor::Start, size(terrain)));
     map.ground(&mut canvas);
