@@ -82,7 +82,7 @@ def test_groups_have_the_colours_of_saved_pictures_at_once(view, look, tmp_path)
     page = look(view(GROUPS, "--paused").url, color_scheme="light")
     assert page.locator("#colour-by").input_value() == "group"
     groups = sorted(set(page.evaluate("staya.scene.robots.group")))
-    assert len(groups) == 3 == len(re.findall(r"group \d", page.inner_text("#legend")))
+    assert len(groups) == 3 == len(re.findall(r"group \d|no group", page.inner_text("#legend")))
     with page.expect_download() as download:
         page.locator("#save-svg").click()
     download.value.save_as(tmp_path / "groups.svg")
