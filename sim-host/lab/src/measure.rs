@@ -119,7 +119,7 @@ pub fn draw(
         let name = stem.file_name().unwrap_or_default().to_string_lossy();
         let own = stem.with_file_name(format!("{name}-{}", kind.name));
         if let Some(panels) = probe.charts(title) {
-            files.extend(panels.write(&own)?);
+            files.extend(panels.draw().write(&own)?);
         }
         if let Some(table) = probe.table() {
             files.push(write_table(&own, &table)?);

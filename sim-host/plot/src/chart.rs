@@ -10,8 +10,8 @@
 //!     .with(Series::reference("paper", [[10.0, 5.0], [40.0, 11.0]]));
 //! let times = Chart::new("Arrival times", "ticks", "runs")
 //!     .with(Series::bars("runs", [[0.0, 10.0, 3.0], [10.0, 20.0, 8.0]]));
-//! loss.write("out/loss".as_ref())?;
-//! Panels::new("Routes").with(loss).with(times).write("out/routes".as_ref())?;
+//! loss.draw().write("out/loss".as_ref())?;
+//! Panels::new("Routes").with(loss).with(times).draw().write("out/routes".as_ref())?;
 //! # Ok(()) }
 //! ```
 

@@ -51,9 +51,16 @@ pub fn sheet(
     (canvas, areas)
 }
 
+/// Writes a title at a point of its baseline.
 pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: f64) {
     let (title, size) = font::fit(title, size, true, room / OTHER_FONTS);
     canvas.text(Text { bold: true, ..Text::new(at, size, Anchor::Start, title) });
+}
+
+/// Writes a small line of text at a point of its baseline.
+pub fn note(canvas: &mut Canvas, note: &str, at: [f64; 2], room: f64) {
+    let (note, size) = font::fit(note, SMALL, false, room / OTHER_FONTS);
+    canvas.text(Text::new(at, size, Anchor::Start, note).muted());
 }
 
 pub fn left_margin(chart: &Chart) -> f64 {
@@ -78,14 +85,11 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     }
     if !chart.note.is_empty() {
         top += SMALL;
-        let (note, size) = font::fit(&chart.note, SMALL, false, (width - 2.0 * PAD) / OTHER_FONTS);
-        canvas.text(Text::new([x + PAD, top], size, Anchor::Start, note).muted());
+        note(canvas, &chart.note, [x + PAD, top], width - 2.0 * PAD);
         top += 7.0;
     }
     let named = looks.iter().filter(|look| !look.series.name.is_empty());
-    let entries: Vec<Entry<'_>> = named
-        .map(|look| Entry::new(SAMPLE, look.series.name.as_str(), move |canvas, at| sample(look, canvas, at)))
-        .collect();
+    let entries: Vec<Entry<'_>> = named.map(entry).collect();
     top = legend(canvas, &entries, [x + PAD, top], x + width - PAD, 16.0) + 8.0;
 
     let right = x + width - PAD - 12.0;
@@ -251,20 +255,20 @@ pub fn legend(canvas: &mut Canvas, entries: &[Entry<'_>], [left, mut top]: Point
     if entries.is_empty() { top } else { top + ROW }
 }
 
-fn sample(look: &Look<'_>, canvas: &mut Canvas, [x, y]: Point) {
-    let middle = [x + SAMPLE / 2.0, y];
-    let ends = vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]];
-    match look.series.kind {
-        Kind::Line => canvas.line(ends, look.stroke()),
-        Kind::Points | Kind::Intervals => {
-            if look.series.joined {
-                canvas.line(ends, look.joint());
+fn entry<'a>(look: &'a Look<'_>) -> Entry<'a> {
+    let (series, name) = (look.series, &look.series.name);
+    match series.kind {
+        Kind::Line => Entry::line(name, look.stroke()),
+        Kind::Bars => Entry::mark(name, |canvas, [x, y]| look.bar(canvas, [x - 7.0, y - 5.0, 14.0, 10.0])),
+        Kind::Points | Kind::Intervals => Entry::new(SAMPLE, name, |canvas, [x, y]| {
+            let middle = x + SAMPLE / 2.0;
+            if series.joined {
+                canvas.line(vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]], look.joint());
             }
-            if look.series.kind == Kind::Intervals {
-                canvas.lines(series::whisker(middle[0], y - 7.0, y + 7.0), look.whiskers());
+            if series.kind == Kind::Intervals {
+                canvas.lines(series::whisker(middle, y - 7.0, y + 7.0), look.whiskers());
             }
-            look.mark(canvas, middle);
-        }
-        Kind::Bars => look.bar(canvas, [x + 5.0, y - 5.0, SAMPLE - 10.0, 10.0]),
+            look.mark(canvas, [middle, y]);
+        }),
     }
 }

@@ -61,7 +61,7 @@ pub fn run_pictures(scenario: &Scenario, history: &History, out_dir: &Path) -> R
     if !history.frames().is_empty() {
         files.extend(motion_sheet(&of, scenario, history).draw().write(&out_dir.join("motion"))?);
     }
-    files.extend(run::packets(&of, history).write(&out_dir.join("packets"))?);
+    files.extend(run::packets(&of, history).draw().write(&out_dir.join("packets"))?);
     Ok(files)
 }
 

@@ -1,5 +1,6 @@
 //! Ranges of axes, and positions of values on them.
 
+use super::canvas::extent;
 use super::chart::{Chart, Kind};
 use super::font;
 use super::look::Look;
@@ -83,39 +84,28 @@ struct Extent {
 
 impl Extent {
     fn new(chart: &Chart, looks: &[Look<'_>]) -> Self {
-        let mut this = Self { x: None, y: None, marks: false, bars: false, count: f64::INFINITY };
-        for Look { series, .. } in looks {
-            this.marks |= [Kind::Points, Kind::Intervals].contains(&series.kind);
-            let is_bars = series.kind == Kind::Bars;
-            this.bars |= is_bars;
-            if is_bars && series.values.iter().all(|[_, height, ..]| libm::trunc(*height) == *height) {
-                this.count = series.values.iter().map(|[_, height, ..]| *height).fold(1.0, f64::max);
-            }
-            for [x, y, low, high] in &series.values {
-                if series.kind == Kind::Bars {
-                    this.add(chart, *x, *y);
-                    this.add(chart, *low, 0.0);
-                } else {
-                    [y, low, high].iter().for_each(|value| this.add(chart, *x, **value));
-                }
-            }
-        }
-        this
-    }
-
-    fn add(&mut self, chart: &Chart, x: f64, y: f64) {
         let is_shown = |value: f64, log: bool| value.is_finite() && (value > 0.0 || !log);
-        if !is_shown(x, chart.log_x) || !is_shown(y, chart.log_y) {
-            return;
-        }
-        let widen = |range: Option<[f64; 2]>, value: f64| match range {
-            Some([low, high]) => Some([low.min(value), high.max(value)]),
-            None => Some([value; 2]),
-        };
-        self.x = widen(self.x, x);
+        let points = looks.iter().flat_map(|look| look.series.values.iter().map(|value| (look.series.kind, *value)));
+        let points = points.flat_map(|(kind, [x, y, low, high])| match kind {
+            Kind::Bars => [[x, y], [low, 0.0], [x, y]],
+            _ => [[x, y], [x, low], [x, high]],
+        });
+        let shown = points.filter(|&[x, y]| is_shown(x, chart.log_x) && is_shown(y, chart.log_y));
+        let shown: Vec<[f64; 2]> = shown.collect();
         // Data outside the chosen x range do not stretch y.
-        if chosen(chart.x_range).is_none_or(|[low, high]| (low..=high).contains(&x)) {
-            self.y = widen(self.y, y);
+        let is_inside = |[x, _]: &[f64; 2]| chosen(chart.x_range).is_none_or(|[low, high]| (low..=high).contains(x));
+        let range =
+            |[low, high]: [[f64; 2]; 2], axis: usize| (low[axis] <= high[axis]).then(|| [low[axis], high[axis]]);
+        let kinds = || looks.iter().map(|look| look.series.kind);
+        let bars = looks.iter().filter(|look| look.series.kind == Kind::Bars).flat_map(|look| &look.series.values);
+        let heights: Vec<f64> = bars.map(|[_, height, ..]| *height).collect();
+        let is_count = !heights.is_empty() && heights.iter().all(|height| libm::trunc(*height) == *height);
+        Self {
+            x: range(extent(shown.iter().copied()), 0),
+            y: range(extent(shown.into_iter().filter(is_inside)), 1),
+            marks: kinds().any(|kind| [Kind::Points, Kind::Intervals].contains(&kind)),
+            bars: kinds().any(|kind| kind == Kind::Bars),
+            count: if is_count { heights.into_iter().fold(1.0, f64::max) } else { f64::INFINITY },
         }
     }
 }

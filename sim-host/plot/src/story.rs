@@ -57,7 +57,8 @@ impl<'a> Story<'a> {
         this.stage.span_m = this.span();
         let [width, height] = View::sides(is_space, this.stage.span());
         this.stage.size = [SIDE, ABOVE + (SIDE - ABOVE) * (height / width).clamp(0.4, 1.0)];
-        this.stage.fastest_mps = this.moments().flat_map(|at| this.velocities(at)).map(speed).fold(0.0, f64::max);
+        this.stage.fastest_mps =
+            this.moments().flat_map(|at| this.velocities(at)).map(marks::speed).fold(0.0, f64::max);
         this
     }
 
@@ -263,9 +264,4 @@ pub fn evenly(items: usize, most: usize) -> impl Iterator<Item = usize> {
 
 fn moved(from: [f64; 3], velocity_mps: [f64; 3], time_s: f64) -> [f64; 3] {
     [0, 1, 2].map(|axis| from[axis] + velocity_mps[axis] * time_s)
-}
-
-fn speed(velocity: [f64; 3]) -> f64 {
-    let speed = libm::sqrt(velocity.iter().map(|c| c * c).sum());
-    if speed.is_finite() { speed } else { 0.0 }
 }

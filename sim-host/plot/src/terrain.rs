@@ -53,7 +53,7 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
 /// `cell`: units per cell.
 fn picture(terrain: &Terrain, cell: f64) -> Canvas {
     let room = (f64::from(terrain.width()) * cell).max(MIN_WIDTH);
-    let left = PAD + (room - f64::from(terrain.width()) * cell) / 2.0;
+    let left = PAD + libm::round((room - f64::from(terrain.width()) * cell) / 2.0);
     let map = Map::of_scale(terrain, [left, TOP], cell).alone();
     let (height, right) = (map.area[3], PAD + room);
     let mut canvas = Canvas::new(right + PAD, TOP + height + FOOTER, size(terrain));
@@ -76,16 +76,17 @@ mod tests {
         land.set(staya_controller::grid::Cell::new(1, 0), BLOCKED);
         land.set(staya_controller::grid::Cell::new(2, 0), 9);
         let png = dir.path().join("a.png");
-        draw(&land, 7, &png).unwrap();
+        draw(&land, 10, &png).unwrap();
         let (width, _, rgb) = crate::tests::decode(&png);
         let row = ((TOP * raster::SCALE) as u32 + 3) * width;
         let black = |x: u32| rgb[3 * (row + x) as usize] < 3;
         let left = (PAD * raster::SCALE) as u32;
-        assert!((left + 7..left + 14).all(black) && ![left + 6, left + 14].map(black)[0]);
+        assert!((left + 10..left + 20).all(black));
+        assert_eq!([left + 9, left + 20].map(black), [false; 2]);
         let svg = dir.path().join("a.svg");
-        draw(&land, 7, &svg).unwrap();
+        draw(&land, 10, &svg).unwrap();
         let text = std::fs::read_to_string(&svg).unwrap();
-        for part in ["width=\"700\"", "cost 1 to 9", "blocked", "100 × 1 cells of 1 m", " cells<"] {
+        for part in ["width=\"1000\"", "cost 1 to 9", "blocked", "100 × 1 cells of 1 m", " cells<"] {
             assert!(text.contains(part), "{part}: {text}");
         }
         land.cell_m = 92.5;

@@ -1,12 +1,12 @@
 //! Trajectories: the map, a line per robot, and the formation from early to late.
 
-use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text, extent, longest};
+use super::canvas::{Canvas, Point, Shape, Stroke, extent, longest};
 use super::colour::{self, Colour, INK, WHITE};
 use super::crowd::{self, Density};
-use super::layout::{Entry, OTHER_FONTS, heading, legend};
+use super::layout::{Entry, heading, legend, note};
 use super::map::{self, Map};
 use super::story::evenly;
-use super::{font, raster, ticks};
+use super::{raster, ticks};
 use staya_controller::grid::Cell;
 use staya_record::scene::ColourBy;
 use staya_sim::record::{Frame, History};
@@ -28,7 +28,6 @@ const SMALL_MAP: f64 = 100.0;
 const MOMENTS: usize = 8;
 const PAD: f64 = 16.0;
 const MIN_WIDTH: f64 = 480.0;
-const SMALL: f64 = 11.5;
 
 /// Points closer to the previous one are skipped; units.
 const NEAR: f64 = 0.25;
@@ -61,8 +60,7 @@ pub fn draw(
     let room = width - 2.0 * PAD;
     let mut canvas = Canvas::new(width, 0.0, &title);
     heading(&mut canvas, &title, 16.0, [PAD, PAD + 15.0], room);
-    let (note, size) = font::fit(&note(terrain, &view, ways.len()), SMALL, false, room / OTHER_FONTS);
-    canvas.text(Text::new([PAD, PAD + 34.0], size, Anchor::Start, note).muted());
+    note(&mut canvas, &about(terrain, &view, ways.len()), [PAD, PAD + 34.0], room);
     let mut entries = match &crowd {
         Some(density) => crowd_entries(density, ways.len()),
         None => entries(&ways, with_edges),
@@ -115,7 +113,7 @@ fn title(of: &str, frames: &[Frame], robots: usize) -> String {
     format!("{of}: trajectories of {robots} robot{plural} over {seconds:.0} s")
 }
 
-fn note(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
+fn about(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
     let size = map::size(view);
     let all = (terrain.width(), terrain.height());
     let part = if (view.width(), view.height()) == all {

@@ -22,7 +22,6 @@ const NAMED = {
 const NUMBERED = ["blue", "vermillion", "green", "purple", "orange", "sky", "ink"];
 const CSS = {
   paper: "paper",
-  panel: "panel",
   grid: "grid",
   gridStrong: "grid-strong",
   gridOnLand: "grid-on-land",

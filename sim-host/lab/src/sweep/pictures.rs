@@ -85,7 +85,7 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
         Some(y) if y.is_parts || y.names.len() > CURVES || picture.x.numbers.is_none() => {
             picture.heat_map(y).draw().write(&stem)
         }
-        _ => picture.chart().write(&stem),
+        _ => picture.chart().draw().write(&stem),
     }
 }
 
@@ -120,7 +120,7 @@ pub fn histograms(plan: &Plan, merged: &Merged, folder: &Path) -> Result<Vec<Pat
             let title = format!("{}: {} of {} runs, {}", plan.name, worded(name), values.len(), at.join(", "));
             let chart = choice.has(&point).then(|| histogram(&title, name, &values)).flatten();
             if let Some(chart) = chart {
-                files.extend(chart.write(&folder.join(format!("{name}-{}", point.join("-"))))?);
+                files.extend(chart.draw().write(&folder.join(format!("{name}-{}", point.join("-"))))?);
             }
         }
     }

@@ -165,12 +165,13 @@ fn by_colour(items: impl Iterator<Item = (Vec<Point>, Colour)>) -> Vec<(Colour, 
 
 /// Speed of the longest arrow, m/s.
 pub fn fastest(snapshot: &Snapshot) -> f64 {
-    let speeds = snapshot.bodies.iter().map(|body| speed(body.velocity_mps));
-    speeds.filter(|speed| speed.is_finite()).fold(snapshot.fastest_mps.max(0.0), f64::max)
+    snapshot.bodies.iter().map(|body| speed(body.velocity_mps)).fold(snapshot.fastest_mps.max(0.0), f64::max)
 }
 
-fn speed(velocity: [f64; 3]) -> f64 {
-    libm::sqrt(velocity.iter().map(|c| c * c).sum())
+/// 0 if it is not finite.
+pub fn speed(velocity: [f64; 3]) -> f64 {
+    let speed = libm::sqrt(velocity.iter().map(|c| c * c).sum());
+    if speed.is_finite() { speed } else { 0.0 }
 }
 
 /// Smallest radius of a body, units.

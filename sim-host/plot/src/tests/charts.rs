@@ -57,12 +57,12 @@ fn counts_have_whole_numbers() {
 fn both_files_are_readable_and_reproducible() {
     let dir = tempfile::tempdir().unwrap();
     let stem = dir.path().join("new/loss-0.3");
-    let files = full().write(&stem).unwrap();
+    let files = full().draw().write(&stem).unwrap();
     let names: Vec<_> = files.iter().map(|path| path.file_name().unwrap()).collect();
     assert_eq!(names, ["loss-0.3.svg", "loss-0.3.png"]);
     assert_readable(&files);
     let bytes: Vec<_> = files.iter().map(|path| std::fs::read(path).unwrap()).collect();
-    full().write(&stem).unwrap();
+    full().draw().write(&stem).unwrap();
     for (path, before) in files.iter().zip(bytes) {
         assert_eq!(std::fs::read(path).unwrap(), before);
     }
@@ -73,7 +73,7 @@ fn both_files_are_readable_and_reproducible() {
 #[test]
 fn png_has_two_pixels_per_unit_on_white() {
     let dir = tempfile::tempdir().unwrap();
-    let files = full().size(300.0, 200.0).write(&dir.path().join("a")).unwrap();
+    let files = full().size(300.0, 200.0).draw().write(&dir.path().join("a")).unwrap();
     let (width, height, bytes) = decode(&files[1]);
     assert_eq!((width, height), (600, 400));
     assert_eq!(bytes[..3], [255; 3]);
@@ -100,10 +100,10 @@ fn an_unwritable_path_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("file");
     std::fs::write(&file, "").unwrap();
-    let error = full().write(&file.join("chart")).unwrap_err();
+    let error = full().draw().write(&file.join("chart")).unwrap_err();
     assert_eq!(error.path(), file);
     std::fs::create_dir(dir.path().join("b.png")).unwrap();
-    let error = full().write(&dir.path().join("b")).unwrap_err();
+    let error = full().draw().write(&dir.path().join("b")).unwrap_err();
     assert_eq!(error.path(), dir.path().join("b.png"));
     assert!(error.to_string().contains("b.png"), "{error}");
 }
