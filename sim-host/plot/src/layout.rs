@@ -188,12 +188,14 @@ impl Numbers<'_> {
     }
 }
 
+type Sample<'a> = dyn Fn(&mut Canvas, Point) + 'a;
+
 /// A sample with its name in a legend.
 pub struct Entry<'a> {
     wide: f64,
     name: String,
     /// Draws the sample to the right of a point.
-    draw: Box<dyn Fn(&mut Canvas, Point) + 'a>,
+    draw: Box<Sample<'a>>,
 }
 
 impl<'a> Entry<'a> {

@@ -213,8 +213,9 @@ impl<'a> Story<'a> {
         };
         let step_s = setup.group(robot).abilities.step_s;
         let goal = |(number, place)| {
-            let orders = setup.orders.iter().filter(|order| usize::from(order.index) == number && order.tick <= tick);
-            let (since, place) = orders.last().map_or((0, place), |order| (order.tick, &order.target));
+            let mut orders =
+                setup.orders.iter().filter(|order| usize::from(order.index) == number && order.tick <= tick);
+            let (since, place) = orders.next_back().map_or((0, place), |order| (order.tick, &order.target));
             moved(place.position_m, place.velocity_mps, f64::from(tick - since) * step_s)
         };
         start.places.iter().enumerate().map(goal).collect()

@@ -1,6 +1,6 @@
 //! Legend of a sheet: rows below its title, for the marks that it contains.
 
-use super::{Sheet, Snapshot, marks};
+use super::{Body, Sheet, Snapshot, marks};
 use crate::canvas::{Canvas, Stroke};
 use crate::colour::{Colour, INK, MUTED};
 use crate::layout::{self, Entry};
@@ -20,6 +20,10 @@ fn entries(sheet: &Sheet, keys: &[(String, Colour)]) -> Vec<Entry<'static>> {
     let any = |has: &dyn Fn(&Snapshot) -> bool| sheet.snapshots.iter().any(has);
     let fastest = sheet.snapshots.iter().map(marks::fastest).fold(0.0, f64::max);
     let mut entries: Vec<_> = keys.iter().map(|(name, colour)| Entry::disc(name, *colour)).collect();
+    if any(&|moment| moment.bodies.iter().any(|body| body.is_pale)) {
+        let body = Body { colour: MUTED, is_pale: true, ..Body::default() };
+        entries.push(Entry::mark("arrived", move |canvas, at| marks::disc(canvas, at, 5.0, &body)));
+    }
     if fastest > 0.0 {
         entries.push(Entry::new(ARROW, format!("velocity, longest {fastest:.2} m/s"), |canvas, [x, y]| {
             canvas.lines(marks::arrow([x, y], [x + ARROW, y]).to_vec(), Stroke::new(INK, 1.0));

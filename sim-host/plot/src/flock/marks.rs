@@ -233,7 +233,7 @@ fn bodies(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
     canvas.lines(arrows, Stroke::new(INK.with_alpha(190), 1.0));
 }
 
-fn disc(canvas: &mut Canvas, at: Point, radius: f64, body: &Body) {
+pub fn disc(canvas: &mut Canvas, at: Point, radius: f64, body: &Body) {
     let (fill, edge) =
         if body.is_pale { (body.colour.towards(WHITE, 0.55), body.colour) } else { (body.colour, WHITE) };
     canvas.circle(at, radius, Some(fill), Some(Stroke::new(edge, (radius * 0.2).clamp(0.5, 1.4))));

@@ -88,6 +88,8 @@ fn robots_and_goals_have_the_colour_of_their_group() {
     let moment = &sheet.snapshots[0];
     let count = |colour| moment.bodies.iter().filter(|body| body.colour == colour).count();
     let goals = |colour| moment.goals.iter().filter(|(_, goal)| *goal == colour).count();
+    let texts = super::text_boxes(&sheet.draw());
+    assert!(texts.iter().any(|(text, _)| text == "arrived"), "pale robots are explained");
     for (_, colour) in keys {
         assert!(count(colour) > 1 && (goals(colour) > 0 || goals(MUTED) > 0), "{colour:?}");
     }
