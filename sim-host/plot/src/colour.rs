@@ -1,4 +1,5 @@
-//! Colours that are distinct for all kinds of colour vision, equal to those of the page (`look.js`).
+//! Colours that are distinct for all kinds of colour vision, equal to those of the page
+//! (`look.js`).
 
 use staya_controller::robot::Mode;
 

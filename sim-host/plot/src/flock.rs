@@ -1,6 +1,7 @@
 //! Robots at one moment: positions, velocities, past paths, goals, obstacles.
 //!
-//! A [`Snapshot`] is one moment, from above or in perspective; a [`Sheet`] has several side by side.
+//! A [`Snapshot`] is one moment, from above or in perspective; a [`Sheet`] has several side by
+//! side.
 //!
 //! ```ignore
 //! use staya_plot::flock::{Body, Sheet, Snapshot};
@@ -68,7 +69,7 @@ pub struct Snapshot {
     pub goals: Vec<([f64; 3], Colour)>,
     /// Past paths, metres, with their colours. A point that is not finite makes a gap.
     pub trails: Vec<(Vec<[f64; 3]>, Colour)>,
-    /// Map in the background; only from above.
+    /// Map in the background, in space on the floor.
     pub land: Option<Arc<Terrain>>,
     /// Whether the picture is in perspective instead of from above.
     pub is_space: bool,
@@ -173,8 +174,8 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Creates a sheet without snapshots, with `columns` of them per row (at least 1). The title may
-    /// be empty.
+    /// Creates a sheet without snapshots, with `columns` of them per row (at least 1). The title
+    /// may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>, columns: usize) -> Self {
         Self { title: title.into(), columns: columns.max(1), snapshots: Vec::new(), keys: None }

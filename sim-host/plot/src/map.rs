@@ -26,7 +26,7 @@ pub const PALE: Shades = [WHITE, Colour::hex(0x93_93_93), Colour::hex(0x3a_3f_4a
 pub const DARK: Shades = [WHITE, Colour::hex(0x3c_3c_3c), Colour::hex(0x00_00_00)];
 
 /// Colour of an impassability from 1 to `classes`, or of a blocked cell.
-fn shade(impassability: u8, classes: u8, [easy, slowest, blocked]: Shades) -> Colour {
+pub(crate) fn shade(impassability: u8, classes: u8, [easy, slowest, blocked]: Shades) -> Colour {
     if impassability == BLOCKED {
         return blocked;
     }
@@ -34,7 +34,7 @@ fn shade(impassability: u8, classes: u8, [easy, slowest, blocked]: Shades) -> Co
 }
 
 /// Largest impassability of a terrain, at least 1.
-fn classes(terrain: &Terrain) -> u8 {
+pub(crate) fn classes(terrain: &Terrain) -> u8 {
     terrain.cells().iter().copied().max().unwrap_or(1).max(1)
 }
 

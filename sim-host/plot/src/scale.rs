@@ -145,12 +145,7 @@ fn log_range([low, high]: [f64; 2], room: bool) -> [f64; 2] {
 
 fn y_range(chart: &Chart, extent: &Extent, most: usize) -> [f64; 2] {
     if chart.log_y {
-        let wanted = chosen(chart.y_range);
-        let range = wanted.or(extent.y).unwrap_or([1.0, 10.0]);
-        return log_range(range, wanted.is_none());
-    }
-    if let Some([low, high]) = chosen(chart.y_range) {
-        return ticks::sound(low, high);
+        return log_range(extent.y.unwrap_or([1.0, 10.0]), true);
     }
     let [low, high] = extent.y.unwrap_or([0.0, 1.0]);
     // Zero is included if it takes at most half of the axis.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Larger swarms have no past paths.
 pub const MOST_TRAILS: usize = 100;
 const MOMENTS: usize = 4;
-/// Width of a moment's picture, and what axes and title take of it, units.
+/// Width of a moment's picture, and the room of its axes and title, units.
 const SIDE: f64 = 430.0;
 const ABOVE: f64 = 72.0;
 const TRAIL_POINTS: usize = 400;
@@ -48,7 +48,7 @@ impl<'a> Story<'a> {
             space: setup.map_or(Space::OPEN, |setup| setup.space()),
             stage: Snapshot {
                 solids: setup.map_or([].into(), |setup| setup.solids.clone().into()),
-                land: (has_land && !is_space).then(|| Arc::new(scenario.terrain.clone())),
+                land: has_land.then(|| Arc::new(scenario.terrain.clone())),
                 is_space,
                 downwash: scene::downwash(scenario),
                 ..Snapshot::default()
@@ -178,8 +178,8 @@ impl<'a> Story<'a> {
         keys
     }
 
-    /// By the scenario: goals of the start, or of the last order; on cells the target cells. Goals of
-    /// several robots with different colours are grey.
+    /// By the scenario: goals of the start, or of the last order; on cells the target cells. Goals
+    /// of several robots with different colours are grey.
     fn goals(&self, frame: &Frame) -> Vec<([f64; 3], Colour)> {
         let samples = frame.samples.iter().enumerate();
         let mut goals: Vec<([f64; 3], Colour)> = samples
@@ -221,7 +221,8 @@ impl<'a> Story<'a> {
         start.places.iter().enumerate().map(goal).collect()
     }
 
-    /// Around the robots at all times, their goals, and the obstacles nearby; `None` without robots.
+    /// Around the robots at all times, their goals, and the obstacles nearby; `None` without
+    /// robots.
     fn span(&self) -> Option<[[f64; 3]; 2]> {
         if let Some([width, height]) = self.scenario.torus_m() {
             return Some([[0.0; 3], [width, height, 0.0]]);
@@ -257,7 +258,8 @@ impl<'a> Story<'a> {
     }
 }
 
-/// Indices of evenly spaced items, at most `most` and at least two, with the first and the last one.
+/// Indices of evenly spaced items, at most `most` and at least two, with the first and the last
+/// one.
 pub fn evenly(items: usize, most: usize) -> impl Iterator<Item = usize> {
     let (last, count) = (items.saturating_sub(1), items.min(most.max(2)));
     (0..count).map(move |number| last * number / (count - 1).max(1))

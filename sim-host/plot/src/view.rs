@@ -79,8 +79,8 @@ impl View {
         extent((0..8).filter_map(|number| Some(self.see(corner(number))?.at)))
     }
 
-    /// `None` if the point is not finite, behind the camera, or so far outside that SVG readers lose
-    /// precision.
+    /// `None` if the point is not finite, behind the camera, or so far outside that SVG readers
+    /// lose precision.
     pub fn see(&self, place_m: [f64; 3]) -> Option<Seen> {
         let from: [f64; 3] = std::array::from_fn(|axis| place_m[axis] - self.target[axis]);
         let [right, up, near] = self.axes.map(|axis| axis.iter().zip(from).map(|(a, b)| a * b).sum::<f64>());

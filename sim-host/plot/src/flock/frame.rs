@@ -43,7 +43,8 @@ impl Frame {
             [x + PAD, y + height - PAD]
         } else {
             let bottom = y + height - PAD - LABEL - SMALL - 14.0;
-            // The left margin depends on the widest number, which depends little on the exact ticks.
+            // The left margin depends on the widest number, which depends little on the exact
+            // ticks.
             let rough = ticks::linear(span[0][1], span[1][1], marks_in(bottom - top, 34.0));
             let widest = font::widest(rough.iter().map(|tick| &tick.label), SMALL);
             [x + PAD + LABEL * 1.5 + widest * layout::OTHER_FONTS + 6.0, bottom]

@@ -28,13 +28,18 @@ const ARROW: f64 = 4.0;
 /// Larger swarms have no arrows on discs with a smaller radius than that, units.
 const MOST_ARROWS: usize = 100;
 const LEAST_DISC: f64 = 2.6;
+/// A larger part of a map is not drawn on the floor.
+const MOST_FLOOR_CELLS: usize = 40_000;
 
 pub fn ground(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
     let [low, high] = snapshot.span();
+    match &snapshot.land {
+        Some(land) if snapshot.is_space => draw_land_on_floor(land, [low, high], view, canvas),
+        Some(land) => draw_land(land, [low, high], view, canvas),
+        None => {}
+    }
     if snapshot.is_space {
         draw_floor([low, high], view, canvas);
-    } else if let Some(land) = &snapshot.land {
-        draw_land(land, [low, high], view, canvas);
     }
     for solid in &*snapshot.solids {
         match *solid {
@@ -53,20 +58,46 @@ pub fn ground(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
     }
 }
 
-/// Draws the part of the map that is visible.
-fn draw_land(land: &Terrain, [low, high]: Span, view: &View, canvas: &mut Canvas) {
-    let margin = high[0] - low[0] + high[1] - low[1];
-    let cells = |metres: f64, axis: usize| (metres - land.origin_m[axis]) / land.cell_m;
-    let part = map::part(
-        land,
-        [0, 1].map(|axis| cells(low[axis] - margin, axis)),
-        [0, 1].map(|axis| cells(high[axis] + margin, axis)),
-    );
-    let Some(part) = part else { return };
+/// Draws the part of the map that is visible from above.
+fn draw_land(land: &Terrain, span: Span, view: &View, canvas: &mut Canvas) {
+    // Beside the span, the plot may show as much again.
+    let Some(part) = part(land, span, 1.0) else { return };
     let [west, south] = part.origin_m;
     if let Some(corner) = view.at([west, south + f64::from(part.height()) * part.cell_m, 0.0]) {
         Map::of_scale(&part, corner, part.cell_m * view.scale).ground(canvas);
     }
+}
+
+/// Draws the map on the floor of a span: neighbouring cells of one class in a row as one area.
+fn draw_land_on_floor(land: &Terrain, span: Span, view: &View, canvas: &mut Canvas) {
+    let part = part(land, span, 0.0).filter(|part| part.cells().len() <= MOST_FLOOR_CELLS);
+    let Some(part) = part else { return };
+    let (most, mut areas) = (map::classes(land), Vec::new());
+    let [west, south] = part.origin_m;
+    for (row, cells) in (0_u32..).zip(part.cells().chunks(part.width().into())) {
+        let mut x = 0;
+        for run in cells.chunk_by(|a, b| a == b) {
+            let ends = [x, x + run.len()].map(|x| west + x as f64 * part.cell_m);
+            let [bottom, top] = [row, row + 1].map(|y| south + f64::from(y) * part.cell_m);
+            let corners = [[ends[0], bottom], [ends[1], bottom], [ends[1], top], [ends[0], top]];
+            let corners: Option<Vec<Point>> = corners.iter().map(|&[x, y]| view.at([x, y, span[0][2]])).collect();
+            areas.extend(corners.map(|corners| (corners, map::shade(run[0], most, map::PALE))));
+            x += run.len();
+        }
+    }
+    for (colour, lines) in by_colour(areas.into_iter()) {
+        // The outline closes the seams between areas.
+        let stroke = Some(Stroke::new(colour, 0.4));
+        canvas.shapes.push(Shape::Path { lines, closed: true, stroke, fill: Some(colour) });
+    }
+}
+
+/// The part of a map in a span and `beside` it, in multiples of the span.
+fn part(land: &Terrain, [low, high]: Span, beside: f64) -> Option<Terrain> {
+    let margin = beside * (high[0] - low[0] + high[1] - low[1]);
+    let cells = |metres: f64, axis: usize| (metres - land.origin_m[axis]) / land.cell_m;
+    let ends = [(low, -margin), (high, margin)].map(|(at, by)| [0, 1].map(|axis| cells(at[axis] + by, axis)));
+    map::part(land, ends[0], ends[1])
 }
 
 /// Ticks of x, y and z around a span in space.
@@ -185,8 +216,8 @@ const fn least_radius(bodies: usize) -> f64 {
     }
 }
 
-/// Bodies with a size are discs with arrows, others and the small ones of many are darts; stationary
-/// ones of these are dots.
+/// Bodies with a size are discs with arrows, others and the small ones of many are darts;
+/// stationary ones of these are dots.
 fn bodies(snapshot: &Snapshot, view: &View, canvas: &mut Canvas) {
     let (count, fastest) = (snapshot.bodies.len(), fastest(snapshot));
     let mut seen: Vec<(Seen, f64, Option<&Body>)> = Vec::new();

@@ -10,7 +10,7 @@ fn full() -> Chart {
         .note("mean and 95 % interval")
         .with(Series::bars("counts", xs().map(|x| [x, x + 1.0, x * 2.0])))
         .with(Series::intervals("natural", xs().map(|x| [x, x, x - 0.5, x + 0.5])).joined())
-        .with(Series::line("fit", xs().map(|x| [x, x * 1.1])).like_previous().dashed())
+        .with(Series::line("fit", xs().map(|x| [x, x * 1.1])).dashed())
         .with(Series::points("runs", xs().map(|x| [x, 9.0 - x])))
         .with(Series::reference("paper", [[1.0, 4.0], [6.0, 4.0]]))
 }
@@ -176,11 +176,8 @@ fn a_single_value_is_in_the_middle_and_zero_at_the_bottom() {
 #[test]
 fn valid_ranges_apply_and_invalid_ones_are_ignored() {
     let chart = || Chart::new("", "", "").with(Series::line("", [[0.0, 0.0], [10.0, 100.0]]));
-    assert!(svg_of(&chart().y_range(0.0, 50.0)).contains(">50<"));
-    assert!(!svg_of(&chart().y_range(0.0, 50.0)).contains(">100<"));
     assert!(!svg_of(&chart().x_range(0.0, 5.0).with(Series::points("", [[1.0, 3.0]]))).contains(">100<"));
     for (low, high) in [(5.0, 5.0), (7.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
-        assert_eq!(svg_of(&chart().y_range(low, high)), svg_of(&chart()), "{low} {high}");
         assert_eq!(svg_of(&chart().x_range(low, high)), svg_of(&chart()), "{low} {high}");
     }
 }
@@ -208,14 +205,14 @@ fn many_points_are_thinned_but_extremes_stay() {
 }
 
 #[test]
-fn series_have_different_colours_and_fits_the_colour_of_their_data() {
+fn series_have_different_colours_and_references_are_grey() {
     let text = svg_of(&full());
     let hex = |index: usize| {
         let [r, g, b] = PALETTE[index].rgb;
         format!("#{r:02x}{g:02x}{b:02x}")
     };
-    assert!(text.contains(&format!("stroke=\"{}\" stroke-width=\"1.8\" stroke-dasharray", hex(1))));
-    assert!(!text.contains(&hex(3)), "the reference is grey and takes no colour");
+    assert!((0..4).all(|index| text.contains(&hex(index))));
+    assert!(!text.contains(&hex(4)), "the reference is grey and takes no colour");
     for (i, a) in PALETTE.iter().enumerate() {
         assert!(PALETTE[i + 1..].iter().all(|b| a.rgb != b.rgb));
     }

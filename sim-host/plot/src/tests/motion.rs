@@ -75,6 +75,19 @@ fn flyers_are_drawn_in_perspective_with_their_columns_of_air() {
 }
 
 #[test]
+fn flyers_over_land_have_it_on_the_floor() {
+    let text =
+        TEXT.replace("max_speed_mps = 1\n", "max_speed_mps = 1\nsafety = \"fly\"\n").replace("[8, 2]", "[8, 2, 4]");
+    let sheet = sheet(&text);
+    assert!(sheet.snapshots[0].is_space);
+    let canvas = sheet.draw();
+    let grey = crate::map::shade(3, 3, crate::map::PALE);
+    let areas =
+        canvas.shapes.iter().filter(|shape| matches!(shape, Shape::Path { fill: Some(fill), .. } if *fill == grey));
+    assert_eq!(areas.count(), sheet.snapshots.len() + 1, "in each moment and in the legend");
+}
+
+#[test]
 fn robots_and_goals_have_the_colour_of_their_group() {
     let sheet = sheet(&scenario("groups.toml"));
     let keys: Vec<_> = sheet.keys.clone().unwrap();
