@@ -103,6 +103,19 @@ def test_columns_of_blown_air_are_below_flyers_only(view, look, tmp_path):
         assert (tmp_path / "flyers.svg").read_text().count('fill-opacity="0.25"') == columns
 
 
+def test_small_plots_have_a_scale(view, look):
+    page = look(view(SWAP, "--paused").url)
+    seek(page, 60)
+    # The numbers are to the right of the time line, which ends far after tick 60.
+    upper = """() => [...document.querySelectorAll("#plots canvas")].some(canvas => {
+        if (!canvas.clientWidth) return false;
+        const wide = Math.round((24 * canvas.width) / canvas.clientWidth);
+        const { data } = canvas.getContext("2d").getImageData(canvas.width - wide, 0, wide, canvas.height / 2);
+        return data.some(part => part > 0);
+    })"""
+    until(lambda: page.evaluate(upper), what="the greatest value")
+
+
 def test_many_robots_are_larger_than_their_goals(view, look):
     page = look(view("scenarios/scale-plane-small.toml", "--paused").url)
     assert page.evaluate("staya.marks.goal < staya.marks.robot && staya.marks.robot < 4")

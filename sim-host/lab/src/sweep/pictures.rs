@@ -263,11 +263,12 @@ impl Picture<'_> {
 
     fn note(&self, what: &str) -> String {
         let others = self.plan.axes().filter(|axis| *axis != self.plot.over && Some(*axis) != self.plot.and.as_deref());
-        let others: Vec<_> = others.collect();
+        let others: Vec<String> = others.map(worded).collect();
         let over =
             if others.is_empty() { String::new() } else { format!(", over all values of {}", others.join(", ")) };
         let points = self.x.names.len() * self.y.as_ref().map_or(1, |levels| levels.names.len());
         let runs = match self.rows.len() {
+            0 => return "no run has this figure".to_owned(),
             runs if runs == points => return format!("one run each{over}"),
             runs if runs.is_multiple_of(points) => format!("{} runs each", runs / points),
             runs => format!("{runs} runs in all"),
