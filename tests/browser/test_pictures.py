@@ -82,7 +82,7 @@ def test_groups_have_the_colours_of_saved_pictures_at_once(view, look, tmp_path)
     page = look(view(GROUPS, "--paused").url, color_scheme="light")
     assert page.locator("#colour-by").input_value() == "group"
     groups = sorted(set(page.evaluate("staya.scene.robots.group")))
-    assert len(groups) == 3 == len(re.findall(r"group \d", page.inner_text("#legend")))
+    assert len(groups) == 3 == len(re.findall(r"group \d|no group", page.inner_text("#legend")))
     with page.expect_download() as download:
         page.locator("#save-svg").click()
     download.value.save_as(tmp_path / "groups.svg")
@@ -91,6 +91,29 @@ def test_groups_have_the_colours_of_saved_pictures_at_once(view, look, tmp_path)
     palette = ["#" + colour.replace("_", "") for colour in re.findall(r"0x([0-9a-f_]+)", plots)]
     robots = [text.count(f'fill="{palette[group]}"') for group in groups]
     assert robots == [page.evaluate("staya.scene.robots.group").count(group) for group in groups]
+
+
+def test_columns_of_blown_air_are_below_flyers_only(view, look, tmp_path):
+    for scenario, columns in [("scenarios/downwash.toml", 16), (SWAP, 0)]:
+        page = look(view(scenario, "--paused").url, color_scheme="light")
+        assert ("column of blown air" in page.inner_text("#legend")) == (columns > 0)
+        with page.expect_download() as download:
+            page.locator("#save-svg").click()
+        download.value.save_as(tmp_path / "flyers.svg")
+        assert (tmp_path / "flyers.svg").read_text().count('fill-opacity="0.25"') == columns
+
+
+def test_small_plots_have_a_scale(view, look):
+    page = look(view(SWAP, "--paused").url)
+    seek(page, 60)
+    # The numbers are to the right of the time line, which ends far after tick 60.
+    upper = """() => [...document.querySelectorAll("#plots canvas")].some(canvas => {
+        if (!canvas.clientWidth) return false;
+        const wide = Math.round((24 * canvas.width) / canvas.clientWidth);
+        const { data } = canvas.getContext("2d").getImageData(canvas.width - wide, 0, wide, canvas.height / 2);
+        return data.some(part => part > 0);
+    })"""
+    until(lambda: page.evaluate(upper), what="the greatest value")
 
 
 def test_many_robots_are_larger_than_their_goals(view, look):

@@ -66,6 +66,10 @@ const SIDE: f64 = 300.0;
 const GAP: f64 = 34.0;
 const TOP: f64 = 62.0;
 const PIXELS: u32 = 360;
+/// Value of the full colour, a share of the longer axis.
+const LEVEL: f64 = 0.35;
+/// Values between two lines, a share of the one of the full colour.
+const LINES: f64 = 0.25;
 
 /// Draws values and border, first-order distance, and M-images. Of three variables, it shows the
 /// layer nearest to `slice`, by default the middle one.
@@ -132,7 +136,7 @@ impl Sheet<'_> {
         let columns = 3.min(pictures);
         let rows = pictures.div_ceil(columns);
         let mut canvas =
-            Canvas::new(GAP + (width + GAP) * columns as f64, TOP + (height + GAP + 16.0) * rows as f64 + 10.0, title);
+            Canvas::new(GAP + (width + GAP) * columns as f64, TOP + (height + GAP + 16.0) * rows as f64 + 22.0, title);
         canvas.text(Text { bold: true, ..Text::new([GAP, 28.0], 16.0, Anchor::Start, title) });
         let place = |index: usize| {
             let (row, column) = (index / columns, index % columns);
@@ -144,9 +148,9 @@ impl Sheet<'_> {
             let along = |pixel: u32, pixels: u32| (f64::from(pixel) + 0.5) / f64::from(pixels);
             let pixels = pixels(across, up, |column, row| {
                 let (x, y) = (west + (east - west) * along(column, across), south + (north - south) * along(row, up));
-                field(x, y).map_or([0; 4], |value| contoured(value, 0.35 * longest, 1.2 / scale))
+                field(x, y).map_or([0; 4], |value| contoured(value, LEVEL * longest, 1.2 / scale))
             });
-            show(&mut canvas, place(index), name, pixels);
+            self.show(&mut canvas, place(index), name, pixels);
         }
         let [nx, ny] = self.nodes;
         for (component, name) in self.names.iter().enumerate() {
@@ -154,23 +158,35 @@ impl Sheet<'_> {
                 let node = (self.node)(column as u16, row as u16);
                 node.and_then(|node| node.get(component).copied()).map_or([0, 0, 0, 255], grey)
             });
-            show(&mut canvas, place(self.fields.len() + component), name, pixels);
+            self.show(&mut canvas, place(self.fields.len() + component), name, pixels);
         }
+        let lines = rounded(LINES * LEVEL * longest);
+        let note = format!("orange: above 0, blue: below, black: 0, a line each {lines}; cos: black -1, white 1");
+        canvas.text(Text::new([GAP, canvas.height - 12.0], 11.5, Anchor::Start, note).muted());
         canvas
+    }
+
+    /// Draws an image with its name above and the ends of both axes below.
+    fn show(&self, canvas: &mut Canvas, area: [f64; 4], name: &str, pixels: Pixels) {
+        let [left, top, width, height] = area;
+        let middle = left + width / 2.0;
+        canvas.text(Text::new([middle, top - 7.0], 12.5, Anchor::Middle, name));
+        canvas.shapes.push(Shape::Image { area, pixels });
+        canvas.rectangle([left, top, width, height], None, Some(Stroke::new(MUTED, 1.0)));
+        let [x, y] = self.extent.map(|[low, high]| format!("{} to {}", rounded(low), rounded(high)));
+        canvas.text(Text::new([middle, top + height + 16.0], 11.0, Anchor::Middle, format!("x {x}, y {y}")).muted());
     }
 }
 
-fn show(canvas: &mut Canvas, area: [f64; 4], name: &str, pixels: Pixels) {
-    let [left, top, width, height] = area;
-    canvas.text(Text::new([left + width / 2.0, top - 7.0], 12.5, Anchor::Middle, name));
-    canvas.shapes.push(Shape::Image { area, pixels });
-    canvas.rectangle([left, top, width, height], None, Some(Stroke::new(MUTED, 1.0)));
+/// With four digits.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.3e}").parse().unwrap_or(number)
 }
 
 fn contoured(value: f64, most: f64, line: f64) -> [u8; 4] {
     let colour = if value > 0.0 { PALETTE[1] } else { PALETTE[0] };
     let fill = WHITE.towards(colour, Scalar::min(value.abs() / most, 1.0) * 0.7 + 0.08);
-    let step = 0.25 * most;
+    let step = LINES * most;
     let off = (value - step * libm::round(value / step)).abs();
     let Colour { rgb: [red, green, blue], .. } = if value.abs() < line {
         INK

@@ -113,16 +113,13 @@ pub fn draw(
     let Some(history) = outcome.ok().and_then(|_| recorder.finish().ok()) else { return Ok(Vec::new()) };
     let mut files = match &scenario.plane {
         None => run_pictures(scenario, &history, stem)?,
-        Some(setup) => {
-            let land = setup.has_terrain.then_some(&scenario.terrain);
-            motion_sheet(title, setup, land, &history).draw().write(stem)?
-        }
+        Some(_) => motion_sheet(title, scenario, &history).draw().write(stem)?,
     };
     for (kind, probe) in &probes {
         let name = stem.file_name().unwrap_or_default().to_string_lossy();
         let own = stem.with_file_name(format!("{name}-{}", kind.name));
         if let Some(panels) = probe.charts(title) {
-            files.extend(panels.write(&own)?);
+            files.extend(panels.draw().write(&own)?);
         }
         if let Some(table) = probe.table() {
             files.push(write_table(&own, &table)?);

@@ -9,15 +9,15 @@ use super::font;
 /// A point of the picture, x and y.
 pub type Point = [f64; 2];
 
-/// Lowest and highest x and y of points, infinite without any; NaN does not count.
-pub(crate) fn extent(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
-    points.into_iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], at| {
-        [[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]]
+/// Lowest and highest coordinates of points, infinite without any; NaN does not count.
+pub(crate) fn extent<const N: usize>(points: impl IntoIterator<Item = [f64; N]>) -> [[f64; N]; 2] {
+    points.into_iter().fold([[f64::INFINITY; N], [f64::NEG_INFINITY; N]], |[low, high], at| {
+        [std::array::from_fn(|axis| low[axis].min(at[axis])), std::array::from_fn(|axis| high[axis].max(at[axis]))]
     })
 }
 
-/// The longer side of an extent.
-pub(crate) fn longest([low, high]: [Point; 2]) -> f64 {
+/// The longer horizontal side of an extent.
+pub(crate) fn longest<const N: usize>([low, high]: [[f64; N]; 2]) -> f64 {
     (high[0] - low[0]).max(high[1] - low[1])
 }
 

@@ -10,8 +10,8 @@
 //!     .with(Series::reference("paper", [[10.0, 5.0], [40.0, 11.0]]));
 //! let times = Chart::new("Arrival times", "ticks", "runs")
 //!     .with(Series::bars("runs", [[0.0, 10.0, 3.0], [10.0, 20.0, 8.0]]));
-//! loss.write("out/loss".as_ref())?;
-//! Panels::new("Routes").with(loss).with(times).write("out/routes".as_ref())?;
+//! loss.draw().write("out/loss".as_ref())?;
+//! Panels::new("Routes").with(loss).with(times).draw().write("out/routes".as_ref())?;
 //! # Ok(()) }
 //! ```
 
@@ -37,13 +37,12 @@ pub struct Series {
     pub(super) colour: Option<Colour>,
     pub(super) dashed: bool,
     pub(super) joined: bool,
-    pub(super) like_previous: bool,
 }
 
 impl Series {
     fn new(name: impl Into<String>, kind: Kind, values: impl Iterator<Item = [f64; 4]>) -> Self {
         let (name, values) = (name.into(), values.collect());
-        Self { name, kind, values, colour: None, dashed: false, joined: false, like_previous: false }
+        Self { name, kind, values, colour: None, dashed: false, joined: false }
     }
 
     /// A line through `[x, y]` in this order. An empty name keeps it out of the legend.
@@ -93,12 +92,6 @@ impl Series {
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour: Some(colour), ..self }
     }
-
-    /// Uses the colour of the previous series, for example for a fit.
-    #[must_use]
-    pub fn like_previous(self) -> Self {
-        Self { like_previous: true, ..self }
-    }
 }
 
 /// A chart with linear or logarithmic axes, ticks at multiples of 1, 2 or 5 x 10^k, and a legend.
@@ -109,7 +102,7 @@ pub struct Chart {
     pub(super) x_label: String,
     pub(super) y_label: String,
     pub(super) x_range: Option<[f64; 2]>,
-    pub(super) y_range: Option<[f64; 2]>,
+    pub(super) x_names: Vec<String>,
     pub(super) log_x: bool,
     pub(super) log_y: bool,
     pub(super) size: [f64; 2],
@@ -126,7 +119,7 @@ impl Chart {
             x_label: x_label.into(),
             y_label: y_label.into(),
             x_range: None,
-            y_range: None,
+            x_names: Vec::new(),
             log_x: false,
             log_y: false,
             size: [720.0, 420.0],
@@ -147,16 +140,17 @@ impl Chart {
         Self { note: note.into(), ..self }
     }
 
-    /// Sets the range of y. By default it fits all data, and 0 if that takes little space.
-    #[must_use]
-    pub fn y_range(self, low: f64, high: f64) -> Self {
-        Self { y_range: Some([low, high]), ..self }
-    }
-
     /// Sets the range of x. By default it fits all data.
     #[must_use]
     pub fn x_range(self, low: f64, high: f64) -> Self {
         Self { x_range: Some([low, high]), ..self }
+    }
+
+    /// Writes names instead of the numbers 1, 2, ... below the x axis, which has no label then.
+    #[must_use]
+    pub fn names(self, names: Vec<String>) -> Self {
+        let x_range = Some([0.5, names.len() as f64 + 0.5]);
+        Self { x_names: names, x_range, x_label: String::new(), ..self }
     }
 
     /// Makes the x axis logarithmic; values of 0 and below are skipped.

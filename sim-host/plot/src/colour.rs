@@ -1,4 +1,7 @@
-//! Colours that are distinct for all kinds of colour vision.
+//! Colours that are distinct for all kinds of colour vision, equal to those of the page
+//! (`look.js`).
+
+use staya_controller::robot::Mode;
 
 /// A colour; `alpha` 255 is opaque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,11 +54,29 @@ pub const PALETTE: [Colour; 7] = [
     Colour::hex(0xcc_79_a7),
     Colour::hex(0xe6_9f_00),
     Colour::hex(0x56_b4_e9),
-    Colour::hex(0x00_00_00),
+    Colour::hex(0x17_1a_21),
 ];
 
-/// Number of distinct colours of [`nth`].
-pub const COUNT: usize = 3 * PALETTE.len();
+/// Colour of the robots in a group; 0 for those in no group.
+#[must_use]
+pub fn of_group(group: u32) -> Colour {
+    PALETTE[group as usize % PALETTE.len()]
+}
+
+/// Colour of robots in a mode.
+#[must_use]
+pub const fn of_mode(mode: Mode) -> Colour {
+    let [blue, vermillion, green, purple, orange, sky, _] = PALETTE;
+    match mode {
+        Mode::Idle => Colour::hex(0x7d_85_90),
+        Mode::Forming => sky,
+        Mode::Cruise => blue,
+        Mode::Hold => orange,
+        Mode::Arrived => green,
+        Mode::Fault => vermillion,
+        Mode::Passive => purple,
+    }
+}
 
 /// Colour of item `index`: the palette, darker and paler variants, then from the start again.
 #[must_use]

@@ -2,7 +2,7 @@
 
 use super::canvas::Pixels;
 use super::colour::Colour;
-use super::map::{Map, Raster};
+use super::map::Map;
 
 /// Colours for one visit, half of the most visits (logarithmic scale), and the most visits.
 const RAMP: [Colour; 3] = [
@@ -16,27 +16,36 @@ pub fn colour(share: f64) -> Colour {
 }
 
 pub struct Density {
-    raster: Raster,
+    columns: u32,
+    rows: u32,
     entered: Vec<u32>,
 }
 
 impl Density {
     /// Paths are straight between two positions, in metres. O(squares + visited squares).
     pub fn new<'a>(map: &Map<'_>, ways: impl Iterator<Item = &'a [[f64; 2]]>) -> Self {
-        let raster = map.raster();
-        let mut entered = vec![0_u32; raster.columns as usize * raster.rows as usize];
+        let [columns, rows, _] = map.raster();
+        let mut this = Self { columns, rows, entered: vec![0; columns as usize * rows as usize] };
         for way in ways {
             let mut squares = way.iter().map(|position| map.square(*position));
             let Some(mut at) = squares.next() else {
                 continue;
             };
-            enter(&raster, &mut entered, at);
+            this.enter(at);
             for to in squares {
-                walk(at, to, |square| enter(&raster, &mut entered, square));
+                walk(at, to, |square| this.enter(square));
                 at = to;
             }
         }
-        Self { raster, entered }
+        this
+    }
+
+    fn enter(&mut self, [x, y]: [i64; 2]) {
+        let (columns, rows) = (i64::from(self.columns), i64::from(self.rows));
+        if (0..columns).contains(&x) && (0..rows).contains(&y) {
+            let count = &mut self.entered[(y * columns + x) as usize];
+            *count = count.saturating_add(1);
+        }
     }
 
     pub fn most(&self) -> u32 {
@@ -48,19 +57,11 @@ impl Density {
         let pixel = |count: &u32| match count {
             0 => [0; 4],
             count => {
-                let Colour { rgb, alpha } = colour(libm::log10(f64::from(*count)) / decades);
-                [rgb[0], rgb[1], rgb[2], alpha]
+                let Colour { rgb: [red, green, blue], alpha } = colour(libm::log10(f64::from(*count)) / decades);
+                [red, green, blue, alpha]
             }
         };
-        Pixels { width: self.raster.columns, height: self.raster.rows, rgba: self.entered.iter().map(pixel).collect() }
-    }
-}
-
-fn enter(raster: &Raster, entered: &mut [u32], [x, y]: [i64; 2]) {
-    let (columns, rows) = (i64::from(raster.columns), i64::from(raster.rows));
-    if (0..columns).contains(&x) && (0..rows).contains(&y) {
-        let count = &mut entered[(y * columns + x) as usize];
-        *count = count.saturating_add(1);
+        Pixels { width: self.columns, height: self.rows, rgba: self.entered.iter().map(pixel).collect() }
     }
 }
 

@@ -1,60 +1,54 @@
-//! Robots in the plane at one moment: positions, velocities, neighbours, obstacles.
+//! Robots at one moment: positions, velocities, past paths, goals, obstacles.
 //!
-//! A [`Snapshot`] is one moment, a [`Sheet`] has several side by side. [`View`] projects three
-//! dimensions to two.
+//! A [`Snapshot`] is one moment, from above or in perspective; a [`Sheet`] has several side by
+//! side.
 //!
 //! ```ignore
-//! use staya_plot::flock::{Obstacle, Sheet, Snapshot};
+//! use staya_plot::flock::{Body, Sheet, Snapshot};
 //! # fn main() -> Result<(), staya_sim::record::Error> {
-//! let moment = Snapshot {
-//!     title: "t = 0 s".into(),
-//!     positions_m: vec![[0.0, 0.0], [7.0, 0.0]],
-//!     velocities_mps: vec![[1.0, 0.0], [0.0, 1.0]],
-//!     radius_m: 0.5,
-//!     edges_within_m: Some(8.4),
-//!     obstacles: vec![Obstacle::Disc { centre_m: [20.0, 3.0], radius_m: 4.0 }],
-//!     ..Snapshot::default()
-//! };
+//! let body = |x| Body { position_m: [x, 0.0, 0.0], radius_m: 0.5, ..Body::default() };
+//! let bodies = vec![body(0.0), body(7.0)];
+//! let moment = Snapshot { title: "t = 0 s".into(), bodies, ..Snapshot::default() };
 //! Sheet::new("Two robots", 2).with(moment.clone()).with(moment).draw().write("out/two".as_ref())?;
 //! # Ok(()) }
 //! ```
 
 mod frame;
 mod legend;
-mod marks;
+pub(crate) mod marks;
 
 use super::canvas::{Canvas, extent, longest};
+use super::colour::{self, Colour};
 use super::layout;
+use super::view::Span;
 use frame::Frame;
 use staya_sim::terrain::Terrain;
+use staya_sim::world::plane::Solid;
 use std::sync::Arc;
 
 /// Larger swarms are drawn as dots or small darts.
 pub const MOST_DISCS: usize = 3000;
 
-/// An obstacle.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Obstacle {
-    /// An area with these corners, metres.
-    Polygon(Vec<[f64; 2]>),
-    /// A disc.
-    Disc {
-        /// Centre, metres.
-        centre_m: [f64; 2],
-        /// Radius, metres.
-        radius_m: f64,
-    },
-    /// A wall without thickness between two points, metres.
-    Segment([[f64; 2]; 2]),
+/// A robot or another body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Position, metres. With a coordinate that is not finite, the body is skipped.
+    pub position_m: [f64; 3],
+    /// Velocity, m/s. Stationary bodies have no arrow.
+    pub velocity_mps: [f64; 3],
+    /// Radius, metres; bodies without a size are darts.
+    pub radius_m: f64,
+    /// Its colour.
+    pub colour: Colour,
+    /// Whether only its edge has the full colour.
+    pub is_pale: bool,
 }
 
-impl Obstacle {
-    pub(crate) fn corners(&self) -> Vec<[f64; 2]> {
-        match self {
-            Self::Polygon(corners) => corners.clone(),
-            Self::Disc { centre_m: [x, y], radius_m: r } => vec![[x - r, y - r], [x + r, y + r]],
-            Self::Segment(ends) => ends.to_vec(),
-        }
+impl Default for Body {
+    /// A stationary body without a size.
+    fn default() -> Self {
+        let still = [0.0; 3];
+        Self { position_m: still, velocity_mps: still, radius_m: 0.0, colour: colour::nth(0), is_pale: false }
     }
 }
 
@@ -63,30 +57,26 @@ impl Obstacle {
 pub struct Snapshot {
     /// Title above the picture.
     pub title: String,
-    /// Positions, metres.
-    pub positions_m: Vec<[f64; 2]>,
-    /// Velocities, m/s: one per robot, or none. Stationary robots have no arrow.
-    pub velocities_mps: Vec<[f64; 2]>,
+    /// Robots and other bodies.
+    pub bodies: Vec<Body>,
     /// Speed of the longest arrow, m/s; at least that of the fastest robot.
     pub fastest_mps: f64,
-    /// Radius of the bodies, metres. Bodies too small to see become darts.
-    pub radius_m: f64,
-    /// Radii of the bodies if they differ, metres: one per robot, or none.
-    pub radii_m: Vec<f64>,
-    /// Index of each robot's colour in the palette; 0 for robots without an entry.
-    pub groups: Vec<usize>,
-    /// Robots up to this distance are joined by a line, metres.
-    pub edges_within_m: Option<f64>,
+    /// Pairs of bodies that are joined by a line, by index.
+    pub edges: Vec<[usize; 2]>,
     /// Obstacles.
-    pub obstacles: Vec<Obstacle>,
-    /// Goals, metres.
-    pub goals_m: Vec<[f64; 2]>,
-    /// Past paths, metres, one line per robot.
-    pub trails_m: Vec<Vec<[f64; 2]>>,
-    /// Map in the background.
+    pub solids: Arc<[Solid]>,
+    /// Goals, metres, with their colours.
+    pub goals: Vec<([f64; 3], Colour)>,
+    /// Past paths, metres, with their colours. A point that is not finite makes a gap.
+    pub trails: Vec<(Vec<[f64; 3]>, Colour)>,
+    /// Map in the background, in space on the floor.
     pub land: Option<Arc<Terrain>>,
-    /// Visible range: smallest and largest x and y; `None` for everything.
-    pub view_m: Option<[[f64; 2]; 2]>,
+    /// Whether the picture is in perspective instead of from above.
+    pub is_space: bool,
+    /// Ratio of height to width of the columns of blown air below bodies in space; 1 for none.
+    pub downwash: f64,
+    /// Visible range; `None` for everything.
+    pub span_m: Option<[[f64; 3]; 2]>,
     /// Labels of the axes.
     pub labels: [String; 2],
     /// Width and height in units.
@@ -94,22 +84,20 @@ pub struct Snapshot {
 }
 
 impl Default for Snapshot {
-    /// An empty snapshot of 420 x 400 units.
+    /// An empty snapshot of 420 x 400 units, from above.
     fn default() -> Self {
         Self {
             title: String::new(),
-            positions_m: Vec::new(),
-            velocities_mps: Vec::new(),
+            bodies: Vec::new(),
             fastest_mps: 0.0,
-            radius_m: 0.0,
-            radii_m: Vec::new(),
-            groups: Vec::new(),
-            edges_within_m: None,
-            obstacles: Vec::new(),
-            goals_m: Vec::new(),
-            trails_m: Vec::new(),
+            edges: Vec::new(),
+            solids: [].into(),
+            goals: Vec::new(),
+            trails: Vec::new(),
             land: None,
-            view_m: None,
+            is_space: false,
+            downwash: 1.0,
+            span_m: None,
             labels: ["x (m)".into(), "y (m)".into()],
             size: [420.0, 400.0],
         }
@@ -130,7 +118,9 @@ impl Snapshot {
         let frame = Frame::new(self, area);
         frame.draw(self, canvas);
         canvas.clip(Some(frame.plot));
-        marks::draw(self, &frame, canvas);
+        marks::ground(self, &frame.view, canvas);
+        marks::trails(self, &frame.view, canvas);
+        marks::moving(self, &frame.view, canvas);
         canvas.clip(None);
     }
 
@@ -138,52 +128,38 @@ impl Snapshot {
         self.size.map(|side| if side.is_nan() { 400.0 } else { side.clamp(160.0, 4000.0) })
     }
 
-    /// Smallest and largest x and y of all items.
-    fn extent(&self) -> Option<[[f64; 2]; 2]> {
-        let disc = |[x, y]: [f64; 2], r: f64| [[x - r, y - r], [x + r, y + r]];
-        let robots = self.positions_m.iter().flat_map(|&at| disc(at, self.radius_m.max(0.0)));
-        let obstacles = self.obstacles.iter().flat_map(Obstacle::corners);
-        let trails = self.trails_m.iter().flatten().copied();
-        let all = robots.chain(obstacles).chain(self.goals_m.iter().copied()).chain(trails);
-        let extent = extent(all.filter(|at| at.iter().all(|c| c.is_finite())));
-        longest(extent).is_finite().then_some(extent)
-    }
-}
-
-/// Projection of space to the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum View {
-    /// From above: x and y.
-    Plan,
-    /// From the south: x and height.
-    Elevation,
-    /// From the south-east and above: east right, north to the upper right (half length), height
-    /// up.
-    Oblique,
-}
-
-impl View {
-    /// Projects a position or a velocity.
-    #[must_use]
-    pub fn of(self, [x, y, z]: [f64; 3]) -> [f64; 2] {
-        match self {
-            Self::Plan => [x, y],
-            Self::Elevation => [x, z],
-            Self::Oblique => {
-                let north = y * 0.5 * std::f64::consts::FRAC_1_SQRT_2;
-                [x + north, z + north]
+    /// Visible range: as chosen, or around all items; in space from the floor up.
+    pub(crate) fn span(&self) -> Span {
+        let is_range =
+            |[low, high]: &Span| (0..2).all(|axis| low[axis] < high[axis] && (high[axis] - low[axis]).is_finite());
+        let mut span = self.span_m.filter(is_range).unwrap_or_else(|| {
+            let balls = self.bodies.iter().map(|body| (body.position_m, body.radius_m.max(0.0)));
+            let bodies = balls.flat_map(|(at, r)| [at.map(|c| c - r), at.map(|c| c + r)]);
+            let solids = self.solids.iter().flat_map(corners);
+            let goals = self.goals.iter().map(|(goal, _)| *goal);
+            let all = bodies.chain(solids).chain(goals).chain(self.trails.iter().flat_map(|(way, _)| way.clone()));
+            let [low, high] = extent(all.filter(|at| at.iter().all(|c| c.is_finite())));
+            if !longest([low, high]).is_finite() {
+                return [[0.0; 3], [1.0; 3]];
             }
+            let margin = (longest([low, high]) * 0.04).max(1e-6);
+            [low.map(|c| c - margin), high.map(|c| c + margin)]
+        });
+        if self.is_space {
+            // The ground, unless it is far below all bodies.
+            let wide = longest(span);
+            span[0][2] = if span[0][2] > 2.0 * wide { span[0][2] } else { span[0][2].min(0.0) };
         }
+        span
     }
+}
 
-    /// Labels of the axes.
-    #[must_use]
-    pub fn labels(self) -> [String; 2] {
-        match self {
-            Self::Plan => ["x (m)".into(), "y (m)".into()],
-            Self::Elevation => ["x (m)".into(), "z (m)".into()],
-            Self::Oblique => ["x + 0.35 y (m)".into(), "z + 0.35 y (m)".into()],
-        }
+/// Corners around an obstacle; the border of a half-space has none.
+pub(crate) fn corners(solid: &Solid) -> Vec<[f64; 3]> {
+    match *solid {
+        Solid::Wall(ends) => ends.map(|[x, y]| [x, y, 0.0]).into(),
+        Solid::Ball { center_m, radius_m } => vec![center_m.map(|c| c - radius_m), center_m.map(|c| c + radius_m)],
+        Solid::Plane { .. } => Vec::new(),
     }
 }
 
@@ -192,15 +168,17 @@ impl View {
 pub struct Sheet {
     title: String,
     columns: usize,
-    has_legend: bool,
     pub(crate) snapshots: Vec<Snapshot>,
+    /// Colours of the bodies in the legend; `None` without a legend.
+    pub(crate) keys: Option<Vec<(String, Colour)>>,
 }
 
 impl Sheet {
-    /// Creates an empty sheet with `columns` (at least 1) per row; the title may be empty.
+    /// Creates a sheet without snapshots, with `columns` of them per row (at least 1). The title
+    /// may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>, columns: usize) -> Self {
-        Self { title: title.into(), columns: columns.max(1), has_legend: false, snapshots: Vec::new() }
+        Self { title: title.into(), columns: columns.max(1), snapshots: Vec::new(), keys: None }
     }
 
     /// Adds a snapshot with its own size.
@@ -210,18 +188,19 @@ impl Sheet {
         self
     }
 
-    /// Adds a legend below the title.
+    /// Adds a legend below the title, with the meaning of the bodies' colours.
     #[must_use]
-    pub fn with_legend(self) -> Self {
-        Self { has_legend: true, ..self }
+    pub fn with_legend(self, keys: Vec<(String, Colour)>) -> Self {
+        Self { keys: Some(keys), ..self }
     }
 
     /// Draws all snapshots as one picture.
     #[must_use]
     pub fn draw(&self) -> Canvas {
         let sizes: Vec<[f64; 2]> = self.snapshots.iter().map(Snapshot::sound_size).collect();
-        let (mut canvas, areas) = layout::sheet(&self.title, self.columns, &sizes, |canvas, top| {
-            if self.has_legend { legend::draw(self, canvas, top + 8.0) } else { top }
+        let (mut canvas, areas) = layout::sheet(&self.title, self.columns, &sizes, |canvas, top| match &self.keys {
+            Some(keys) => legend::draw(self, keys, canvas, top + 8.0),
+            None => top,
         });
         for (snapshot, area) in self.snapshots.iter().zip(areas) {
             snapshot.draw_into(&mut canvas, area);

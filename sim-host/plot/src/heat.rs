@@ -4,7 +4,7 @@ use super::canvas::{Anchor, Canvas, Stroke, Text, extent};
 use super::colour::{INK, WHITE};
 use super::crowd::colour;
 use super::font;
-use super::layout::{Numbers, heading};
+use super::layout::{Numbers, heading, note};
 use super::ticks;
 
 const PAD: f64 = 14.0;
@@ -41,9 +41,8 @@ impl HeatMap {
         let [width, height] = [720.0, 480.0];
         let mut canvas = Canvas::new(width, height, &self.title);
         heading(&mut canvas, &self.title, TITLE, [PAD, PAD + TITLE], width - 2.0 * PAD);
-        let (note, size) = font::fit(&self.note, SMALL, false, width - 2.0 * PAD);
         let below = PAD + TITLE + 7.0 + SMALL;
-        canvas.text(Text::new([PAD, below], size, Anchor::Start, note).muted());
+        note(&mut canvas, &self.note, [PAD, below], width - 2.0 * PAD);
         let found = self.values.iter().flatten().filter(|value| value.is_finite());
         let [[low, _], [high, _]] = extent(found.map(|value| [*value; 2]));
         if low > high {

@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Point, Stroke, Text};
 use super::chart::{Chart, Kind};
-use super::colour::{GRID, INK};
+use super::colour::{Colour, GRID, INK, MUTED};
 use super::font;
 use super::look::{Look, looks};
 use super::scale::Axes;
@@ -15,6 +15,7 @@ const SMALL: f64 = 11.5;
 const PAD: f64 = 14.0;
 const ROW: f64 = 19.0;
 const SAMPLE: f64 = 24.0;
+const RAMP: f64 = 45.0;
 /// Largest ratio of the width of an SVG reader's sans-serif font to the measured one.
 pub const OTHER_FONTS: f64 = 1.15;
 
@@ -50,9 +51,16 @@ pub fn sheet(
     (canvas, areas)
 }
 
+/// Writes a title at a point of its baseline.
 pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: f64) {
     let (title, size) = font::fit(title, size, true, room / OTHER_FONTS);
     canvas.text(Text { bold: true, ..Text::new(at, size, Anchor::Start, title) });
+}
+
+/// Writes a small line of text at a point of its baseline.
+pub fn note(canvas: &mut Canvas, note: &str, at: [f64; 2], room: f64) {
+    let (note, size) = font::fit(note, SMALL, false, room / OTHER_FONTS);
+    canvas.text(Text::new(at, size, Anchor::Start, note).muted());
 }
 
 pub fn left_margin(chart: &Chart) -> f64 {
@@ -77,19 +85,16 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     }
     if !chart.note.is_empty() {
         top += SMALL;
-        let (note, size) = font::fit(&chart.note, SMALL, false, (width - 2.0 * PAD) / OTHER_FONTS);
-        canvas.text(Text::new([x + PAD, top], size, Anchor::Start, note).muted());
+        note(canvas, &chart.note, [x + PAD, top], width - 2.0 * PAD);
         top += 7.0;
     }
     let named = looks.iter().filter(|look| !look.series.name.is_empty());
-    let entries: Vec<Entry<'_>> = named
-        .map(|look| Entry::new(SAMPLE, look.series.name.as_str(), move |canvas, at| sample(look, canvas, at)))
-        .collect();
+    let entries: Vec<Entry<'_>> = named.map(entry).collect();
     top = legend(canvas, &entries, [x + PAD, top], x + width - PAD, 16.0) + 8.0;
 
     let right = x + width - PAD - 12.0;
     let mut bottom = y + height - PAD - SMALL - 8.0;
-    if !chart.x_label.is_empty() {
+    if !chart.x_label.is_empty() || !chart.x_names.is_empty() {
         bottom -= LABEL * 1.5;
     }
     let left = (x + left).min(right - 40.0);
@@ -160,10 +165,16 @@ impl Numbers<'_> {
     pub fn draw(self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4]) {
         let (bottom, [small, large]) = (top + height, self.sizes);
         let [x, y] = self.marks;
-        for (label, along) in x {
-            let half = font::width(&label, small, false) / 2.0;
+        // Wide names alternate between two rows; an axis with names has no label.
+        let room = x.windows(2).map(|pair| pair[1].1 - pair[0].1).fold(width, f64::min);
+        let widest = font::widest(x.iter().map(|(label, _)| label), small) * OTHER_FONTS;
+        let needs_rows = self.labels[0].is_empty() && widest > room;
+        for (index, (label, along)) in x.into_iter().enumerate() {
+            let (label, size) = font::fit(&label, small, false, if needs_rows { 2.0 * room } else { f64::INFINITY });
+            let half = font::width(&label, size, false) / 2.0;
             let x = (left + along).max(self.ends[0] + half).min(self.ends[1] - half);
-            canvas.text(Text::new([x, bottom + self.gaps[0] + small], small, Anchor::Middle, label).muted());
+            let below = self.gaps[0] + small + if needs_rows && index % 2 == 1 { 1.3 * small } else { 0.0 };
+            canvas.text(Text::new([x, bottom + below], size, Anchor::Middle, label).muted());
         }
         for (label, up) in y {
             let (label, size) = font::fit(&label, small, false, 160.0);
@@ -177,7 +188,6 @@ impl Numbers<'_> {
     }
 }
 
-/// Draws a sample of a legend.
 type Sample<'a> = dyn Fn(&mut Canvas, Point) + 'a;
 
 /// A sample with its name in a legend.
@@ -192,6 +202,40 @@ impl<'a> Entry<'a> {
     /// Creates an entry with a sample of that width.
     pub fn new(wide: f64, name: impl Into<String>, draw: impl Fn(&mut Canvas, Point) + 'a) -> Self {
         Self { wide, name: name.into(), draw: Box::new(draw) }
+    }
+
+    /// Creates an entry for a line.
+    pub fn line(name: impl Into<String>, stroke: Stroke) -> Self {
+        Self::new(SAMPLE, name, move |canvas, [x, y]| canvas.line(vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]], stroke))
+    }
+
+    /// Creates an entry for a mark, which is drawn around a point.
+    pub fn mark(name: impl Into<String>, draw: impl Fn(&mut Canvas, Point) + 'a) -> Self {
+        Self::new(14.0, name, move |canvas, [x, y]| draw(canvas, [x + 7.0, y]))
+    }
+
+    /// Creates an entry for a body or place of a colour.
+    pub fn disc(name: impl Into<String>, colour: Colour) -> Self {
+        Self::mark(name, move |canvas, at| canvas.circle(at, 5.0, Some(colour), None))
+    }
+
+    /// Creates an entry for areas of a colour.
+    pub fn square(name: impl Into<String>, colour: Colour) -> Self {
+        Self::mark(name, move |canvas, [x, y]| {
+            canvas.rectangle([x - 6.0, y - 6.0, 12.0, 12.0], Some(colour), Some(Stroke::new(MUTED, 0.8)));
+        })
+    }
+
+    /// Creates an entry for colours at shares from 0 to 1.
+    pub fn ramp(name: impl Into<String>, steps: u32, colour: impl Fn(f64) -> Colour + 'a) -> Self {
+        Self::new(RAMP, name, move |canvas, [x, y]| {
+            let wide = RAMP / f64::from(steps);
+            for step in 0..steps {
+                let colour = colour(f64::from(step) / f64::from(steps - 1));
+                canvas.rectangle([x + f64::from(step) * wide, y - 5.0, wide, 10.0], Some(colour), None);
+            }
+            canvas.rectangle([x, y - 5.0, RAMP, 10.0], None, Some(Stroke::new(MUTED, 0.8)));
+        })
     }
 }
 
@@ -213,20 +257,20 @@ pub fn legend(canvas: &mut Canvas, entries: &[Entry<'_>], [left, mut top]: Point
     if entries.is_empty() { top } else { top + ROW }
 }
 
-fn sample(look: &Look<'_>, canvas: &mut Canvas, [x, y]: Point) {
-    let middle = [x + SAMPLE / 2.0, y];
-    let ends = vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]];
-    match look.series.kind {
-        Kind::Line => canvas.line(ends, look.stroke()),
-        Kind::Points | Kind::Intervals => {
-            if look.series.joined {
-                canvas.line(ends, look.joint());
+fn entry<'a>(look: &'a Look<'_>) -> Entry<'a> {
+    let (series, name) = (look.series, &look.series.name);
+    match series.kind {
+        Kind::Line => Entry::line(name, look.stroke()),
+        Kind::Bars => Entry::mark(name, |canvas, [x, y]| look.bar(canvas, [x - 7.0, y - 5.0, 14.0, 10.0])),
+        Kind::Points | Kind::Intervals => Entry::new(SAMPLE, name, |canvas, [x, y]| {
+            let middle = x + SAMPLE / 2.0;
+            if series.joined {
+                canvas.line(vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]], look.joint());
             }
-            if look.series.kind == Kind::Intervals {
-                canvas.lines(series::whisker(middle[0], y - 7.0, y + 7.0), look.whiskers());
+            if series.kind == Kind::Intervals {
+                canvas.lines(series::whisker(middle, y - 7.0, y + 7.0), look.whiskers());
             }
-            look.mark(canvas, middle);
-        }
-        Kind::Bars => look.bar(canvas, [x + 5.0, y - 5.0, SAMPLE - 10.0, 10.0]),
+            look.mark(canvas, [middle, y]);
+        }),
     }
 }

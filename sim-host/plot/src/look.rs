@@ -16,31 +16,19 @@ pub struct Look<'a> {
     pub shift: f64,
 }
 
-pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
+pub fn looks<'a>(chart: &'a Chart) -> Vec<Look<'a>> {
     let is_interval = |series: &Series| series.kind == Kind::Intervals;
-    let is_own = |series: &Series| is_interval(series) && !series.like_previous;
-    let own = chart.series.iter().filter(|s| is_own(s)).count();
+    let intervals = chart.series.iter().filter(|series| is_interval(series)).count();
     let (mut used, mut shown) = (0, 0);
-    let mut looks: Vec<Look<'_>> = Vec::with_capacity(chart.series.len());
-    for series in &chart.series {
-        let previous = looks.last().filter(|_| series.like_previous);
-        let (colour, mark) = match (series.colour, previous) {
-            (Some(colour), _) => (colour, used),
-            (None, Some(previous)) => (previous.colour, previous.mark),
-            (None, None) => {
-                used += 1;
-                (colour::nth(used - 1), used - 1)
-            }
-        };
-        let mut shift = 0.0;
-        if is_interval(series) {
-            // A series in the style of the previous one has its offset too.
-            shown += usize::from(is_own(series));
-            shift = (shown as f64 - (own + 1) as f64 / 2.0) * DODGE;
-        }
-        looks.push(Look { series, colour, mark, shift });
-    }
-    looks
+    let look = |series: &'a Series| {
+        let (colour, mark) = (series.colour.unwrap_or_else(|| colour::nth(used)), used);
+        used += usize::from(series.colour.is_none());
+        shown += usize::from(is_interval(series));
+        let middle = (intervals + 1) as f64 / 2.0;
+        let shift = if is_interval(series) { (shown as f64 - middle) * DODGE } else { 0.0 };
+        Look { series, colour, mark, shift }
+    };
+    chart.series.iter().map(look).collect()
 }
 
 impl Look<'_> {
@@ -86,22 +74,15 @@ impl Look<'_> {
 mod tests {
     use super::*;
 
-    /// `true` means "like the previous one".
-    fn shifts(series: &[bool]) -> Vec<f64> {
-        let chart = series.iter().fold(Chart::new("", "", ""), |chart, &like| {
-            let one = Series::intervals("", [[1.0, 2.0, 1.0, 3.0]]);
-            chart.with(if like { one.like_previous() } else { one })
-        });
-        looks(&chart).iter().map(|look| look.shift).collect()
-    }
-
     #[test]
     fn error_bars_are_side_by_side_around_their_x() {
-        let half = DODGE / 2.0;
-        assert_eq!(shifts(&[false]), [0.0]);
-        assert_eq!(shifts(&[false, false]), [-half, half]);
-        assert_eq!(shifts(&[false, true]), [0.0, 0.0]);
-        assert_eq!(shifts(&[false, true, false, true]), [-half, -half, half, half]);
-        assert_eq!(shifts(&[false, false, false]), [-DODGE, 0.0, DODGE]);
+        let shifts = |count: u32| {
+            let one = || Series::intervals("", [[1.0, 2.0, 1.0, 3.0]]);
+            let chart = (0..count).fold(Chart::new("", "", ""), |chart, _| chart.with(one()));
+            looks(&chart).iter().map(|look| look.shift).collect::<Vec<_>>()
+        };
+        assert_eq!(shifts(1), [0.0]);
+        assert_eq!(shifts(2), [-DODGE / 2.0, DODGE / 2.0]);
+        assert_eq!(shifts(3), [-DODGE, 0.0, DODGE]);
     }
 }

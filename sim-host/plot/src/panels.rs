@@ -3,8 +3,6 @@
 use super::canvas::Canvas;
 use super::chart::Chart;
 use super::layout;
-use staya_sim::record::Error;
-use std::path::{Path, PathBuf};
 
 impl Chart {
     /// Draws the chart.
@@ -15,14 +13,6 @@ impl Chart {
         let area = [0.0, 0.0, width, height];
         layout::draw(self, &mut canvas, area, layout::left_margin(self));
         canvas
-    }
-
-    /// Writes `<stem>.svg` and `<stem>.png` and returns the paths; see [`Canvas::write`].
-    ///
-    /// # Errors
-    /// The directory or a file cannot be written.
-    pub fn write(&self, stem: &Path) -> Result<Vec<PathBuf>, Error> {
-        self.draw().write(stem)
     }
 }
 
@@ -65,13 +55,5 @@ impl Panels {
             layout::draw(chart, &mut canvas, area, column.copied().fold(0.0, f64::max));
         }
         canvas
-    }
-
-    /// Writes `<stem>.svg` and `<stem>.png` and returns the paths; see [`Canvas::write`].
-    ///
-    /// # Errors
-    /// The directory or a file cannot be written.
-    pub fn write(&self, stem: &Path) -> Result<Vec<PathBuf>, Error> {
-        self.draw().write(stem)
     }
 }

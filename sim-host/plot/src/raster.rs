@@ -3,7 +3,6 @@
 use super::canvas::{Anchor, Canvas, Pixels, Point, Shape, Stroke, Text};
 use super::colour::{Colour, WHITE};
 use super::font;
-use crate::terrain::encode_png;
 use std::io;
 use tiny_skia::{
     FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, PixmapPaint,
@@ -26,14 +25,16 @@ pub fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
 
 /// Encodes an image; an error if it has no pixels or too many.
 pub fn encode_rgba(pixels: &Pixels) -> io::Result<Vec<u8>> {
-    let bytes: Vec<u8> = if pixels.rgba.iter().all(|[.., alpha]| *alpha == 255) {
-        let opaque = pixels.rgba.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
-        opaque.collect()
-    } else {
-        pixels.rgba.iter().flatten().copied().collect()
-    };
-    let colour = if bytes.len() == pixels.rgba.len() * 3 { png::ColorType::Rgb } else { png::ColorType::Rgba };
-    Ok(encode_png(pixels.width, pixels.height, colour, &bytes)?)
+    Ok(encode_png(pixels.width, pixels.height, png::ColorType::Rgba, pixels.rgba.as_flattened())?)
+}
+
+fn encode_png(width: u32, height: u32, colour: png::ColorType, pixels: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(colour);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header()?.write_image_data(pixels)?;
+    Ok(bytes)
 }
 
 /// Renders a picture without background, `scale` pixels per unit.

@@ -29,9 +29,9 @@ pub(super) fn on_map(
         files.extend(canvas.write(&stem)?);
     }
     if let Some(panels) = formation(of, history.series()) {
-        files.extend(panels.write(&out_dir.join("formation"))?);
+        files.extend(panels.draw().write(&out_dir.join("formation"))?);
     }
-    files.extend(packets(of, history).write(&out_dir.join("packets"))?);
+    files.extend(packets(of, history).draw().write(&out_dir.join("packets"))?);
     Ok(files)
 }
 

@@ -1,5 +1,6 @@
 //! Ranges of axes, and positions of values on them.
 
+use super::canvas::extent;
 use super::chart::{Chart, Kind};
 use super::font;
 use super::look::Look;
@@ -60,8 +61,13 @@ impl Axes {
         let x_range = x_range(chart, &extent);
         let x = |most: usize| axis(x_range, chart.log_x, most);
         let most = ((width / 50.0) as usize).clamp(2, 14);
-        let x = (2..=most).rev().map(x).find(|axis| axis.labels_fit(width)).unwrap_or_else(|| x(2));
-        let most = ((height / 36.0) as usize).clamp(2, 10);
+        let mut x = (2..=most).rev().map(x).find(|axis| axis.labels_fit(width)).unwrap_or_else(|| x(2));
+        if !chart.x_names.is_empty() {
+            let names = (1_u32..).zip(&chart.x_names);
+            x.ticks = names.map(|(at, name)| Tick { value: at.into(), label: name.clone() }).collect();
+        }
+        // Counts have no fractions.
+        let most = ((height / 36.0).min(extent.count) as usize).clamp(1, 10);
         let y = axis(y_range(chart, &extent, most), chart.log_y, most);
         Self { x, y, empty: extent.x.is_none() }
     }
@@ -72,39 +78,34 @@ struct Extent {
     y: Option<[f64; 2]>,
     marks: bool,
     bars: bool,
+    /// Greatest height of bars if all heights are whole numbers, else infinite.
+    count: f64,
 }
 
 impl Extent {
     fn new(chart: &Chart, looks: &[Look<'_>]) -> Self {
-        let mut this = Self { x: None, y: None, marks: false, bars: false };
-        for Look { series, .. } in looks {
-            this.marks |= [Kind::Points, Kind::Intervals].contains(&series.kind);
-            this.bars |= series.kind == Kind::Bars;
-            for [x, y, low, high] in &series.values {
-                if series.kind == Kind::Bars {
-                    this.add(chart, *x, *y);
-                    this.add(chart, *low, 0.0);
-                } else {
-                    [y, low, high].iter().for_each(|value| this.add(chart, *x, **value));
-                }
-            }
-        }
-        this
-    }
-
-    fn add(&mut self, chart: &Chart, x: f64, y: f64) {
         let is_shown = |value: f64, log: bool| value.is_finite() && (value > 0.0 || !log);
-        if !is_shown(x, chart.log_x) || !is_shown(y, chart.log_y) {
-            return;
-        }
-        let widen = |range: Option<[f64; 2]>, value: f64| match range {
-            Some([low, high]) => Some([low.min(value), high.max(value)]),
-            None => Some([value; 2]),
-        };
-        self.x = widen(self.x, x);
+        let points = looks.iter().flat_map(|look| look.series.values.iter().map(|value| (look.series.kind, *value)));
+        let points = points.flat_map(|(kind, [x, y, low, high])| match kind {
+            Kind::Bars => [[x, y], [low, 0.0], [x, y]],
+            _ => [[x, y], [x, low], [x, high]],
+        });
+        let shown = points.filter(|&[x, y]| is_shown(x, chart.log_x) && is_shown(y, chart.log_y));
+        let shown: Vec<[f64; 2]> = shown.collect();
         // Data outside the chosen x range do not stretch y.
-        if chosen(chart.x_range).is_none_or(|[low, high]| (low..=high).contains(&x)) {
-            self.y = widen(self.y, y);
+        let is_inside = |[x, _]: &[f64; 2]| chosen(chart.x_range).is_none_or(|[low, high]| (low..=high).contains(x));
+        let range =
+            |[low, high]: [[f64; 2]; 2], axis: usize| (low[axis] <= high[axis]).then(|| [low[axis], high[axis]]);
+        let kinds = || looks.iter().map(|look| look.series.kind);
+        let bars = looks.iter().filter(|look| look.series.kind == Kind::Bars).flat_map(|look| &look.series.values);
+        let heights: Vec<f64> = bars.map(|[_, height, ..]| *height).collect();
+        let is_count = !heights.is_empty() && heights.iter().all(|height| libm::trunc(*height) == *height);
+        Self {
+            x: range(extent(shown.iter().copied()), 0),
+            y: range(extent(shown.into_iter().filter(is_inside)), 1),
+            marks: kinds().any(|kind| [Kind::Points, Kind::Intervals].contains(&kind)),
+            bars: kinds().any(|kind| kind == Kind::Bars),
+            count: if is_count { heights.into_iter().fold(1.0, f64::max) } else { f64::INFINITY },
         }
     }
 }
@@ -144,12 +145,7 @@ fn log_range([low, high]: [f64; 2], room: bool) -> [f64; 2] {
 
 fn y_range(chart: &Chart, extent: &Extent, most: usize) -> [f64; 2] {
     if chart.log_y {
-        let wanted = chosen(chart.y_range);
-        let range = wanted.or(extent.y).unwrap_or([1.0, 10.0]);
-        return log_range(range, wanted.is_none());
-    }
-    if let Some([low, high]) = chosen(chart.y_range) {
-        return ticks::sound(low, high);
+        return log_range(extent.y.unwrap_or([1.0, 10.0]), true);
     }
     let [low, high] = extent.y.unwrap_or([0.0, 1.0]);
     // Zero is included if it takes at most half of the axis.

@@ -146,7 +146,7 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     };
     let fine = [marks(&[1, 2, 5], 1), marks(&[1], 1)];
     if let Some(fits) = fine.into_iter().find(|ticks| ticks.len() <= most + 1) {
-        return if fits.len() >= 2 { fits } else { linear(low, high, most) };
+        return if fits.len() >= 3 { fits } else { linear(low, high, most) };
     }
     (2..).map(|every| marks(&[1], every)).find(|ticks| ticks.len() <= most + 1).unwrap_or_default()
 }

@@ -1,19 +1,22 @@
 //! Trajectories: the map, a line per robot, and the formation from early to late.
 
-use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text, extent, longest};
+use super::canvas::{Canvas, Point, Shape, Stroke, extent, longest};
 use super::colour::{self, Colour, INK, WHITE};
 use super::crowd::{self, Density};
-use super::layout::{Entry, OTHER_FONTS, heading, legend};
+use super::layout::{Entry, heading, legend, note};
 use super::map::{self, Map};
-use super::{font, raster, ticks};
+use super::story::evenly;
+use super::{raster, ticks};
 use staya_controller::grid::Cell;
+use staya_record::scene::ColourBy;
 use staya_sim::record::{Frame, History};
 use staya_sim::terrain::Terrain;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io;
 
-const NAMED: usize = 12;
+/// Larger swarms have one colour and no names.
+const NAMED: usize = ColourBy::MOST_ROBOTS;
 /// Larger swarms show the visits of each cell instead of paths and formation.
 const CROWD: usize = 200;
 /// Larger swarms show no starts and targets.
@@ -24,8 +27,7 @@ const MAX_POINTS: usize = 60_000;
 const SMALL_MAP: f64 = 100.0;
 const MOMENTS: usize = 8;
 const PAD: f64 = 16.0;
-const MIN_WIDTH: f64 = 460.0;
-const SMALL: f64 = 11.5;
+const MIN_WIDTH: f64 = 480.0;
 
 /// Points closer to the previous one are skipped; units.
 const NEAR: f64 = 0.25;
@@ -58,16 +60,13 @@ pub fn draw(
     let room = width - 2.0 * PAD;
     let mut canvas = Canvas::new(width, 0.0, &title);
     heading(&mut canvas, &title, 16.0, [PAD, PAD + 15.0], room);
-    let (note, size) = font::fit(&note(terrain, &view, ways.len()), SMALL, false, room / OTHER_FONTS);
-    canvas.text(Text::new([PAD, PAD + 34.0], size, Anchor::Start, note).muted());
+    note(&mut canvas, &about(terrain, &view, ways.len()), [PAD, PAD + 34.0], room);
     let mut entries = match &crowd {
         Some(density) => crowd_entries(density, ways.len()),
         None => entries(&ways, with_edges),
     };
     if !changing.is_empty() {
-        entries.push(Entry::new(12.0, "land that changes", |canvas, [x, y]| {
-            canvas.rectangle([x, y - 6.0, 12.0, 12.0], Some(CHANGING), None);
-        }));
+        entries.push(Entry::square("land that changes", CHANGING));
     }
     let top = legend(&mut canvas, &entries, [PAD, PAD + 42.0], width - PAD, 14.0) + 8.0;
 
@@ -114,8 +113,8 @@ fn title(of: &str, frames: &[Frame], robots: usize) -> String {
     format!("{of}: trajectories of {robots} robot{plural} over {seconds:.0} s")
 }
 
-fn note(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
-    let size = format!("{} × {} cells of {} m", view.width(), view.height(), (view.cell_m * 100.0).round() / 100.0);
+fn about(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
+    let size = map::size(view);
     let all = (terrain.width(), terrain.height());
     let part = if (view.width(), view.height()) == all {
         String::new()
@@ -132,8 +131,9 @@ fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
         for sample in &frame.samples {
             let way = ways.entry(sample.id).or_default();
             way.target_m = terrain.index(sample.target).map(|_| terrain.center_m(sample.target));
-            if sample.position_m.iter().all(|value| value.is_finite()) {
-                way.positions_m.push(sample.position_m);
+            let [x, y, _] = sample.position_m;
+            if x.is_finite() && y.is_finite() {
+                way.positions_m.push([x, y]);
             }
         }
     }
@@ -156,14 +156,11 @@ fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain>
 }
 
 fn look(index: usize, robots: usize) -> Stroke {
-    let width = match robots {
-        0..=NAMED => 1.9,
-        13..=50 => 1.3,
-        _ => 0.9,
-    };
-    let stroke = Stroke::new(colour::nth(index), width);
-    // Dashes distinguish repeated colours.
-    if robots <= NAMED && index >= colour::PALETTE.len() { stroke.dashed(6.0, 3.0) } else { stroke }
+    match robots {
+        0..=NAMED => Stroke::new(colour::nth(index), 1.9),
+        8..=50 => Stroke::new(colour::nth(0), 1.3),
+        _ => Stroke::new(colour::nth(0), 0.9),
+    }
 }
 
 fn draw_ways(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) -> io::Result<()> {
@@ -284,25 +281,6 @@ fn moment_colour(share: f64) -> Colour {
     Colour::hex(0xb0_8c_f0).towards(Colour::hex(0x1f_06_4a), share)
 }
 
-fn moments(frames: &[Frame]) -> Vec<(&Frame, f64)> {
-    let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
-        return Vec::new();
-    };
-    let span = f64::from(last.tick.wrapping_sub(first.tick));
-    let mut chosen: Vec<(&Frame, f64)> = Vec::new();
-    for moment in 0..MOMENTS {
-        let share = moment as f64 / (MOMENTS - 1) as f64;
-        let since = |frame: &Frame| f64::from(frame.tick.wrapping_sub(first.tick));
-        let at = frames.partition_point(|frame| since(frame) < share * span);
-        if let Some(frame) = frames.get(at)
-            && chosen.last().is_none_or(|(other, _)| other.tick != frame.tick)
-        {
-            chosen.push((frame, share));
-        }
-    }
-    chosen
-}
-
 fn draw_formation(
     canvas: &mut Canvas,
     map: &Map<'_>,
@@ -310,12 +288,15 @@ fn draw_formation(
     edges: &[(u32, u32)],
     ways: &BTreeMap<u32, Way>,
 ) {
-    for (frame, share) in moments(frames) {
+    let moments: Vec<usize> = evenly(frames.len(), MOMENTS).collect();
+    for (number, &at) in moments.iter().enumerate() {
+        let (frame, share) = (&frames[at], number as f64 / (moments.len() - 1).max(1) as f64);
         let places: BTreeMap<u32, Point> = frame
             .samples
             .iter()
-            .filter(|sample| sample.position_m.iter().all(|value| value.is_finite()))
-            .map(|sample| (sample.id, map.place(sample.position_m)))
+            .map(|sample| (sample.id, [sample.position_m[0], sample.position_m[1]]))
+            .filter(|(_, place)| place.iter().all(|value| value.is_finite()))
+            .map(|(id, place)| (id, map.place(place)))
             .collect();
         let lines: Vec<Vec<Point>> =
             edges.iter().filter_map(|(a, b)| Some(vec![*places.get(a)?, *places.get(b)?])).collect();
@@ -335,44 +316,24 @@ fn draw_formation(
 
 fn entries(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<Entry<'static>> {
     let robots = ways.len();
-    let mut entries = Vec::new();
-    if robots == 0 {
-        return entries;
+    let named = ways.keys().enumerate().filter(|_| robots <= NAMED);
+    let name = |index, id| if index == 0 { format!("robot {id}") } else { format!("{id}") };
+    let mut entries: Vec<_> = named.map(|(index, id)| Entry::line(name(index, id), look(index, robots))).collect();
+    if robots > 0 {
+        entries.push(Entry::mark("start", |canvas, at| ring(canvas, at, 4.5, INK)));
+        entries.push(Entry::mark("goal", |canvas, at| cross(canvas, at, 4.5, INK)));
     }
-    if robots <= NAMED {
-        for (index, id) in ways.keys().enumerate() {
-            let name = if index == 0 { format!("robot {id}") } else { id.to_string() };
-            entries.push(Entry::new(22.0, name, move |canvas, [x, y]| {
-                canvas.line(vec![[x + 1.0, y], [x + 21.0, y]], look(index, robots));
-            }));
-        }
-    }
-    entries.push(Entry::new(12.0, "start", |canvas, [x, y]| ring(canvas, [x + 6.0, y], 4.5, INK)));
-    entries.push(Entry::new(12.0, "goal", |canvas, [x, y]| cross(canvas, [x + 6.0, y], 4.5, INK)));
-    if with_edges {
-        entries.push(Entry::new(50.0, "formation, early to late", |canvas, [x, y]| {
-            for part in 0..5 {
-                let from = x + f64::from(part) * 10.0;
-                let stroke = Stroke::new(moment_colour(f64::from(part) / 4.0), 1.6);
-                canvas.line(vec![[from + 1.0, y], [from + 8.0, y]], stroke);
-            }
-        }));
+    if robots > 0 && with_edges {
+        entries.push(Entry::ramp("formation, early to late", 8, moment_colour));
     }
     entries
 }
 
 fn crowd_entries(density: &Density, robots: usize) -> Vec<Entry<'static>> {
     let most = ticks::grouped(density.most().into());
-    let mut entries = vec![Entry::new(50.0, format!("times a cell was entered, 1 to {most}"), |canvas, [x, y]| {
-        for part in 0..10 {
-            let area = [x + f64::from(part) * 5.0, y - 5.0, 5.0, 10.0];
-            canvas.rectangle(area, Some(crowd::colour(f64::from(part) / 9.0)), None);
-        }
-    })];
+    let mut entries = vec![Entry::ramp(format!("times a cell was entered, 1 to {most}"), 10, crowd::colour)];
     if robots <= MAX_ENDS {
-        entries.extend(CROWD_ENDS.map(|(colour, name)| {
-            Entry::new(12.0, name, move |canvas, [x, y]| canvas.circle([x + 6.0, y], 3.0, Some(colour), None))
-        }));
+        entries.extend(CROWD_ENDS.map(|(colour, name)| Entry::disc(name, colour)));
     }
     entries
 }

@@ -41,6 +41,13 @@ pub struct Scene {
     pub height_m: [f64; 2],
     /// One entry per robot, by number.
     pub robots: Robots,
+    /// Initial colours of the robots.
+    #[serde(default)]
+    pub colour_by: ColourBy,
+    /// Ratio of height to width of the space that flyers keep free because of their downwash; 1 in
+    /// the plane and without downwash.
+    #[serde(default = "no_downwash")]
+    pub downwash: f64,
     /// The map, if there is one.
     pub land: Option<Land>,
     /// Obstacles.
@@ -85,6 +92,38 @@ pub enum Mode {
     Recording,
     /// Watch only.
     Watch,
+}
+
+/// Meaning of the robots' colours, in the page and in pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ColourBy {
+    /// A colour for each group.
+    Group,
+    /// A colour for each robot.
+    Robot,
+    /// A colour for each mode.
+    #[default]
+    Mode,
+}
+
+impl ColourBy {
+    /// Largest number of robots with individual colours: there are that many colours.
+    pub const MOST_ROBOTS: usize = 7;
+
+    /// Chooses the meaning for robots with these groups: few colours that differ.
+    #[must_use]
+    pub fn of(groups: &[u32]) -> Self {
+        match groups {
+            [first, ..] if groups.iter().any(|group| group != first) => Self::Group,
+            _ if groups.len() <= Self::MOST_ROBOTS => Self::Robot,
+            _ => Self::Mode,
+        }
+    }
+}
+
+const fn no_downwash() -> f64 {
+    1.0
 }
 
 /// Properties of the robots.
@@ -206,6 +245,7 @@ impl Scene {
         let has_land = setup.is_none_or(|setup| setup.has_terrain);
         let origin = origin_m(scenario);
         let (bounds_m, height_m) = bounds(scenario, origin);
+        let robots = robots(scenario);
         Self {
             name: scenario.name.clone(),
             seed: scenario.seed,
@@ -220,7 +260,9 @@ impl Scene {
             origin_m: origin,
             bounds_m,
             height_m,
-            robots: robots(scenario),
+            colour_by: ColourBy::of(&robots.group),
+            robots,
+            downwash: downwash(scenario),
             land: has_land.then(|| land(&scenario.terrain, origin)),
             solids: setup.map_or_else(Vec::new, |setup| solids(&setup.solids, is_in_space(scenario), origin)),
             intruders: setup.map_or(&[][..], |setup| &setup.intruders).iter().map(Intruder::from).collect(),
@@ -291,6 +333,19 @@ pub fn is_in_space(scenario: &Scenario) -> bool {
     })
 }
 
+/// The group of robot `index`, in the order of the scenario from 1; 0 for no group.
+#[must_use]
+pub fn group(scenario: &Scenario, index: usize) -> u32 {
+    let group = scenario.plane.as_ref().and_then(|setup| setup.starts.get(index)?.group);
+    group.map_or(0, |group| group as u32 + 1)
+}
+
+/// Largest [`Scene::downwash`] of the robots.
+#[must_use]
+pub fn downwash(scenario: &Scenario) -> f64 {
+    scenario.plane.iter().flat_map(|setup| setup.kinds()).map(|group| group.downwash()).fold(1.0, f64::max)
+}
+
 /// The map relative to `origin_m`.
 #[must_use]
 pub fn land(terrain: &Terrain, origin_m: [f64; 3]) -> Land {
@@ -322,24 +377,25 @@ pub fn solids(solids: &[plane::Solid], is_in_space: bool, origin_m: [f64; 3]) ->
     solids.iter().enumerate().map(|(index, solid)| Indexed { index, solid: shape(solid) }).collect()
 }
 
+/// The radius of robot `index`, metres; on the grid a fraction of a cell.
+#[must_use]
+pub fn radius_m(scenario: &Scenario, index: usize) -> f64 {
+    match &scenario.plane {
+        Some(setup) => setup.group(index).radius_m,
+        None => scenario.terrain.cell_m * GRID_RADIUS,
+    }
+}
+
 fn robots(scenario: &Scenario) -> Robots {
     let mut robots = Robots::default();
     for (index, robot) in scenario.robots.iter().enumerate() {
-        let (radius_m, speed_mps, group) = match &scenario.plane {
-            Some(setup) => {
-                let group = setup.group(index);
-                let number = setup.starts.get(index).and_then(|start| start.group);
-                (group.radius_m, group.abilities.max_speed_mps, number.map_or(0, |number| number as u32 + 1))
-            }
-            None => {
-                let cell_m = scenario.terrain.cell_m;
-                (cell_m * GRID_RADIUS, cell_m / scenario.tick_s(), 0)
-            }
-        };
         robots.id.push(robot.id.0);
-        robots.radius_m.push(radius_m);
-        robots.max_speed_mps.push(speed_mps);
-        robots.group.push(group);
+        robots.radius_m.push(radius_m(scenario, index));
+        robots.max_speed_mps.push(match &scenario.plane {
+            Some(setup) => setup.group(index).abilities.max_speed_mps,
+            None => scenario.terrain.cell_m / scenario.tick_s(),
+        });
+        robots.group.push(group(scenario, index));
     }
     robots
 }
@@ -446,6 +502,20 @@ mod tests {
             let robots = scene.robots.id.len();
             assert!(robots > 0 && scene.robots.radius_m.len() == robots && scene.robots.group.len() == robots);
         }
+    }
+
+    #[test]
+    fn robots_have_few_colours_and_flyers_their_downwash() {
+        for (name, by, downwash) in [
+            ("six-robots.toml", ColourBy::Robot, 1.0),
+            ("ten-robots.toml", ColourBy::Mode, 1.0),
+            ("mixed.toml", ColourBy::Group, 1.0),
+            ("downwash.toml", ColourBy::Mode, 3.0),
+        ] {
+            let scene = scene(name);
+            assert_eq!((scene.colour_by, scene.downwash), (by, downwash), "{name}");
+        }
+        assert_eq!(ColourBy::of(&[2; 8]), ColourBy::Mode, "one group for all robots does not tell them apart");
     }
 
     #[test]

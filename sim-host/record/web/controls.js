@@ -1,5 +1,7 @@
 // The top bar, the time line, keyboard shortcuts, layers and the legend.
 
+import { AIR } from "staya/view.js";
+
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, null];
 const PAN_PIXELS = 60;
 const NARROW = "(max-width: 720px)";
@@ -409,9 +411,10 @@ export class Controls {
     }
     if (look.colourBy === "group") {
       for (const group of [...new Set(scene.robots.group)].slice(0, 7))
-        key(disc(look.numberColours[group % 7]), `group ${group}`);
+        key(disc(look.numberColours[group % 7]), group ? `group ${group}` : "no group");
     }
     key(disc(css.grey, css.orange), "waits", "waits");
+    if (scene.downwash > 1) key(area(css.muted, AIR), "column of blown air");
     if (scene.intruders.length) key(disc(css.rim, css.purple), "intruder");
     if (layers.targets) {
       key((context) => {
@@ -449,8 +452,8 @@ export class Controls {
         shades.addColorStop(1, css.landHigh);
         context.fillStyle = shades;
         context.fillRect(1, 2, 24, 10);
-      }, `land, easy to slow (${scene.land.classes})`);
-      key(area(css.wall), "wall");
+      }, `cost 1 to ${scene.land.classes}`);
+      key(area(css.wall), "blocked");
     }
     element("legend-body").replaceChildren(...keys);
     this.counts();

@@ -18,8 +18,8 @@ const NAMED = {
   robots: "yellow",
   goal_taken: "green",
 };
-// In the order of the colours of saved pictures.
-const NUMBERED = ["blue", "vermillion", "green", "purple", "orange", "sky", "yellow"];
+// In the order of the palette of staya-plot.
+const NUMBERED = ["blue", "vermillion", "green", "purple", "orange", "sky", "ink"];
 const CSS = {
   paper: "paper",
   grid: "grid",

@@ -120,8 +120,7 @@ class App {
     this.ground.setScene(scene, this.cells, this.solids);
     this.look.words = scene.words;
     if (!same) {
-      const groups = new Set(scene.robots.group).size;
-      this.look.colourBy = groups > 1 ? "group" : this.robots <= 8 ? "robot" : "mode";
+      this.look.colourBy = scene.colour_by ?? "mode";
       this.select(null);
       this.fit();
       // The panels of narrow screens are closed at first.

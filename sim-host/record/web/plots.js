@@ -2,6 +2,8 @@
 
 // Samples per figure; of longer runs, the last of several ticks counts.
 const MOST = 1 << 16;
+// Beside each plot, for the values at its upper and lower edge.
+const SCALE_PIXELS = 28;
 
 // Plotted figures in the order of the message `figures`. A plot appears once one of its lines has a
 // value.
@@ -59,7 +61,8 @@ export class Plots {
     canvas.setAttribute("role", "img");
     canvas.addEventListener("pointerdown", (event) => {
       const { left, width } = canvas.getBoundingClientRect();
-      this.onSeek(this.first + ((event.clientX - left) / width) * (this.last - this.first));
+      const share = Math.min(1, (event.clientX - left) / (width - SCALE_PIXELS));
+      this.onSeek(this.first + share * (this.last - this.first));
     });
     const label = document.createElement("div");
     label.append(name, value);
@@ -210,12 +213,13 @@ export class Plots {
         }
       }
     }
-    const x = (at) => ((at - this.first) / (this.last - this.first)) * width;
+    const right = width - SCALE_PIXELS;
+    const x = (at) => ((at - this.first) / (this.last - this.first)) * right;
     const y = (value) => height - 2 - (greatest > 0 ? value / greatest : 0) * (height - 5);
     context.strokeStyle = colours.grid;
     context.beginPath();
     context.moveTo(0, height - 1.5);
-    context.lineTo(width, height - 1.5);
+    context.lineTo(right, height - 1.5);
     context.stroke();
     plot.lines.forEach(({ colour }, i) => {
       context.strokeStyle = context.fillStyle = colours[colour];
@@ -244,6 +248,13 @@ export class Plots {
         context.globalAlpha = 1;
       }
     });
+    if (greatest > 0) {
+      // The scale: the value at the upper edge; the lower edge is 0.
+      context.font = "9px system-ui, sans-serif";
+      context.fillStyle = colours.muted;
+      context.fillText(+greatest.toPrecision(3), right + 4, 9);
+      context.fillText(0, right + 4, height - 1);
+    }
     context.strokeStyle = colours.cursor;
     context.lineWidth = 1;
     context.beginPath();

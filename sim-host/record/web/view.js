@@ -16,6 +16,10 @@ const LABEL_HEIGHT = 1.15;
 const VECTOR_PIXELS = 34;
 const CROWDED_PIXELS = 9;
 const SCALE_PIXELS = 110;
+const MOST_COLUMNS = 200;
+const COLUMN_CORNERS = 16;
+/** Opacity of columns of blown air. */
+export const AIR = 0.25;
 const DELIVERED = 0,
   DAMAGED = 2;
 
@@ -191,6 +195,7 @@ export class View {
     const at = (i) => app.camera.project(...app.motion.place(i, [0, 0, 0]));
     const selected = app.selected !== null && app.selected < frame.n;
     if (selected && app.look.layers.known) this.drawGhosts();
+    this.drawColumns(frame);
     this.drawOther(frame);
     this.drawCrosses();
     this.drawGoals(frame);
@@ -308,6 +313,27 @@ export class View {
         context.strokeStyle = css.ghost;
       }
     }
+  }
+
+  /** Draws the space below flyers that others keep free of downwash: lower halves of ellipsoids. */
+  drawColumns(frame) {
+    const { app, context } = this;
+    const { camera, look, scene } = app;
+    if (!camera.space || !(scene.downwash > 1) || app.robots > MOST_COLUMNS) return;
+    context.globalAlpha = AIR;
+    for (let i = 0; i < Math.min(frame.n, app.robots); i++) {
+      const [x, y, z] = app.motion.place(i, [0, 0, 0]);
+      context.beginPath();
+      for (let corner = 0; corner <= COLUMN_CORNERS; corner++) {
+        const angle = (Math.PI * corner) / COLUMN_CORNERS;
+        const [across, down] = [Math.cos(angle) * app.radii[i], Math.sin(angle) * app.radii[i] * scene.downwash];
+        const at = camera.project(x + camera.axes.r[0] * across, y + camera.axes.r[1] * across, z - down);
+        if (at) context.lineTo(at[0], at[1]);
+      }
+      context.fillStyle = look.colourOf(frame, i, app);
+      context.fill();
+    }
+    context.globalAlpha = 1;
   }
 
   /** Draws where the robots are in another branch at this tick. */

@@ -15,9 +15,9 @@ use serde::Deserialize;
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
 use staya_controller::route::RouteParams;
-use staya_plot::canvas::{Anchor, Canvas, Pixels, Shape, Stroke, Text};
-use staya_plot::colour::{INK, MUTED, PALETTE, WHITE};
-use staya_plot::terrain::render;
+use staya_plot::canvas::{Anchor, Canvas, Stroke, Text};
+use staya_plot::colour::{INK, PALETTE, WHITE};
+use staya_plot::map::{FOOTER, Map};
 use staya_sim::scenario::Scenario;
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
 use std::collections::BTreeSet;
@@ -157,16 +157,13 @@ impl Trip {
         const TOP: f64 = 100.0;
         let (walk, walker, best) = self.walk();
         let land = &self.scenario.terrain;
-        let (width, height, grey) = render(land, 1);
-        let cell = SIDE / f64::from(width.max(height));
-        let area = [LEFT, TOP, cell * f64::from(width), cell * f64::from(height)];
-        let centre =
-            |at: &Cell| [LEFT + (f64::from(at.x) + 0.5) * cell, TOP + area[3] - (f64::from(at.y) + 0.5) * cell];
-        let mut canvas = Canvas::new(SIDE + 2.0 * LEFT, TOP + area[3] + LEFT, title);
+        let map = Map::of_scale(land, [LEFT, TOP], SIDE / f64::from(land.width().max(land.height())));
+        let (cell, area) = (map.cell, map.area);
+        let centre = |at: &Cell| map.place_cells([f64::from(at.x) + 0.5, f64::from(at.y) + 0.5]);
+        let mut canvas = Canvas::new(SIDE + 2.0 * LEFT, TOP + area[3] + FOOTER, title);
         canvas.text(Text { bold: true, ..Text::new([LEFT, 30.0], 13.0, Anchor::Start, title) });
-        let pixels = Pixels { width, height, rgba: grey.into_iter().map(|g| [g, g, g, 255]).collect() };
-        canvas.shapes.push(Shape::Image { area, pixels });
         canvas.clip(Some(area));
+        map.ground(&mut canvas);
         for at in &self.parked {
             canvas.circle(centre(at), cell * 0.4, Some(PALETTE[2]), None);
         }
@@ -190,16 +187,26 @@ impl Trip {
         for end in [best.first(), best.last()].into_iter().flatten() {
             canvas.circle(centre(end), 5.0, Some(WHITE), Some(Stroke::new(INK, 2.0)));
         }
+        let window = Stroke::new(PALETTE[1], 1.5);
         if let Some([x, y]) = walker.path().get(walker.path().len() / 2).map(centre) {
             let half = (f64::from(self.params.radius) + 0.5) * cell;
-            let window = [x - half, y - half, 2.0 * half, 2.0 * half];
-            canvas.rectangle(window, None, Some(Stroke::new(PALETTE[1], 1.5)));
+            canvas.rectangle([x - half, y - half, 2.0 * half, 2.0 * half], None, Some(window));
         }
         canvas.clip(None);
-        canvas.rectangle(area, None, Some(Stroke::new(MUTED, 1.0)));
+        map.frame(&mut canvas);
+        map.footer(&mut canvas, LEFT, LEFT + SIDE);
         for ((_, stroke, text), y) in lines.into_iter().zip([56.0, 76.0]) {
             canvas.line(vec![[LEFT + 3.0, y], [LEFT + 28.0, y]], stroke);
             canvas.text(Text::new([LEFT + 38.0, y], 13.0, Anchor::Start, text).centred());
+        }
+        let middle = LEFT + SIDE / 2.0;
+        canvas.rectangle([middle + 9.0, 50.0, 12.0, 12.0], None, Some(window));
+        let side = 2 * u32::from(self.params.radius) + 1;
+        let text = format!("its window halfway, {side} × {side} cells");
+        canvas.text(Text::new([middle + 38.0, 56.0], 13.0, Anchor::Start, text).centred());
+        if !self.parked.is_empty() {
+            canvas.circle([middle + 15.0, 76.0], 5.0, Some(PALETTE[2]), None);
+            canvas.text(Text::new([middle + 38.0, 76.0], 13.0, Anchor::Start, "parked robot").centred());
         }
         canvas
     }

@@ -3,7 +3,7 @@
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Plan, PlotTable};
 use crate::sweep::value::{Figure, Value};
-use staya_plot::{Chart, HeatMap, Panels, Series};
+use staya_plot::{Chart, HeatMap, Series};
 use staya_sim::record::Error;
 use staya_stats::{Goodness, Histogram, NortonRice, Summary};
 use std::path::{Path, PathBuf};
@@ -85,7 +85,7 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
         Some(y) if y.is_parts || y.names.len() > CURVES || picture.x.numbers.is_none() => {
             picture.heat_map(y).draw().write(&stem)
         }
-        _ => picture.chart().write(&stem),
+        _ => picture.chart().draw().write(&stem),
     }
 }
 
@@ -116,20 +116,22 @@ pub fn histograms(plan: &Plan, merged: &Merged, folder: &Path) -> Result<Vec<Pat
         for rows in merged.rows.chunk_by(|a, b| a.run / seeds == b.run / seeds) {
             let point = plan.values_of(rows[0].run);
             let values: Vec<f64> = rows.iter().filter_map(|row| row.figures[figure].0).collect();
-            if let Some(chart) = Some(&point).filter(|point| choice.has(point)).and_then(|_| histogram(name, &values)) {
-                let stem = format!("{name}-{}", point.join("-"));
-                files.extend(Panels::new(point.join(", ")).with(chart).write(&folder.join(stem))?);
+            let at: Vec<_> = plan.axes().zip(&point).map(|(axis, value)| valued(axis, value)).collect();
+            let title = format!("{}: {} of {} runs, {}", plan.name, worded(name), values.len(), at.join(", "));
+            let chart = choice.has(&point).then(|| histogram(&title, name, &values)).flatten();
+            if let Some(chart) = chart {
+                files.extend(chart.draw().write(&folder.join(format!("{name}-{}", point.join("-"))))?);
             }
         }
     }
     Ok(files)
 }
 
-fn histogram(name: &str, values: &[f64]) -> Option<Chart> {
+fn histogram(title: &str, name: &str, values: &[f64]) -> Option<Chart> {
     let Histogram { low, width, counts } = Histogram::new(values, BINS)?;
     let edge = |bin: usize| low + bin as f64 * width;
     let bars = counts.iter().enumerate().map(|(bin, &count)| [edge(bin), edge(bin + 1), count as f64]);
-    let mut chart = Chart::new(name, name, "runs").with(Series::bars("runs", bars));
+    let mut chart = Chart::new(title, worded(name), "runs").with(Series::bars("runs", bars));
     let Ok(law) = NortonRice::fit(values) else { return Some(chart) };
     let area = values.len() as f64 * width;
     let curve = (0..=200).map(|i| {
@@ -212,6 +214,7 @@ fn worded(path: &str) -> String {
     if let ["arrival", which, "seconds"] = words[..] {
         words = vec![which, "arrival", "s"];
     }
+    words.iter_mut().filter(|word| **word == "us").for_each(|word| *word = "µs");
     let unit = words.last().and_then(|last| UNITS.iter().find(|(end, _)| end == last));
     match unit {
         Some((_, unit)) if words.len() > 1 && words[words.len() - 2] != "per" => {
@@ -219,6 +222,15 @@ fn worded(path: &str) -> String {
             format!("{} ({unit})", words.join(" "))
         }
         _ => words.join(" "),
+    }
+}
+
+/// A field and its value: "orca horizon = 3 s".
+pub fn valued(path: &str, value: impl std::fmt::Display) -> String {
+    let words = worded(path);
+    match words.strip_suffix(')').and_then(|words| words.split_once(" (")) {
+        Some((words, unit)) => format!("{words} = {value} {unit}"),
+        None => format!("{words} = {value}"),
     }
 }
 
@@ -251,13 +263,13 @@ impl Picture<'_> {
 
     fn note(&self, what: &str) -> String {
         let others = self.plan.axes().filter(|axis| *axis != self.plot.over && Some(*axis) != self.plot.and.as_deref());
-        let others: Vec<_> = others.collect();
+        let others: Vec<String> = others.map(worded).collect();
         let over =
             if others.is_empty() { String::new() } else { format!(", over all values of {}", others.join(", ")) };
         let points = self.x.names.len() * self.y.as_ref().map_or(1, |levels| levels.names.len());
         let runs = match self.rows.len() {
-            1 => "1 run".to_owned(),
-            runs if runs == points => format!("{runs} runs"),
+            0 => return "no run has this figure".to_owned(),
+            runs if runs == points => return format!("one run each{over}"),
             runs if runs.is_multiple_of(points) => format!("{} runs each", runs / points),
             runs => format!("{runs} runs in all"),
         };
@@ -291,11 +303,10 @@ impl Picture<'_> {
             [at, summary.mean, low.max(least), high]
         };
         let Some(numbers) = &self.x.numbers else {
-            for (index, name) in self.x.names.iter().enumerate() {
-                let points = self.summary(index, None).map(|summary| point(index as f64 + 1.0, &summary));
-                chart = chart.with(Series::intervals(name, points));
-            }
-            return chart;
+            let summaries =
+                (0..self.x.names.len()).filter_map(|index| Some((index as f64 + 1.0, self.summary(index, None)?)));
+            let points = summaries.map(|(at, summary)| point(at, &summary));
+            return chart.with(Series::intervals("", points)).names(self.x.names.clone());
         };
         let curve = |y: Option<usize>| {
             let points = numbers.iter().enumerate().filter_map(|(x, &at)| Some(point(at, &self.summary(x, y)?)));
@@ -304,7 +315,7 @@ impl Picture<'_> {
         match (&self.y, and) {
             (Some(levels), Some(and)) => {
                 for (y, name) in levels.names.iter().enumerate() {
-                    chart = chart.with(Series::intervals(format!("{} = {name}", worded(and)), curve(Some(y))).joined());
+                    chart = chart.with(Series::intervals(valued(and, name), curve(Some(y))).joined());
                 }
             }
             _ => {
@@ -354,6 +365,9 @@ mod tests {
         for (path, text) in words {
             assert_eq!(worded(path), text, "{path}");
         }
+        assert_eq!(valued("plane.orca.horizon_s", 3), "orca horizon = 3 s");
+        assert_eq!(valued("radio.loss", "0.5"), "radio loss = 0.5");
+        assert_eq!(worded("us_per_boid"), "µs per boid");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::error::SweepError;
 use crate::measure::{self, Measured, Watch, simulate};
+use crate::sweep::pictures::valued;
 use crate::sweep::plan::Plan;
 use crate::sweep::row::{Finished, Outcome, Row};
 use crate::sweep::value::Figure;
@@ -38,7 +39,7 @@ fn measured(plan: &Plan, number: u64, watch: &Watch<'_>) -> Result<Measured, Str
 pub fn draw(plan: &Plan, number: u64, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
     let run = plan.run(number);
     let given = plan.given(&run)?;
-    let values: Vec<_> = plan.axes().zip(&run.values).map(|(axis, value)| format!("{axis} = {value}")).collect();
+    let values: Vec<_> = plan.axes().zip(&run.values).map(|(axis, value)| valued(axis, value)).collect();
     let title = format!("{}: {}, seed {}", plan.name, values.join(", "), run.seed);
     match plan.study() {
         Some(study) => study.draw(&given, &title, stem),

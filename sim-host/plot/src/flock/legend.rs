@@ -1,52 +1,51 @@
 //! Legend of a sheet: rows below its title, for the marks that it contains.
 
-use super::{Sheet, Snapshot, marks};
-use crate::canvas::{Canvas, Point, Stroke};
-use crate::colour::{self, INK, WHITE};
+use super::{Body, Sheet, Snapshot, marks};
+use crate::canvas::{Canvas, Stroke};
+use crate::colour::{Colour, INK, MUTED};
 use crate::layout::{self, Entry};
+use crate::map;
+use staya_sim::world::plane::Solid;
 
-const MARK: f64 = 24.0;
 const PAD: f64 = 14.0;
+const ARROW: f64 = 20.0;
 
 /// Returns the lower end of the legend.
-pub fn draw(sheet: &Sheet, canvas: &mut Canvas, top: f64) -> f64 {
+pub fn draw(sheet: &Sheet, keys: &[(String, Colour)], canvas: &mut Canvas, top: f64) -> f64 {
     let right = canvas.width - PAD;
-    layout::legend(canvas, &entries(sheet), [PAD, top], right, 16.0)
+    layout::legend(canvas, &entries(sheet, keys), [PAD, top], right, 16.0)
 }
 
-fn entries(sheet: &Sheet) -> Vec<Entry<'static>> {
+fn entries(sheet: &Sheet, keys: &[(String, Colour)]) -> Vec<Entry<'static>> {
     let any = |has: &dyn Fn(&Snapshot) -> bool| sheet.snapshots.iter().any(has);
-    let speeds = sheet.snapshots.iter().flat_map(|moment| &moment.velocities_mps).map(|&[x, y]| libm::hypot(x, y));
-    let fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    let near_m = sheet.snapshots.iter().find_map(|moment| moment.edges_within_m);
-    let colour = colour::nth(0);
-    let middle = |[x, y]: Point| [x + MARK / 2.0, y];
-    let line =
-        |stroke| move |canvas: &mut Canvas, [x, y]: Point| canvas.line(vec![[x + 2.0, y], [x + MARK - 2.0, y]], stroke);
-    let mut entries = Vec::new();
-    if any(&|moment| !moment.positions_m.is_empty()) {
-        entries.push(Entry::new(MARK, "robot", move |canvas, at| {
-            canvas.circle(middle(at), 6.0, Some(colour.towards(WHITE, 0.55)), Some(Stroke::new(colour, 1.0)));
-        }));
+    let fastest = sheet.snapshots.iter().map(marks::fastest).fold(0.0, f64::max);
+    let mut entries: Vec<_> = keys.iter().map(|(name, colour)| Entry::disc(name, *colour)).collect();
+    if any(&|moment| moment.bodies.iter().any(|body| body.is_pale)) {
+        let body = Body { colour: MUTED, is_pale: true, ..Body::default() };
+        entries.push(Entry::mark("arrived", move |canvas, at| marks::disc(canvas, at, 5.0, &body)));
     }
     if fastest > 0.0 {
-        let name = format!("its velocity, {fastest:.2} m/s the longest");
-        entries.push(Entry::new(MARK, name, |canvas, [x, y]| {
-            let arrow = marks::arrow([x + 3.0, y], [1.0, 0.0], MARK - 6.0);
-            canvas.lines(arrow.to_vec(), Stroke::new(INK, 1.0));
+        entries.push(Entry::new(ARROW, format!("velocity, longest {fastest:.2} m/s"), |canvas, [x, y]| {
+            canvas.lines(marks::arrow([x, y], [x + ARROW, y]).to_vec(), Stroke::new(INK, 1.0));
         }));
     }
-    if any(&|moment| moment.trails_m.iter().any(|way| way.len() > 1)) {
-        entries.push(Entry::new(MARK, "its way so far", line(Stroke::new(colour.towards(WHITE, 0.45), 1.2))));
+    if any(&|moment| moment.trails.iter().any(|(way, _)| way.len() > 1)) {
+        entries.push(Entry::line("past path", Stroke::new(MUTED, 1.2)));
     }
-    if any(&|moment| !moment.goals_m.is_empty()) {
-        entries.push(Entry::new(MARK, "a goal", move |canvas, at| marks::goal(middle(at), canvas)));
+    if any(&|moment| !moment.goals.is_empty()) {
+        entries.push(Entry::mark("goal", |canvas, at| marks::goal(at, MUTED, canvas)));
     }
-    if any(&|moment| !moment.obstacles.is_empty()) {
-        entries.push(Entry::new(MARK, "an obstacle", line(Stroke::new(marks::STONE_EDGE, 2.2))));
+    if any(&|moment| !moment.edges.is_empty()) {
+        entries.push(Entry::line("formation", Stroke::new(marks::EDGE, 1.2)));
     }
-    if let Some(within_m) = near_m {
-        entries.push(Entry::new(MARK, format!("{within_m} m apart at most"), line(Stroke::new(marks::EDGE, 1.0))));
+    if any(&|moment| moment.solids.iter().any(|solid| !matches!(solid, Solid::Plane { .. }))) {
+        entries.push(Entry::line("obstacle", Stroke::new(marks::STONE_EDGE, 2.2)));
+    }
+    if any(&|moment| moment.is_space && moment.downwash > 1.0) {
+        entries.push(Entry::square("column of blown air", MUTED.with_alpha(marks::AIR)));
+    }
+    if let Some(land) = sheet.snapshots.iter().find_map(|moment| moment.land.as_ref()) {
+        entries.extend(map::entries(land, map::PALE));
     }
     entries
 }

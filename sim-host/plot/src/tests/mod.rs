@@ -1,6 +1,7 @@
 //! Tests of charts, pictures of runs, and files.
 
 mod charts;
+mod colours;
 mod flocks;
 mod motion;
 mod runs;
@@ -48,7 +49,7 @@ fn assert_well_formed(svg: &str) {
 }
 
 /// Width, height and RGB.
-fn decode(path: &Path) -> (u32, u32, Vec<u8>) {
+pub(crate) fn decode(path: &Path) -> (u32, u32, Vec<u8>) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
@@ -97,7 +98,7 @@ fn text_boxes(canvas: &Canvas) -> Vec<(String, [f64; 4])> {
         .collect()
 }
 
-fn assert_texts_apart(canvas: &Canvas) {
+pub(crate) fn assert_texts_apart(canvas: &Canvas) {
     let boxes = text_boxes(canvas);
     for (index, (text, [left, top, right, bottom])) in boxes.iter().enumerate() {
         assert!(

@@ -1,6 +1,8 @@
 use crate::canvas::Shape;
+use crate::colour::{MUTED, of_group, of_mode};
 use crate::flock::Sheet;
 use crate::motion_sheet;
+use staya_controller::robot::Mode;
 use staya_sim::engine::simulate;
 use staya_sim::record::{Options, Recorder};
 use staya_sim::scenario::{Overrides, Scenario};
@@ -21,20 +23,24 @@ fn sheet(text: &str) -> Sheet {
         ControlFlow::Continue(())
     })
     .expect("room");
-    let (setup, history) = (scenario.plane.as_ref().expect("a plane"), recorder.finish().expect("no file"));
-    motion_sheet("t", setup, setup.has_terrain.then_some(&scenario.terrain), &history)
+    motion_sheet("t", &scenario, &recorder.finish().expect("no file"))
+}
+
+fn scenario(name: &str) -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name)).unwrap()
 }
 
 #[test]
 fn goals_follow_orders_and_everything_is_visible() {
     let sheet = sheet(TEXT);
     let [first, .., last] = &sheet.snapshots[..] else { panic!("moments") };
-    assert_eq!(first.goals_m, [[8.0, 2.0], [8.0, 9.0]]);
-    let [[x, y]] = last.goals_m[..] else { panic!("one goal: {:?}", last.goals_m) };
+    let goals = first.goals.iter().map(|(goal, _)| *goal).collect::<Vec<_>>();
+    assert_eq!(goals, [[8.0, 2.0, 0.0], [8.0, 9.0, 0.0]]);
+    let [([x, y, _], _)] = last.goals[..] else { panic!("one goal: {:?}", last.goals) };
     assert!((x - 5.0).abs() < 1e-9 && (y - 30.0).abs() < 1e-9, "{x} {y}");
-    let [[west, east], [south, north]] = first.view_m.expect("a view");
-    assert!(west < 2.0 && east > 17.0 && south < -8.0 && north > 30.0, "{:?}", first.view_m);
-    assert!(sheet.snapshots.iter().all(|moment| moment.view_m == first.view_m));
+    let [low, high] = first.span_m.expect("a range");
+    assert!(low[0] < 2.0 && high[0] > 17.0 && low[1] < -8.0 && high[1] > 30.0, "{low:?} {high:?}");
+    assert!(sheet.snapshots.iter().all(|moment| moment.span_m == first.span_m));
 }
 
 #[test]
@@ -52,6 +58,62 @@ fn arrows_have_one_scale_and_the_map_is_at_the_bottom() {
 #[test]
 fn a_very_long_wall_does_not_shrink_the_robots() {
     let walls = "[[plane.wall]]\npoints_m = [[5, -200], [5, -1]]\n";
-    let [[west, east], [south, north]] = sheet(&format!("{TEXT}{walls}")).snapshots[0].view_m.expect("a view");
-    assert!(east - west < 30.0 && south > -20.0 && north < 40.0, "{west} {east} {south} {north}");
+    let [low, high] = sheet(&format!("{TEXT}{walls}")).snapshots[0].span_m.expect("a range");
+    assert!(high[0] - low[0] < 30.0 && low[1] > -20.0 && high[1] < 40.0, "{low:?} {high:?}");
+}
+
+#[test]
+fn flyers_are_drawn_in_perspective_with_their_columns_of_air() {
+    let sheet = sheet(&scenario("downwash.toml"));
+    for moment in &sheet.snapshots {
+        assert!(moment.is_space && moment.downwash == 3.0);
+        assert!(moment.trails.len() == 16 && moment.goals.iter().any(|(goal, _)| goal[2] == 4.5));
+    }
+    let texts = super::text_boxes(&sheet.draw());
+    assert!(["column of blown air", "z (m)"].iter().all(|wanted| texts.iter().any(|(text, _)| text == wanted)));
+    assert!(!self::sheet(TEXT).snapshots[0].is_space);
+}
+
+#[test]
+fn flyers_over_land_have_it_on_the_floor() {
+    let text =
+        TEXT.replace("max_speed_mps = 1\n", "max_speed_mps = 1\nsafety = \"fly\"\n").replace("[8, 2]", "[8, 2, 4]");
+    let sheet = sheet(&text);
+    assert!(sheet.snapshots[0].is_space);
+    let canvas = sheet.draw();
+    let grey = crate::map::shade(3, 3, crate::map::PALE);
+    let areas =
+        canvas.shapes.iter().filter(|shape| matches!(shape, Shape::Path { fill: Some(fill), .. } if *fill == grey));
+    assert_eq!(areas.count(), sheet.snapshots.len() + 1, "in each moment and in the legend");
+}
+
+#[test]
+fn robots_and_goals_have_the_colour_of_their_group() {
+    let sheet = sheet(&scenario("groups.toml"));
+    let keys: Vec<_> = sheet.keys.clone().unwrap();
+    assert_eq!(
+        keys,
+        [0, 1, 2].map(|group| {
+            let name = if group == 0 { "no group".to_owned() } else { format!("group {group}") };
+            (name, of_group(group))
+        })
+    );
+    let moment = &sheet.snapshots[0];
+    let count = |colour| moment.bodies.iter().filter(|body| body.colour == colour).count();
+    let goals = |colour| moment.goals.iter().filter(|(_, goal)| *goal == colour).count();
+    let texts = super::text_boxes(&sheet.draw());
+    assert!(texts.iter().any(|(text, _)| text == "arrived"), "pale robots are explained");
+    for (_, colour) in keys {
+        assert!(count(colour) > 1 && (goals(colour) > 0 || goals(MUTED) > 0), "{colour:?}");
+    }
+}
+
+#[test]
+fn many_robots_have_the_colours_of_their_modes() {
+    let sheet = sheet(&scenario("downwash.toml"));
+    let [first, .., last] = &sheet.snapshots[..] else { panic!("moments") };
+    let all = |moment: &crate::flock::Snapshot, mode| moment.bodies.iter().all(|body| body.colour == of_mode(mode));
+    assert!(all(first, Mode::Idle) && all(last, Mode::Arrived));
+    let names: Vec<_> = sheet.keys.unwrap().into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["idle", "cruise", "arrived"]);
 }

@@ -1,4 +1,5 @@
 use super::{assert_readable, assert_texts_apart, decode};
+use crate::canvas::Shape;
 use crate::colour::PALETTE;
 use crate::run::on_map;
 use crate::{run, trajectories};
@@ -86,6 +87,22 @@ fn runs_of_any_length_have_their_pictures() {
     let files = names(&land(40), &history(3, 5, 1.0, 0.25), &[(1, 2), (2, 3), (3, 99)], &out);
     assert_eq!(files[2..4], ["formation.svg", "formation.png"]);
     assert_eq!(files.len(), 6);
+}
+
+#[test]
+fn few_robots_have_colours_of_their_own_and_many_share_one() {
+    for (robots, colours) in [(7, 7), (8, 1)] {
+        let canvas = trajectories::draw("r", &land(40), &[], &history(robots, 9, 1.0, f64::NAN), &[]).unwrap();
+        let strokes = canvas.shapes.iter().filter_map(|shape| match shape {
+            Shape::Path { stroke: Some(stroke), closed: false, .. } => Some(stroke.colour),
+            _ => None,
+        });
+        let used = strokes.filter(|colour| PALETTE.contains(colour));
+        let mut used: Vec<_> = used.map(|colour| colour.rgb).collect();
+        used.sort_unstable();
+        used.dedup();
+        assert_eq!(used.len(), colours, "{used:?}");
+    }
 }
 
 #[test]

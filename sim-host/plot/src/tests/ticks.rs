@@ -51,6 +51,7 @@ fn logarithmic_ticks_thin_out_with_the_range() {
     assert_eq!(texts(1e-9, 1e9, 6).len(), 7);
     // Ticks are needed even if the range is less than one step of 1, 2, 5.
     assert!(texts(21.0, 49.0, 6).len() >= 2);
+    assert_eq!(texts(0.7, 2.0, 4), ["1.0", "1.5", "2.0"]);
 }
 
 #[test]

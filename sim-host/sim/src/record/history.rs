@@ -12,7 +12,7 @@ const SERIES_POINTS: usize = 1 << 14;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// World position, metres.
-    pub position_m: [f64; 2],
+    pub position_m: [f64; 3],
     /// Id of the robot.
     pub id: u32,
     /// Target cell.
@@ -23,8 +23,7 @@ pub struct Sample {
 
 impl From<RobotRow> for Sample {
     fn from(row: RobotRow) -> Self {
-        let [x, y, _] = row.motion.position_m;
-        Self { id: row.id, position_m: [x, y], target: row.target, mode: row.mode }
+        Self { id: row.id, position_m: row.motion.position_m, target: row.target, mode: row.mode }
     }
 }
 

@@ -20,7 +20,7 @@ use staya_controller::geom::{Torus, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
-use staya_plot::flock::{Sheet, Snapshot};
+use staya_plot::flock::{Body, Sheet, Snapshot};
 use staya_sim::metrics::flock::polarisation;
 use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space};
 use std::path::{Path, PathBuf};
@@ -341,11 +341,15 @@ impl Flock {
 
     fn snapshot(&self, step: u32) -> Snapshot {
         let [width, height] = self.sides().map(f64::from);
+        let bodies = self.places.iter().zip(&self.headings).map(|(&[x, y], heading)| Body {
+            position_m: [x, y, 0.0].map(f64::from),
+            velocity_mps: [heading.x, heading.y, 0.0].map(f64::from),
+            ..Body::default()
+        });
         Snapshot {
             title: format!("step {step}, group order {:.2}", self.order()),
-            positions_m: self.places.iter().map(|at| at.map(f64::from)).collect(),
-            velocities_mps: self.headings.iter().map(|h| [h.x, h.y].map(f64::from)).collect(),
-            view_m: Some([[0.0, width], [0.0, height]]),
+            bodies: bodies.collect(),
+            span_m: Some([[0.0; 3], [width, height, 0.0]]),
             labels: ["x".into(), "y".into()],
             size: [440.0, 366.0],
             ..Snapshot::default()
