@@ -3,7 +3,7 @@
 
 use crate::files;
 use crate::python;
-use crate::repo::run as run_command_line;
+use crate::repo::run as run_command;
 use crate::report::Counts;
 use crate::session::Session;
 use std::path::Path;
@@ -29,15 +29,16 @@ const GOALS: [(&str, f64, &str); 6] = [
 
 /// Runs the benchmarks whose name contains `name` and judges their medians.
 pub fn run(s: &mut Session, name: Option<&str>) {
+    let is_wanted = |known: &str| name.is_none_or(|name| known.contains(name));
     if !SCRIPTS.iter().any(|(script, ..)| name == Some(script)) {
         criterion(s, name);
     }
-    for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| name.is_none_or(|name| script.contains(name))) {
+    for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| is_wanted(script)) {
         script(s, row, file);
     }
-    if name.is_none_or(|name| "view".contains(name)) {
-        let bench = s.repo.cargo(&["bench", "--locked", "--package", "staya-view", "--bench", "view"]);
-        s.report.command("pictures a second", bench);
+    if is_wanted("view") {
+        let mut bench = s.repo.cargo("bench --locked --package staya-view --bench view");
+        s.report.command("pictures a second", &mut bench);
     }
 }
 
@@ -51,9 +52,9 @@ pub fn run_goals(s: &mut Session) {
 /// A benchmark in Python with the program as users have it; the script judges.
 fn script(s: &mut Session, name: &str, file: &str) {
     let program = s.staya("release");
-    let ready = program.and_then(|program| Ok((program, python::client_environment(&s.repo)?)));
-    s.report.step_with(name, ready, |(program, python)| {
-        run_command_line(s.repo.command(&python).arg(file).env("STAYA", program))
+    s.report.step(name, || {
+        let program = program?;
+        run_command(s.repo.command(python::client_environment(&s.repo)?).arg(file).env("STAYA", program))
     });
 }
 
@@ -61,9 +62,9 @@ fn script(s: &mut Session, name: &str, file: &str) {
 fn criterion(s: &mut Session, filter: Option<&str>) {
     let home = s.repo.target.join("criterion");
     let start = SystemTime::now();
-    let mut benches = s.repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
-    benches.env("CRITERION_HOME", &home).args(filter.map(|name| ["--", name]).into_iter().flatten());
-    s.report.command("benchmarks", benches);
+    let mut benches = s.repo.cargo_in(PEERS, "bench --locked --bench *");
+    benches.env("CRITERION_HOME", &home).args(filter.iter().flat_map(|name| ["--", name]));
+    s.report.command("benchmarks", &mut benches);
     s.report.part("goals", || {
         let mut counts = judge(&medians(&home, start));
         if filter.is_some_and(|name| !name.starts_with('^')) {
@@ -71,7 +72,7 @@ fn criterion(s: &mut Session, filter: Option<&str>) {
             counts.skipped = 0;
         }
         let note = if counts.skipped > 0 { "skipped: goals of benchmarks that did not run" } else { "" };
-        (counts, note.to_string())
+        Ok((counts, note.to_string()))
     });
 }
 

@@ -5,14 +5,11 @@ use crate::session::Session;
 
 /// Runs the tests whose name contains `name` with the variable that makes them write, runs them
 /// again without it, and lists what changed.
-pub fn run(s: &mut Session, name: Option<&str>) {
-    let name = name.unwrap_or("golden");
-    let tests = || s.repo.cargo(&["test", "--workspace", "--no-fail-fast", name]);
+pub fn run(s: &mut Session, name: &str) {
+    let tests = || s.repo.cargo(&format!("test --workspace --no-fail-fast {name}"));
     s.report.step("rewrite golden files", || repo::run(tests().env(BLESS, "1")));
-    let again = tests();
-    s.report.command("compare again", again);
-    let status = ["status", "--short", "--", "*golden*"];
-    match output_of(s.repo.command("git").args(status)) {
+    s.report.command("compare again", &mut tests());
+    match output_of(s.repo.command("git").args(["status", "--short", "--", "*golden*"])) {
         Some(changed) if changed.is_empty() => println!("\nNo golden file changed."),
         Some(changed) => {
             println!("\nGolden files that differ from the last commit; look at each, and commit them apart:");

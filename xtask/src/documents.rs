@@ -2,12 +2,14 @@
 //! comments, and the code that README.md quotes.
 
 use crate::files;
+use crate::report::none_of;
+use anyhow::Result;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Reads every Markdown file of the repository and the comments of its Rust code. The error counts
 /// the faults, which are printed by file and line.
-pub fn check(root: &Path) -> Result<(), String> {
+pub fn check(root: &Path) -> Result<()> {
     let pages = Pages::of(root)?;
     let mut faults = Vec::new();
     for file in &files::sources(root, &["md", "rs"])? {
@@ -21,8 +23,7 @@ pub fn check(root: &Path) -> Result<(), String> {
     let quotes = quotes(&readme);
     let strange = quotes.iter().filter(|quote| !examples.iter().any(|example| is_in(quote, example)));
     faults.extend(strange.map(|quote| format!("README.md: in no file of examples/: {}", quote.join(" "))));
-    faults.iter().for_each(|fault| println!("{fault}"));
-    if faults.is_empty() { Ok(()) } else { Err(format!("{} references lead nowhere", faults.len())) }
+    none_of(&faults, "references lead nowhere")
 }
 
 /// The files and folders that texts can refer to.
@@ -32,7 +33,7 @@ struct Pages {
 }
 
 impl Pages {
-    fn of(root: &Path) -> Result<Self, String> {
+    fn of(root: &Path) -> Result<Self> {
         let files = files::below(root, &|path| !path.is_dir() || !files::is_made(path))?;
         let files = files.iter().filter_map(|file| file.strip_prefix(root).ok());
         let paths = files.flat_map(Path::ancestors).filter(|path| !path.as_os_str().is_empty());

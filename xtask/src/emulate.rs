@@ -3,8 +3,10 @@
 use crate::apt::Tools;
 use crate::device::Part;
 use crate::firmware::{self, Profile};
-use crate::repo::{Repo, shown};
+use crate::repo::{Repo, Words as _, shown};
+use crate::report::skipped;
 use crate::session::Session;
+use anyhow::{Context as _, Result, bail, ensure};
 use std::path::Path;
 use std::process::Stdio;
 use std::sync::mpsc;
@@ -19,6 +21,7 @@ pub const QEMU: Tools = Tools {
     packages: &["qemu-system-arm", "qemu-system-misc"],
     programs: &["qemu-system-arm", "qemu-system-riscv32"],
     question: "qemu-system-arm --version && qemu-system-riscv32 --version",
+    ways: &["unpack"],
 };
 
 /// The command that fetches the emulators.
@@ -33,46 +36,41 @@ pub fn on_part(
     name: &str,
     part: &Part,
     (profile, bins): (Profile, &[&str]),
-    work: impl FnOnce(&Repo) -> Result<(), String>,
+    work: impl FnOnce(&Repo) -> Result<()>,
 ) {
-    if !firmware::build(s, part, profile, bins) {
-        return s.report.skip(name, "there is no firmware");
-    }
-    s.report.step_with(name, QEMU.prepare(&s.repo), |()| work(&s.repo));
+    let is_built = firmware::build(s, part, profile, bins);
+    s.report.step(name, || {
+        ensure!(is_built, skipped("there is no firmware"));
+        QEMU.prepare(&s.repo)?;
+        work(&s.repo)
+    });
 }
 
 /// Runs a program with these arguments that ends by itself, with the part's UART on one of QEMU's
 /// devices, `none` or `stdio`; what it printed. Each instruction takes a nanosecond of the part's
 /// time.
-pub fn run(repo: &Repo, part: &Part, elf: &Path, line: &str, arguments: &[&str]) -> Result<String, String> {
+pub fn run(repo: &Repo, part: &Part, elf: &Path, line: &str, arguments: &[&str]) -> Result<String> {
     let arguments: String = arguments.iter().map(|argument| format!(",arg={argument}")).collect();
     let mut command = repo.command(part.emulator);
-    command
-        .args(part.machine)
-        .args(["-icount", "shift=0", "-display", "none"])
-        .args(["-monitor", "none", "-serial", line])
-        .args(["-semihosting-config", &format!("enable=on,target=native{arguments}")])
-        .arg("-kernel")
-        .arg(elf);
+    command.args(part.machine).words("-icount shift=0 -display none -monitor none -serial").arg(line);
+    command.arg("-semihosting-config").arg(format!("enable=on,target=native{arguments}")).arg("-kernel").arg(elf);
     println!("$ {}", shown(&command));
-    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
-    let child = child.map_err(|error| format!("cannot start {}: {error}", part.emulator))?;
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.with_context(|| format!("cannot start {}", part.emulator))?;
     let mut kill = repo.command("kill");
     kill.arg(child.id().to_string());
     let (ends, end) = mpsc::channel();
     thread::spawn(move || ends.send(child.wait_with_output()));
-    let hangs = |_| {
+    let output = end.recv_timeout(PATIENCE).or_else(|_| {
         let _ = kill.status();
         println!("did not end within {} s, so it was ended", PATIENCE.as_secs());
         end.recv()
-    };
-    let output = end.recv_timeout(PATIENCE).or_else(hangs).map_err(|error| error.to_string())?;
-    let output = output.map_err(|error| error.to_string())?;
+    })??;
     let [said, complaints] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    if output.status.success() {
-        return Ok(said);
+    if !output.status.success() {
+        print!("{said}");
+        let last = said.lines().last().unwrap_or_default();
+        bail!("{}; {last} {}", output.status, complaints.lines().next().unwrap_or_default());
     }
-    print!("{said}");
-    let last = said.lines().last().unwrap_or_default();
-    Err(format!("{}; {last} {}", output.status, complaints.lines().next().unwrap_or_default()))
+    Ok(said)
 }

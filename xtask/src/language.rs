@@ -3,6 +3,7 @@
 
 use crate::documents::prose;
 use crate::files;
+use anyhow::{Result, ensure};
 use regex::{Regex, RegexBuilder};
 use std::path::Path;
 
@@ -28,7 +29,7 @@ struct Rules {
 
 /// Prints each finding by file and line, and the counts beside their limits. The error names the
 /// counts above their limit.
-pub fn check(root: &Path) -> Result<(), String> {
+pub fn check(root: &Path) -> Result<()> {
     let rules = Rules::new();
     let (mut broken, mut long_lines, mut words, mut comments) = (0, 0, 0, 0);
     for file in files::sources(root, &EXTENSIONS)? {
@@ -62,7 +63,8 @@ pub fn check(root: &Path) -> Result<(), String> {
     let shown = counts.map(|(count, limit, what)| (count > limit, format!("{count} {what}, at most {limit}")));
     shown.iter().for_each(|(_, line)| println!("{line}"));
     let faults: Vec<String> = shown.into_iter().filter_map(|(is_fault, line)| is_fault.then_some(line)).collect();
-    if faults.is_empty() { Ok(()) } else { Err(faults.join("; ")) }
+    ensure!(faults.is_empty(), "{}", faults.join("; "));
+    Ok(())
 }
 
 /// Whether a line can and should be wrapped: a path or an address cannot.

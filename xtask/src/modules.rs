@@ -2,9 +2,11 @@
 //! of the controller point down only, and behaviours never import each other. Tests are left out.
 
 use crate::files;
+use crate::report::none_of;
+use anyhow::{Result, anyhow};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The layers of the controller from the lowest up. Modules of one layer may use each other, except
 /// where [`APART`] says not.
@@ -27,35 +29,26 @@ type Module = Vec<String>;
 /// Each module with the paths in it that begin with `crate`, `super` or `self`, from the root down.
 type Modules = BTreeMap<Module, BTreeSet<Module>>;
 
-/// Looks for circles in the crates in these folders. The error names the first; all are printed.
-pub fn check_circles(crates: &[impl AsRef<Path>]) -> Result<(), String> {
+/// Looks for circles in the crates in these folders.
+pub fn check_circles(crates: &[PathBuf]) -> Result<()> {
     let mut faults = Vec::new();
     // Packages of examples or tests alone have no sources.
-    for source in crates.iter().map(|folder| folder.as_ref().join("src")).filter(|source| source.is_dir()) {
+    for source in crates.iter().map(|folder| folder.join("src")).filter(|source| source.is_dir()) {
         let found = circles(&read(&source)?);
         faults.extend(found.iter().map(|circle| format!("{}: {circle}", source.display())));
     }
-    all_printed(&faults)
+    none_of(&faults, "circles")
 }
 
-/// Looks for imports of the controller that point up or sideways. The error names the first; all
-/// are printed.
-pub fn check_layers(source: &Path) -> Result<(), String> {
-    let mut faults = BTreeSet::new();
-    for (module, paths) in read(source)? {
-        // The crate's root and the list of laws name every module.
-        if module.is_empty() || *module == ["laws"] {
-            continue;
-        }
-        let found = paths.iter().filter(|path| !path.is_empty()).filter_map(|path| fault(unit(&module), unit(path)));
+/// Looks for imports of the controller that point up or sideways.
+pub fn check_layers(source: &Path) -> Result<()> {
+    let mut faults = Vec::new();
+    // The crate's root and the list of laws name every module.
+    for (module, paths) in read(source)?.iter().filter(|(module, _)| !module.is_empty() && **module != ["laws"]) {
+        let found = paths.iter().filter(|path| !path.is_empty()).filter_map(|path| fault(unit(module), unit(path)));
         faults.extend(found.map(|fault| format!("{}: {fault}", module.join("/"))));
     }
-    all_printed(&faults)
-}
-
-fn all_printed<'a>(faults: impl IntoIterator<Item = &'a String> + Copy) -> Result<(), String> {
-    faults.into_iter().for_each(|fault| println!("{fault}"));
-    faults.into_iter().next().cloned().map_or(Ok(()), Err)
+    none_of(&faults, "imports point up or sideways")
 }
 
 /// The part of a path that has a layer: a module of the root, or an algorithm in the folder of its
@@ -126,7 +119,7 @@ fn uses(modules: &Modules) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>
 }
 
 /// Reads the crate whose sources are in a folder.
-fn read(source: &Path) -> Result<Modules, String> {
+fn read(source: &Path) -> Result<Modules> {
     let mut code = Code::default();
     let is_wanted =
         |path: &Path| if path.is_dir() { files::name(path) != "bin" } else { files::has_extension(path, &["rs"]) };
@@ -137,9 +130,8 @@ fn read(source: &Path) -> Result<Modules, String> {
         if module.last().is_some_and(|name| ["lib", "main", "mod"].contains(&name.as_str())) {
             module.pop();
         }
-        let tokens: TokenStream =
-            files::read(&file)?.parse().map_err(|error| format!("{}: {error}", file.display()))?;
-        code.walk(tokens, &module);
+        let tokens = files::read(&file)?.parse::<TokenStream>();
+        code.walk(tokens.map_err(|error| anyhow!("{}: {error}", file.display()))?, &module);
     }
     Ok(code.without_tests())
 }

@@ -9,9 +9,10 @@ use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
 use crate::files;
 use crate::firmware::{Profile, Sections, sections};
-use crate::options::Options;
 use crate::repo::Repo;
+use crate::report::none_of;
 use crate::session::Session;
+use anyhow::{Context as _, Result, ensure};
 use serde_json::{Value, json};
 
 /// Where the limits are.
@@ -66,58 +67,70 @@ struct Measured {
     formats: Table,
 }
 
-/// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON
-/// instead of as tables.
-pub fn run(s: &mut Session, is_json: bool) {
+#[derive(clap::Args, Default)]
+pub struct Options {
+    /// Print JSON instead of tables
+    #[arg(long)]
+    json: bool,
+    /// Search for the longest step behind ORCA
+    #[arg(long, conflicts_with = "json")]
+    search: bool,
+    /// The first random number of the search
+    #[arg(long, value_name = "N", requires = "search", default_value = "1", value_parser = clap::value_parser!(u64).range(1..))]
+    seed: u64,
+    /// How many scenes are searched
+    #[arg(long, value_name = "N", requires = "search", default_value = "20000", value_parser = clap::value_parser!(u64).range(1..))]
+    scenes: u64,
+}
+
+/// Measures all parts; one step for each part's budget. Prints the figures as JSON or as tables.
+pub fn run(s: &mut Session, options: &Options) {
+    if options.search {
+        return search(s, options);
+    }
     let mut all = Vec::new();
     for part in &PARTS {
         on_part(s, &format!("budget of the {}", part.name), part, (Profile::Firmware, &[]), |repo| {
-            let text = files::read(&repo.root.join(BUDGETS))?;
-            let budget = budget::read(&text, part.name).map_err(|error| format!("{BUDGETS}: {error}"))?;
+            let budget = budget::read(&files::read(&repo.root.join(BUDGETS))?, part.name).context(BUDGETS)?;
             let measured = measure(repo, part, budget::number(&budget))?;
             let Measured { programs, cases, laws, steps, formats } = &measured;
-            if is_json {
-                let [programs, cases, laws] = [programs, cases, laws].map(Table::json);
-                let [steps, formats] = [steps, formats].map(Table::json);
+            if options.json {
+                let [programs, cases, laws, steps, formats] = [programs, cases, laws, steps, formats].map(Table::json);
                 all.push(json!({ "part": part.name, "programs": programs, "cases": cases, "laws": laws,
                     "steps": steps, "formats": formats }));
             } else {
                 println!("{}", part.name);
                 [programs, cases, laws, steps, formats].iter().for_each(|table| print!("{}", table.text()));
             }
-            let breaches = budget::breaches(&budget, &measured);
-            breaches.iter().for_each(|breach| println!("{breach}"));
-            if breaches.is_empty() { Ok(()) } else { Err(breaches.join("; ")) }
+            none_of(&budget::breaches(&budget, &measured), "limits are breached")
         });
     }
-    if is_json {
+    if options.json {
         println!("{:#}", Value::Array(all));
     }
 }
 
 /// Searches for the scene with the longest step behind ORCA, and prints it as an expression for
 /// `hil/cases/src/scene/found.rs`.
-pub fn search(s: &mut Session, options: &Options<'_>) {
-    let seed = options.value("--seed").unwrap_or("1");
-    let scenes = options.value("--scenes").unwrap_or("20000");
+fn search(s: &mut Session, options: &Options) {
     on_part(s, "search for the longest step", STM32F405, (Profile::Firmware, &["search"]), |repo| {
         let elf = Profile::Firmware.elf(repo, STM32F405, "search");
-        print!("{}", emulate::run(repo, STM32F405, &elf, "none", &[seed, scenes])?);
+        let arguments = [options.seed, options.scenes].map(|number| number.to_string());
+        print!("{}", emulate::run(repo, STM32F405, &elf, "none", &arguments.each_ref().map(String::as_str))?);
         Ok(())
     });
 }
 
-fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured, String> {
+fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured> {
     let elf = |program: &str| Profile::Firmware.elf(repo, part, program);
     let sizes = ["lockstep", "replay", "bench"].map(|program| {
         let Sections { text, rodata, flash, ram } = sections(&elf(program))?;
         Ok((program.to_string(), vec![text, rodata, flash, ram]))
     });
-    let sizes = sizes.into_iter().collect::<Result<_, String>>()?;
-    let programs = Table { columns: &["program", "text", "rodata", "flash", "ram"], rows: sizes };
+    let rows = sizes.into_iter().collect::<Result<_>>()?;
+    let programs = Table { columns: &["program", "text", "rodata", "flash", "ram"], rows };
     let cases = cases(&emulate::run(repo, part, &elf("bench"), "none", &[])?)?;
-    let bytes = files::bytes(&elf("bench"))?;
-    let program = reach::Program::read(&bytes)?;
+    let program = reach::Program::read(&files::bytes(&elf("bench"))?)?;
     let (steps, formats) = (program.steps(), program.formats());
     let laws = laws::laws(number, &programs, &cases, &steps);
     Ok(Measured { programs, cases, laws, steps, formats })
@@ -125,7 +138,7 @@ fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured, String> {
 
 /// The output of `bench`: rows of case, kind of number (`-` for wire formats) and figures. The
 /// error names the first line of another form.
-fn cases(output: &str) -> Result<Table, String> {
+fn cases(output: &str) -> Result<Table> {
     const COLUMNS: [&str; 7] = ["case", "steps", "median", "worst", "stack", "agent", "workspace"];
     let row = |line: &str| {
         let (case, rest) = line.split_once(' ')?;
@@ -133,9 +146,10 @@ fn cases(output: &str) -> Result<Table, String> {
         let figures: Vec<u64> = figures.split(' ').map(|figure| figure.parse().ok()).collect::<Option<_>>()?;
         (figures.len() == COLUMNS.len() - 1).then(|| (format!("{case} {number}"), figures))
     };
-    let rows = output.lines().map(|line| row(line).ok_or_else(|| format!("`bench` printed `{line}`")));
-    let rows: Vec<_> = rows.collect::<Result<_, _>>()?;
-    if rows.is_empty() { Err(String::from("`bench` printed nothing")) } else { Ok(Table { columns: &COLUMNS, rows }) }
+    let rows = output.lines().map(|line| row(line).with_context(|| format!("`bench` printed `{line}`")));
+    let rows: Vec<_> = rows.collect::<Result<_>>()?;
+    ensure!(!rows.is_empty(), "`bench` printed nothing");
+    Ok(Table { columns: &COLUMNS, rows })
 }
 
 #[cfg(test)]

@@ -1,16 +1,17 @@
 //! Limits of a part, and which of them are breached.
 
 use super::Measured;
+use anyhow::{Context as _, Result, ensure};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
 /// The limits of a part: figures, and tables of figures of cases or laws. Other figures have no
 /// limit.
-pub fn read(text: &str, part: &str) -> Result<Table, String> {
-    let parts: Table = text.parse().map_err(|error| format!("{error}"))?;
-    let limits = parts.get(part).and_then(Value::as_table).cloned();
-    let limits = limits.ok_or_else(|| format!("no limits for {part}"))?;
-    if number(&limits).is_empty() { Err(format!("no `number` for {part}")) } else { Ok(limits) }
+pub fn read(text: &str, part: &str) -> Result<Table> {
+    let parts: Table = text.parse()?;
+    let limits = parts.get(part).and_then(Value::as_table).with_context(|| format!("no limits for {part}"))?;
+    ensure!(!number(limits).is_empty(), "no `number` for {part}");
+    Ok(limits.clone())
 }
 
 /// The kind of number that the limits are for.

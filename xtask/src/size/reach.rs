@@ -6,6 +6,7 @@
 //! without a name reach up to the next thing with a reference to it.
 
 use super::Table;
+use anyhow::Result;
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,8 +22,8 @@ pub struct Program {
 
 impl Program {
     /// Reads an ELF file that was linked with its relocations.
-    pub fn read(bytes: &[u8]) -> Result<Self, String> {
-        let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
+    pub fn read(bytes: &[u8]) -> Result<Self> {
+        let file = object::File::parse(bytes)?;
         let mut program = Self { things: BTreeMap::new(), names: Vec::new(), references: BTreeMap::new() };
         let is_thumb = file.architecture() == object::Architecture::Arm;
         // The lowest bit of a Thumb function's address says that it is one.
