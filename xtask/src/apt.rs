@@ -4,9 +4,8 @@
 //! one: the `qemu-utils` of backports excludes Debian's emulators. Only Python, and tshark for
 //! root, do not work from another folder and are installed, as root.
 
-use crate::repo::{Repo, ended};
-use crate::report::skipped;
-use anyhow::{Context as _, Result, ensure};
+use crate::prelude::*;
+use crate::repo::ended;
 
 /// Programs, and Debian's packages of them.
 pub struct Tools {

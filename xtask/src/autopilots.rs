@@ -1,14 +1,8 @@
 //! `cargo xtask autopilots`: the companion beside ArduPilot's own code, in its own simulation, for
 //! whoever has built it.
 
+use crate::prelude::*;
 use crate::python;
-use crate::repo::{Repo, run_reading};
-use crate::report::{Counts, Need as _, skipped};
-use crate::session::Session;
-use crate::tally::counted;
-use anyhow::{Context as _, Result, ensure};
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// Where pytest's settings are, from which it counts the names of tests.
 const TOP: &str = "tests/python";

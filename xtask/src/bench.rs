@@ -1,12 +1,8 @@
 //! `cargo xtask bench`: the project's benchmarks and those beside peer crates, in one run on one
 //! machine.
 
-use crate::files;
+use crate::prelude::*;
 use crate::python;
-use crate::repo::run as run_command;
-use crate::report::Counts;
-use crate::session::Session;
-use std::path::Path;
 use std::time::SystemTime;
 
 const PEERS: &str = "tests/peers";
@@ -54,7 +50,7 @@ fn script(s: &mut Session, name: &str, file: &str) {
     let program = s.staya("release");
     s.report.step(name, || {
         let program = program?;
-        run_command(s.repo.command(python::client_environment(&s.repo)?).arg(file).env("STAYA", program))
+        execute(s.repo.command(python::client_environment(&s.repo)?).arg(file).env("STAYA", program))
     });
 }
 

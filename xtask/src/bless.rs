@@ -1,13 +1,13 @@
 //! `cargo xtask bless`: rewrite golden files.
 
-use crate::repo::{self, BLESS, output_of};
-use crate::session::Session;
+use crate::prelude::*;
+use crate::repo::BLESS;
 
 /// Runs the tests whose name contains `name` with the variable that makes them write, runs them
 /// again without it, and lists what changed.
 pub fn run(s: &mut Session, name: &str) {
     let tests = || s.repo.cargo(&format!("test --workspace --no-fail-fast {name}"));
-    s.report.step("rewrite golden files", || repo::run(tests().env(BLESS, "1")));
+    s.report.step("rewrite golden files", || execute(tests().env(BLESS, "1")));
     s.report.command("compare again", &mut tests());
     match output_of(s.repo.command("git").args(["status", "--short", "--", "*golden*"])) {
         Some(changed) if changed.is_empty() => println!("\nNo golden file changed."),

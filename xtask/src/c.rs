@@ -4,16 +4,10 @@
 use crate::apt::Tools;
 use crate::device::{STM32F405, Toolchain};
 use crate::emulate::{self, QEMU};
-use crate::files;
 use crate::firmware::sections;
 use crate::plants::SYMBOL;
-use crate::repo::{Repo, Words as _, output_of, run as run_command};
-use crate::report::{none_of, skipped};
-use crate::session::Session;
+use crate::prelude::*;
 use crate::swarms::TABLE;
-use anyhow::{Context as _, Result, ensure};
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// Debian's packages of the compiler for the part; no library of C is needed.
 pub const COMPILER: Tools = Tools {
@@ -40,7 +34,7 @@ pub fn run(s: &mut Session) {
 fn on_host(repo: &Repo) -> Result<()> {
     let remedy = "no cc and c++; on Debian run, as root, `apt-get install g++`";
     ensure!(repo.says("cc --version && c++ --version"), skipped(remedy));
-    run_command(&mut repo.cargo("build --locked --package staya-c"))?;
+    execute(&mut repo.cargo("build --locked --package staya-c"))?;
     compare(repo, &program(repo, "cc -std=c11 controller/c/tests/swarms.c", "controller/c/tests/host.c")?)?;
     print!("{}", program(repo, "cc -std=c11", "examples/c/orca_circle.c")?);
     print!("{}", program(repo, "cc -std=c11", "examples/c/own_law.c")?);
@@ -60,7 +54,7 @@ fn sanitized(repo: &Repo) -> Result<()> {
     // A folder of its own, or flags that differ would compile everything again.
     test.env("CARGO_TARGET_DIR", repo.target.join("asan")).env("CARGO_INCREMENTAL", "0");
     test.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address").env("RUST_MIN_STACK", "16777216");
-    run_command(test.words("--config profile.dev.opt-level=0 --config profile.dev.debug=1"))
+    execute(test.words("--config profile.dev.opt-level=0 --config profile.dev.debug=1"))
 }
 
 /// Compiles a program by the command of this line, runs it, and gives what it prints.
@@ -70,7 +64,7 @@ fn program(repo: &Repo, line: &str, source: &str) -> Result<String> {
     let mut build = repo.command(compiler);
     build.words(options).arg("-O1").words(STRICT).arg(source).arg(repo.target.join("debug/libstaya_c.a"));
     // System libraries that Rust's standard library needs on a host.
-    run_command(build.words("-lm -lpthread -ldl -o").arg(&to))?;
+    execute(build.words("-lm -lpthread -ldl -o").arg(&to))?;
     println!("$ {}", to.display());
     output_of(&mut repo.command(&to)).map(|text| text + "\n").with_context(|| format!("{} fails", to.display()))
 }
@@ -85,7 +79,7 @@ fn object(repo: &Repo, source: &str, extension: &str) -> Result<PathBuf> {
 /// The library as a user of the part makes it.
 pub fn library(repo: &Repo, toolchain: &Toolchain) -> Result<PathBuf> {
     let line = "build --locked --profile firmware --package staya-c";
-    run_command(&mut toolchain.cargo(repo, STM32F405.target, line))?;
+    execute(&mut toolchain.cargo(repo, STM32F405.target, line))?;
     Ok(toolchain.target_folder(repo).join(STM32F405.target).join("firmware/libstaya_c.a"))
 }
 
@@ -102,13 +96,13 @@ fn on_part(repo: &Repo, library: &Path) -> Result<()> {
     for (folder, source) in [("crazyflie", "src/staya_app.c"), ("esp-idf", "main/main.c")] {
         let mut build = cross(repo);
         build.arg(format!("-Iexamples/c/{folder}/stubs")).arg("-c").arg(format!("examples/c/{folder}/{source}"));
-        run_command(build.arg("-o").arg(object(repo, source, "o")?))?;
+        execute(build.arg("-o").arg(object(repo, source, "o")?))?;
     }
     let elf = object(repo, "swarms", "elf")?;
     let mut build = cross(repo);
     build.words("-nostdlib -Wl,--gc-sections,-z,noexecstack -Wl,-T,memory.x -Wl,-T,controller/c/tests/stm32f405.ld");
     build.words("controller/c/tests/stm32f405.c controller/c/tests/swarms.c").arg(library);
-    run_command(build.words("-lgcc -o").arg(&elf))?;
+    execute(build.words("-lgcc -o").arg(&elf))?;
     let sizes = sections(&elf)?;
     println!("{} bytes of flash, {} of RAM for five agents", sizes.flash, sizes.ram);
     let output = emulate::run(repo, STM32F405, &elf, "none", &[])?;

@@ -1,12 +1,11 @@
 //! `cargo xtask check`: everything that can be said without running the code.
 
 use crate::device::{PARTS, Part};
+use crate::prelude::*;
 use crate::python::{FEATURE, WITHOUT_PYTHON};
-use crate::repo::{Repo, ended, output_of};
-use crate::report::skipped;
-use crate::session::{Session, folders, packages};
+use crate::repo::ended;
+use crate::session::{folders, packages};
 use crate::{documents, firmware, language, modules, plants, weight};
-use anyhow::{Context as _, Result, anyhow, ensure};
 use serde_json::Value;
 use std::thread::{JoinHandle, spawn};
 
@@ -61,7 +60,7 @@ fn cargo(s: &mut Session, name: &str, folder: &str, line: &str) {
                 return Err(skipped(format!("not installed; run `rustup component add {component}`")));
             }
         }
-        crate::repo::run(s.repo.cargo_in(folder, line).envs(WITHOUT_PYTHON).env("RUSTDOCFLAGS", "-D warnings"))
+        execute(s.repo.cargo_in(folder, line).envs(WITHOUT_PYTHON).env("RUSTDOCFLAGS", "-D warnings"))
     });
 }
 
@@ -79,7 +78,7 @@ fn compiles_by_the_oldest_rust(repo: &Repo) -> Result<()> {
     ensure!(repo.says(&format!("rustup run {DECLARED} rustc --version")), skipped(format!("this is {here}; {remedy}")));
     let mut check = repo.command("rustup");
     check.args(["run", DECLARED, "cargo", "check", "--locked", "--workspace", "--target-dir"]);
-    crate::repo::run(check.arg(repo.target.join("minimal")))
+    execute(check.arg(repo.target.join("minimal")))
 }
 
 /// Checks of the controller for a part with each set of features that its manifest lists: the name

@@ -1,10 +1,7 @@
 //! Microcontrollers, and what compiles for them: rustup's targets or Debian's packages.
 
 use crate::apt::Tools;
-use crate::repo::{Repo, Words as _, output_of};
-use crate::report::skipped;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use crate::prelude::*;
 
 /// A microcontroller that there is firmware for.
 pub struct Part {

@@ -1,11 +1,8 @@
 //! The documentation refers only to things that exist: paths, links and their headings, pages in
 //! comments, and the code that README.md quotes.
 
-use crate::files;
-use crate::report::none_of;
-use anyhow::Result;
+use crate::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
 /// Reads every Markdown file of the repository and the comments of its Rust code. The error counts
 /// the faults, which are printed by file and line.

@@ -3,11 +3,8 @@
 use crate::apt::Tools;
 use crate::device::Part;
 use crate::firmware::{self, Profile};
-use crate::repo::{Repo, Words as _, shown};
-use crate::report::skipped;
-use crate::session::Session;
-use anyhow::{Context as _, Result, bail, ensure};
-use std::path::Path;
+use crate::prelude::*;
+use crate::repo::shown;
 use std::process::Stdio;
 use std::sync::mpsc;
 use std::thread;

@@ -4,12 +4,7 @@ use crate::device::{Part, STM32F405};
 use crate::emulate::QEMU;
 use crate::firmware::{Profile, build_own};
 use crate::install;
-use crate::repo::{Repo, Words as _, run_reading};
-use crate::report::skipped;
-use crate::session::{MAIN, Session};
-use crate::tally::counted;
-use anyhow::{Context as _, Result, ensure};
-use std::process::Command;
+use crate::prelude::*;
 
 /// A crate with a guidance law of its own, as people copy it.
 const OWN: &str = "examples/own_part";

@@ -1,13 +1,8 @@
 //! `cargo xtask firmware`: the ELF files of the parts, with the toolchain that is installed.
 
 use crate::device::{NAMES, PARTS, Part, STM32F405, Toolchain, part};
-use crate::files;
-use crate::repo::{Repo, run};
-use crate::report::skipped;
-use crate::session::Session;
-use anyhow::{Context as _, Result, bail, ensure};
+use crate::prelude::*;
 use object::{Object as _, ObjectSection as _, SectionFlags, SectionKind, elf};
-use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 
 /// Cargo's profile for programs of a part, and the profile to debug them with.
@@ -113,7 +108,7 @@ fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only:
         bail!("no program {unknown} in hil/firmware");
     }
     bins.retain(|bin| only.is_empty() || only.contains(&bin.as_str()));
-    run(cargo.args(bins.iter().flat_map(|bin| ["--bin", bin])))?;
+    execute(cargo.args(bins.iter().flat_map(|bin| ["--bin", bin])))?;
     let built = toolchain.target_folder(repo).join(part.target).join(folder);
     println!("{:>8} {:>8}  file", "flash", "RAM");
     bins.iter().try_for_each(|bin| put(&built.join(bin), &profile.elf(repo, part, bin)))
@@ -137,7 +132,7 @@ pub fn build_own(s: &mut Session, part: &Part, folder: &Path) -> bool {
             cargo.args(["--config", &format!("profile.{profile}.{line}")]);
         }
         let target = toolchain.target_folder(repo);
-        run(cargo.env("CARGO_TARGET_DIR", &target))?;
+        execute(cargo.env("CARGO_TARGET_DIR", &target))?;
         println!("{:>8} {:>8}  file", "flash", "RAM");
         let from = target.join(part.target).join(built).join("firmware");
         put(&from, &folder.join("target/firmware").join(part.name).join("lockstep"))
@@ -151,7 +146,7 @@ pub const EXAMPLE: &str = "examples/stm32f4";
 pub fn example(s: &mut Session) {
     s.with_toolchain("example firmware for the STM32F405", STM32F405.target, |repo, toolchain| {
         let mut build = toolchain.cargo(repo, STM32F405.target, "build --locked --release");
-        run(build.current_dir(repo.root.join(EXAMPLE)))
+        execute(build.current_dir(repo.root.join(EXAMPLE)))
     });
 }
 

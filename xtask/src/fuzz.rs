@@ -1,11 +1,7 @@
 //! `cargo xtask fuzz`: a fuzzer looks for bytes that break what must hold for any bytes.
 
-use crate::files;
-use crate::repo::{Repo, Words as _};
-use crate::report::skipped;
-use crate::session::Session;
+use crate::prelude::*;
 use std::num::NonZeroU64;
-use std::process::Command;
 
 const FOLDER: &str = "tests/fuzz";
 

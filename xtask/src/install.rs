@@ -2,13 +2,9 @@
 //! figures of papers, its manual and what shells complete it by.
 
 use crate::device::PARTS;
-use crate::files;
 use crate::firmware::{self, Profile};
-use crate::repo::{Repo, run as run_command};
-use crate::report::skipped;
-use crate::session::{MAIN, Session, programs};
-use anyhow::Result;
-use std::path::{Path, PathBuf};
+use crate::prelude::*;
+use crate::session::programs;
 
 #[derive(clap::Args)]
 pub struct Options {
@@ -62,7 +58,7 @@ fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<()> {
     put_figures(repo, &prefix.join("share/staya"))?;
     let program = prefix.join("bin").join(files::name(&repo.program(profile, MAIN)));
     let mut shell = repo.cargo("run --quiet --locked --package staya-shell");
-    run_command(shell.args((profile == "release").then_some("--release")).arg("--").arg(prefix))?;
+    execute(shell.args((profile == "release").then_some("--release")).arg("--").arg(prefix))?;
     println!("{}; is {} in PATH?", program.display(), prefix.join("bin").display());
     Ok(())
 }

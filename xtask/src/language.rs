@@ -2,10 +2,8 @@
 //! words of pages.
 
 use crate::documents::prose;
-use crate::files;
-use anyhow::{Result, ensure};
+use crate::prelude::*;
 use regex::{Regex, RegexBuilder};
-use std::path::Path;
 
 /// The most phrases that may break a rule.
 const BROKEN: usize = 40;

@@ -22,6 +22,7 @@ mod modules;
 mod mpi;
 mod mutants;
 mod plants;
+mod prelude;
 mod project;
 mod python;
 mod repo;

@@ -1,12 +1,9 @@
 //! Modules of one folder do not use each other in a circle, in any crate of the workspace. Layers
 //! of the controller point down only, and behaviours never import each other. Tests are left out.
 
-use crate::files;
-use crate::report::none_of;
-use anyhow::{Result, anyhow};
+use crate::prelude::*;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
 /// The layers of the controller from the lowest up. Modules of one layer may use each other, except
 /// where [`APART`] says not.

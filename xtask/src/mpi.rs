@@ -2,12 +2,8 @@
 //! packages are unpacked into `target/tools`.
 
 use crate::apt::Tools;
-use crate::files;
+use crate::prelude::*;
 use crate::python::{client_environment, suite};
-use crate::repo::{Repo, run as run_command};
-use crate::report::skipped;
-use crate::session::Session;
-use anyhow::{Context as _, Result};
 
 const NAME: &str = "one world over ranks of OpenMPI";
 const MPI: Tools = Tools {
@@ -24,7 +20,7 @@ pub fn run(s: &mut Session, is_scaling: bool) {
     let is_built = s.report.step("staya-mpi", || {
         variables = find(&s.repo)?;
         let mut build = s.repo.cargo("build --locked --package staya-mpi --features mpi");
-        run_command(build.args(is_scaling.then_some("--release")).envs(variables.iter().cloned()))
+        execute(build.args(is_scaling.then_some("--release")).envs(variables.iter().cloned()))
     });
     let is_ready = || if is_built { Ok(()) } else { Err(skipped("staya-mpi was not built")) };
     if is_scaling {
@@ -32,7 +28,7 @@ pub fn run(s: &mut Session, is_scaling: bool) {
             is_ready()?;
             let mut times = s.repo.command("python3");
             times.arg("tests/mpi/scaling.py").envs(variables).env("STAYA", s.repo.program("release", "staya"));
-            run_command(&mut times)
+            execute(&mut times)
         });
     } else {
         suite(s, NAME, &["tests/mpi", "--timeout", "600"], &variables, |repo| {

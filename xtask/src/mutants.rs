@@ -3,12 +3,7 @@
 //! `cargo-mutants` plants them in a copy of the sources. `.cargo/mutants.toml` lists the modules,
 //! and the survivors that are accepted, each with its reason.
 
-use crate::files;
-use crate::repo::{Repo, Words as _, run as run_command};
-use crate::report::Counts;
-use crate::session::Session;
-use anyhow::{Context as _, Result};
-use std::path::PathBuf;
+use crate::prelude::*;
 
 /// The share that `cargo xtask test --all` plants: some 23 of 4,500, in a minute and a half per
 /// ten on two processors.
@@ -45,7 +40,7 @@ fn planted(repo: &Repo, shard: &str) -> Result<(Counts, String)> {
     mutants.args(SKIPPED.iter().flat_map(|name| ["--skip", name]));
     mutants.current_dir(sources).env("CARGO_TARGET_DIR", folder.join("target")).envs(ENVIRONMENT);
     // A survivor is not an error here: the share decides.
-    let ended = run_command(&mut mutants);
+    let ended = execute(&mut mutants);
     let outcomes = files::read(&folder.join("mutants.out/outcomes.json"));
     judged(&outcomes.map_err(|error| ended.err().map_or(error, |reason| reason.context("cargo mutants")))?)
 }
@@ -55,7 +50,7 @@ fn program(repo: &Repo) -> Result<PathBuf> {
     let folder = repo.target.join("tools/cargo-mutants");
     let program = folder.join("bin/cargo-mutants");
     if !program.is_file() {
-        run_command(repo.cargo("install --quiet --locked cargo-mutants@27.1.0 --root").arg(&folder))?;
+        execute(repo.cargo("install --quiet --locked cargo-mutants@27.1.0 --root").arg(&folder))?;
     }
     Ok(program)
 }

@@ -4,11 +4,8 @@
 //! That the sources as they are link, without one, is seen whenever the firmware is built.
 
 use crate::device::{Part, STM32F405, Toolchain};
-use crate::files;
-use crate::repo::{Repo, shown};
-use crate::session::Session;
-use anyhow::{Context as _, Result, bail, ensure};
-use std::path::Path;
+use crate::prelude::*;
+use crate::repo::shown;
 
 /// The symbol that the panic handler calls and that no crate defines.
 pub const SYMBOL: &str = "staya_panic_is_reachable";

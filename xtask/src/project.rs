@@ -5,16 +5,9 @@ use crate::apt::Tools;
 use crate::c;
 use crate::device::STM32F405;
 use crate::emulate::QEMU;
-use crate::files;
 use crate::firmware::build_own;
+use crate::prelude::*;
 use crate::python;
-use crate::repo::{Repo, Words as _, run as run_command};
-use crate::report::skipped;
-use crate::session::{MAIN, Session};
-use crate::tally::counted;
-use anyhow::{Result, ensure};
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 const MAKE: Tools = Tools { packages: &["make"], programs: &["make"], question: "make --version", ways: &["unpack"] };
 /// Parts of `staya new`, and the targets of their code.
@@ -32,7 +25,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     let is_made = s.report.step("a new project in Rust", || {
         let folder = program.and_then(|_| make(&s.repo, STM32F405.name, ""))?;
         for line in ["test --quiet", "run --quiet --example run -- run.staya"] {
-            run_command(s.repo.cargo(line).current_dir(&folder))?;
+            execute(s.repo.cargo(line).current_dir(&folder))?;
         }
         Ok(())
     });
@@ -42,7 +35,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     s.report.step("a new project in C", || {
         make_is_there(&s.repo)?;
         let folder = make(&s.repo, "c", "--c")?;
-        run_command(make_in(&s.repo, &folder).arg("test"))
+        execute(make_in(&s.repo, &folder).arg("test"))
     });
     for (name, target) in PARTS {
         firmware(s, name, target);
@@ -53,7 +46,7 @@ pub fn run(s: &mut Session, is_all: bool) {
         let library = format!("LIBRARY_FIRMWARE={}", c::library(repo, toolchain)?.display());
         [STM32F405.name, "nrf52840"].into_iter().try_for_each(|name| {
             let folder = make(repo, &format!("c-{name}"), &format!("--c --part {name}"))?;
-            run_command(make_in(repo, &folder).args(["build/firmware.elf", &library]))
+            execute(make_in(repo, &folder).args(["build/firmware.elf", &library]))
         })
     });
     on_emulated_part(s);
@@ -62,7 +55,7 @@ pub fn run(s: &mut Session, is_all: bool) {
         let python = python::with_wheel(&s.repo)?;
         let folder = make(&s.repo, "python", "--python")?;
         python::pip(&s.repo, &python, "--no-deps --editable", &[&folder])?;
-        run_command(s.repo.command(&python).arg("show.py").current_dir(&folder))?;
+        execute(s.repo.command(&python).arg("show.py").current_dir(&folder))?;
         Ok(counted(python::pytest(&s.repo, &python, &[]).current_dir(folder)))
     });
 }
@@ -82,7 +75,7 @@ fn make(repo: &Repo, kind: &str, options: &str) -> Result<PathBuf> {
     // `staya new` makes the folder itself.
     files::remove(&folder)?;
     let mut new = repo.command(repo.program("debug", MAIN));
-    run_command(new.words("new --quiet").words(options).arg("--staya").arg(&repo.root).arg(&folder))?;
+    execute(new.words("new --quiet").words(options).arg("--staya").arg(&repo.root).arg(&folder))?;
     Ok(folder)
 }
 
@@ -100,7 +93,7 @@ fn firmware(s: &mut Session, name: &str, target: &str) {
         // As quick to compile as can be linked; the part that `cargo xtask example` has compiled
         // for release is that.
         let line = if name == STM32F405.name { "build --quiet --release" } else { "build --quiet" };
-        run_command(toolchain.cargo(repo, target, line).current_dir(folder.join("firmware")))
+        execute(toolchain.cargo(repo, target, line).current_dir(folder.join("firmware")))
     });
 }
 
@@ -113,6 +106,6 @@ fn on_emulated_part(s: &mut Session) {
         QEMU.prepare(&s.repo)?;
         let line = "run --quiet -- ../scenario.toml --device qemu:stm32f405 --devices 2 --quiet --ticks 100 \
             --firmware target/firmware";
-        run_command(s.repo.cargo(line).current_dir(&folder))
+        execute(s.repo.cargo(line).current_dir(&folder))
     });
 }

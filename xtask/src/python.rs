@@ -1,14 +1,7 @@
 //! Tests in Python, each suite in an environment of its own in the target folder.
 
 use crate::apt::Tools;
-use crate::files;
-use crate::repo::{Repo, Words as _, output_of, run};
-use crate::report::{Need as _, skipped};
-use crate::session::Session;
-use crate::tally::counted;
-use anyhow::{Context as _, Result};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use crate::prelude::*;
 
 const PYTHON: Tools = Tools {
     packages: &["python3", "python3-venv"],
@@ -83,7 +76,7 @@ pub fn package(s: &mut Session) {
         wheel_is_there()?;
         let mut types = repo.command(&python);
         types.words("-m mypy --strict sim-host/python/python/staya --python-executable").arg(&python);
-        run(types.arg("--cache-dir").arg(repo.target.join(PACKAGE).join("mypy")))
+        execute(types.arg("--cache-dir").arg(repo.target.join(PACKAGE).join("mypy")))
     });
     s.report.part("the package for Python", || {
         wheel_is_there()?;
@@ -115,7 +108,7 @@ pub fn book(s: &mut Session) {
         files::make_empty(&book)?;
         let mut sphinx = repo.command(python);
         sphinx.words("-m sphinx --quiet --fail-on-warning --fresh-env --conf-dir docs --doctree-dir");
-        run(sphinx.arg(repo.target.join("book-trees")).arg(".").arg(&book))?;
+        execute(sphinx.arg(repo.target.join("book-trees")).arg(".").arg(&book))?;
         let index = book.join("index.html");
         println!("{}", index.display());
         files::write(&index, "<meta http-equiv=\"refresh\" content=\"0; url=README.html\">\n")
@@ -141,7 +134,7 @@ pub fn figures(s: &mut Session, options: &Figures) {
         for (name, file) in [("--out", &options.out), ("--against", &options.against)] {
             figures.args(file.iter().flat_map(|file| [name.as_ref(), file.as_os_str()]));
         }
-        run(&mut figures)
+        execute(&mut figures)
     });
 }
 
@@ -177,7 +170,7 @@ fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf> {
     let python = folder.join("bin/python");
     if output_of(repo.command(&python).arg("--version")).is_none() {
         PYTHON.prepare(repo)?;
-        let made = run(repo.command("python3").words("-m venv --clear").arg(&folder));
+        let made = execute(repo.command("python3").words("-m venv --clear").arg(&folder));
         made.context("no environment for Python").needed()?;
     }
     pip(repo, &python, "--requirement", &[Path::new(list)])?;
@@ -188,13 +181,13 @@ fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf> {
 pub fn pip(repo: &Repo, python: &Path, options: &str, packages: &[&Path]) -> Result<()> {
     let mut pip = repo.command(python);
     pip.words("-m pip install --quiet --disable-pip-version-check").words(options).args(packages);
-    run(&mut pip).context("pip could not install packages, see above").needed()
+    execute(&mut pip).context("pip could not install packages, see above").needed()
 }
 
 /// The environment of clients: pytest, pymavlink and the dialect.
 pub fn client_environment(repo: &Repo) -> Result<PathBuf> {
     let python = environment(repo, "python", "tests/python/requirements.txt")?;
-    let dialect = run(repo.command(&python).arg("tests/python/dialect.py"));
+    let dialect = execute(repo.command(&python).arg("tests/python/dialect.py"));
     dialect.context("the dialect could not be made for Python").needed()?;
     Ok(python)
 }
@@ -227,7 +220,7 @@ fn wheel(repo: &Repo, python: &Path) -> Result<()> {
     files::make_empty(&wheels)?;
     let mut build = repo.command(python);
     build.words("-m maturin build --locked --profile dev --target-dir").arg(&repo.target);
-    run(build.arg("--out").arg(&wheels))?;
+    execute(build.arg("--out").arg(&wheels))?;
     let built = files::entries(&wheels)?;
     pip(repo, python, "--force-reinstall --no-deps", &built.iter().map(PathBuf::as_path).collect::<Vec<_>>())
 }

@@ -1,10 +1,8 @@
 //! Where things are, and how a child process is started.
 
-use crate::files;
-use anyhow::{Context as _, Result, ensure};
+use crate::prelude::*;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// Set by `bless` for tests that compare with golden files: write instead of compare.
 pub const BLESS: &str = "STAYA_BLESS";
@@ -118,7 +116,7 @@ pub fn shown(command: &Command) -> String {
 }
 
 /// Runs a command with its output passed through. The error says why it did not succeed.
-pub fn run(command: &mut Command) -> Result<()> {
+pub fn execute(command: &mut Command) -> Result<()> {
     println!("$ {}", shown(command));
     ended(command.status())
 }

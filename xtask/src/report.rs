@@ -120,7 +120,7 @@ impl Report {
 
     /// Runs one command as a part.
     pub fn command(&mut self, name: &str, command: &mut Command) -> bool {
-        self.step(name, || crate::repo::run(command))
+        self.step(name, || crate::repo::execute(command))
     }
 
     /// Prints the table and the closing line.

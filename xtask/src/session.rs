@@ -2,12 +2,10 @@
 //! are built.
 
 use crate::device::{Toolchain, Toolchains};
-use crate::repo::{Repo, output_of, run};
-use crate::report::{Report, skipped};
-use anyhow::{Context as _, Result};
+use crate::prelude::*;
+use crate::report::Report;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 /// The program of the README's first command.
 pub const MAIN: &str = "staya";
@@ -37,7 +35,7 @@ impl Session {
             for (package, program) in programs(&self.repo)? {
                 build.args(["--package", &package, "--bin", program]);
             }
-            run(build.args((profile == "release").then_some("--release")))
+            execute(build.args((profile == "release").then_some("--release")))
         };
         let build = || self.report.step(&format!("staya, {profile}"), build);
         let is_built = *self.built.entry(profile).or_insert_with(build);

@@ -1,18 +1,14 @@
 //! `cargo xtask size`: what the firmware takes on each part, against `hil/budgets.toml`, and the
 //! search for the longest step behind ORCA.
 
+use crate::prelude::*;
 mod budget;
 mod laws;
 mod reach;
 
 use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
-use crate::files;
 use crate::firmware::{Profile, Sections, sections};
-use crate::repo::Repo;
-use crate::report::none_of;
-use crate::session::Session;
-use anyhow::{Context as _, Result, ensure};
 use serde_json::{Value, json};
 
 /// Where the limits are.

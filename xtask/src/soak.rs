@@ -4,12 +4,8 @@
 use crate::device::STM32F405;
 use crate::emulate::QEMU;
 use crate::firmware::{self, Profile};
+use crate::prelude::*;
 use crate::python;
-use crate::report::skipped;
-use crate::session::Session;
-use crate::tally::counted;
-use anyhow::ensure;
-use std::path::PathBuf;
 
 /// The part of `tests/python/soak.py` that needs firmware.
 const HIL: &str = "hil";

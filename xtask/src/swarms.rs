@@ -2,12 +2,8 @@
 
 use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
-use crate::files;
 use crate::firmware::Profile;
-use crate::repo::{Repo, run_reading};
-use crate::report::none_of;
-use crate::session::Session;
-use anyhow::{Result, anyhow};
+use crate::prelude::*;
 
 /// The golden rows: `case number commands bytes digest steps` in each line. The tests on the host
 /// compare it too, and write it.

@@ -1,9 +1,6 @@
 //! The closing lines of test programs, added up.
 
-use crate::repo::run_reading;
-use crate::report::Counts;
-use anyhow::anyhow;
-use std::process::Command;
+use crate::prelude::*;
 
 /// Where tests are that a short command leaves out.
 const LONG: &str = "a part of `cargo xtask test --all`";

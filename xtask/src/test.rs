@@ -1,10 +1,7 @@
 //! `cargo xtask test`: everything that shows by running whether it is right.
 
 use crate::device::PARTS;
-use crate::repo::run as run_command;
-use crate::report::Counts;
-use crate::session::Session;
-use crate::tally::counted;
+use crate::prelude::*;
 use crate::{bench, c, emulated, firmware, mpi, mutants, plants, project, python, size, soak, swarms};
 
 /// Properties are tried on the same random cases each time, so that a failure is the change's;
@@ -62,7 +59,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     }
     let staya = s.staya("release");
     s.report.step("experiments show what they should, with few seeds", || {
-        run_command(s.repo.command(staya?).args(["experiment", "--all", "--quick", "--restart"]))
+        execute(s.repo.command(staya?).args(["experiment", "--all", "--quick", "--restart"]))
     });
     mutants::run(s, mutants::SHARD);
     bench::run_goals(s);

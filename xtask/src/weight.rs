@@ -1,14 +1,11 @@
 //! `cargo xtask weight`: what the README's first command costs, beside the last record, and no
 //! library compiled twice.
 
-use crate::files;
-use crate::repo::{Repo, output_of, run as run_command};
-use crate::report::{none_of, processor_time};
-use crate::session::{MAIN, Session, folders, programs};
-use anyhow::{Context as _, Result};
+use crate::prelude::*;
+use crate::report::processor_time;
+use crate::session::{folders, programs};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 /// The records, one line each.
 const RECORDS: &str = "xtask/weight.csv";
@@ -33,7 +30,7 @@ pub fn run(s: &mut Session, options: &Options) {
 fn measure(repo: &Repo, options: &Options) -> Result<()> {
     let folder = repo.target.join("weight");
     files::make_empty(&folder)?;
-    run_command(&mut repo.cargo("fetch --locked"))?;
+    execute(&mut repo.cargo("fetch --locked"))?;
     let units = plan(repo, MAIN, MAIN)?.len();
     let mut build = repo.cargo(&format!("build --release --locked --package {MAIN}"));
     let processor_s = seconds(build.env("CARGO_TARGET_DIR", &folder))?;
@@ -62,7 +59,7 @@ fn round(figure: f64, parts: f64) -> f64 {
 /// Runs a command; the seconds that processors worked for it, the system's included.
 fn seconds(command: &mut std::process::Command) -> Result<f64> {
     let before = processor_time().context("no /proc/self/stat here, which says how long processors worked")?;
-    run_command(command)?;
+    execute(command)?;
     let worked = processor_time().and_then(|after| after.checked_sub(before));
     Ok(worked.unwrap_or_default().as_secs_f64())
 }

@@ -1,7 +1,7 @@
 //! Limits of a part, and which of them are breached.
 
 use super::Measured;
-use anyhow::{Context as _, Result, ensure};
+use crate::prelude::*;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 

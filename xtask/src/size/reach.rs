@@ -6,7 +6,7 @@
 //! without a name reach up to the next thing with a reference to it.
 
 use super::Table;
-use anyhow::Result;
+use crate::prelude::*;
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf};
 use std::collections::{BTreeMap, BTreeSet};
 
