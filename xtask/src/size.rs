@@ -1,7 +1,6 @@
 //! `cargo xtask size`: what the firmware takes on each part, against `hil/budgets.toml`, and the
 //! search for the longest step behind ORCA.
 
-use crate::prelude::*;
 mod budget;
 mod laws;
 mod reach;
@@ -9,47 +8,32 @@ mod reach;
 use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
 use crate::firmware::{Profile, Sections, sections};
+use crate::prelude::*;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Where the limits are.
 const BUDGETS: &str = "hil/budgets.toml";
 
-/// Figures of one kind: rows with a name and a figure for each column, after the first column.
-struct Table {
-    columns: &'static [&'static str],
-    rows: Vec<(String, Vec<u64>)>,
-}
+/// Figures by their columns.
+type Row = BTreeMap<&'static str, u64>;
+/// Figures of one kind: rows with the same columns.
+type Table = BTreeMap<String, Row>;
 
-impl Table {
-    /// The figure in a row and a column.
-    fn get(&self, name: &str, column: &str) -> Option<u64> {
-        let (_, figures) = self.rows.iter().find(|(known, _)| known == name)?;
-        figures.get(self.columns[1..].iter().position(|known| *known == column)?).copied()
+/// A table for people.
+fn text(name: &str, table: &Table) -> String {
+    let width = table.keys().map(String::len).chain([name.len()]).max().unwrap_or(0);
+    let mut text = format!("\n{name:width$}");
+    text.extend(table.values().take(1).flat_map(Row::keys).map(|column| format!(" {column:>9}")));
+    for (name, figures) in table {
+        text += &format!("\n{name:width$}");
+        text.extend(figures.values().map(|figure| format!(" {figure:>9}")));
     }
-
-    /// For people.
-    fn text(&self) -> String {
-        let width = self.rows.iter().map(|(name, _)| name.len()).chain([self.columns[0].len()]).max().unwrap_or(0);
-        let mut text = format!("\n{:width$}", self.columns[0]);
-        text.extend(self.columns[1..].iter().map(|column| format!(" {column:>9}")));
-        for (name, figures) in &self.rows {
-            text += &format!("\n{name:width$}");
-            text.extend(figures.iter().map(|figure| format!(" {figure:>9}")));
-        }
-        text + "\n"
-    }
-
-    /// For programs: an object by row.
-    fn json(&self) -> Value {
-        let object = |figures: &[u64]| -> Value {
-            let columns = self.columns[1..].iter().map(ToString::to_string);
-            columns.zip(figures.iter().copied().map(Value::from)).collect()
-        };
-        self.rows.iter().map(|(name, figures)| (name.clone(), object(figures))).collect()
-    }
+    text + "\n"
 }
 
 /// The measurements of a part.
+#[derive(Default)]
 struct Measured {
     /// Programs with their sections, bytes.
     programs: Table,
@@ -57,9 +41,10 @@ struct Measured {
     cases: Table,
     /// The agent of each law and `lockstep`, in the kind of number that limits are for.
     laws: Table,
-    /// The flash that each behaviour's step needs.
+    /// The flash that the step of each behaviour in `bench` needs: number, guidance, safety, wire
+    /// format, neighbours; of those with most neighbours.
     steps: Table,
-    /// The flash that encoder and decoder of each wire format need.
+    /// The flash that one frame of each wire format needs. Formats share some constants and code.
     formats: Table,
 }
 
@@ -91,12 +76,11 @@ pub fn run(s: &mut Session, options: &Options) {
             let measured = measure(repo, part, budget::number(&budget))?;
             let Measured { programs, cases, laws, steps, formats } = &measured;
             if options.json {
-                let [programs, cases, laws, steps, formats] = [programs, cases, laws, steps, formats].map(Table::json);
                 all.push(json!({ "part": part.name, "programs": programs, "cases": cases, "laws": laws,
                     "steps": steps, "formats": formats }));
             } else {
-                println!("{}", part.name);
-                [programs, cases, laws, steps, formats].iter().for_each(|table| print!("{}", table.text()));
+                println!("{}\n{}{}", part.name, text("program", programs), text("case", cases));
+                println!("{}{}{}", text("agent of a law", laws), text("step", steps), text("frame", formats));
             }
             none_of(&budget::breaches(&budget, &measured), "limits are breached")
         });
@@ -121,10 +105,9 @@ fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured> {
     let elf = |program: &str| Profile::Firmware.elf(repo, part, program);
     let sizes = ["lockstep", "replay", "bench"].map(|program| {
         let Sections { text, rodata, flash, ram } = sections(&elf(program))?;
-        Ok((program.to_string(), vec![text, rodata, flash, ram]))
+        Ok((program.to_string(), Row::from([("text", text), ("rodata", rodata), ("flash", flash), ("ram", ram)])))
     });
-    let rows = sizes.into_iter().collect::<Result<_>>()?;
-    let programs = Table { columns: &["program", "text", "rodata", "flash", "ram"], rows };
+    let programs = sizes.into_iter().collect::<Result<_>>()?;
     let cases = cases(&emulate::run(repo, part, &elf("bench"), "none", &[])?)?;
     let program = reach::Program::read(&files::bytes(&elf("bench"))?)?;
     let (steps, formats) = (program.steps(), program.formats());
@@ -135,17 +118,17 @@ fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured> {
 /// The output of `bench`: rows of case, kind of number (`-` for wire formats) and figures. The
 /// error names the first line of another form.
 fn cases(output: &str) -> Result<Table> {
-    const COLUMNS: [&str; 7] = ["case", "steps", "median", "worst", "stack", "agent", "workspace"];
+    const COLUMNS: [&str; 6] = ["steps", "median", "worst", "stack", "agent", "workspace"];
     let row = |line: &str| {
-        let (case, rest) = line.split_once(' ')?;
-        let (number, figures) = rest.split_once(' ')?;
-        let figures: Vec<u64> = figures.split(' ').map(|figure| figure.parse().ok()).collect::<Option<_>>()?;
-        (figures.len() == COLUMNS.len() - 1).then(|| (format!("{case} {number}"), figures))
+        let [case, number, figures @ ..] = &line.split(' ').collect::<Vec<_>>()[..] else { return None };
+        let figures: Vec<u64> = figures.iter().map(|figure| figure.parse().ok()).collect::<Option<_>>()?;
+        (figures.len() == COLUMNS.len())
+            .then(|| (format!("{case} {number}"), COLUMNS.into_iter().zip(figures).collect()))
     };
     let rows = output.lines().map(|line| row(line).with_context(|| format!("`bench` printed `{line}`")));
-    let rows: Vec<_> = rows.collect::<Result<_>>()?;
+    let rows = rows.collect::<Result<Table>>()?;
     ensure!(!rows.is_empty(), "`bench` printed nothing");
-    Ok(Table { columns: &COLUMNS, rows })
+    Ok(rows)
 }
 
 #[cfg(test)]
@@ -154,17 +137,12 @@ mod tests {
 
     #[test]
     fn what_bench_prints_is_read_and_nothing_else() {
-        let read = cases("route f32 256 11071 73154 1944 1296 2704\n").unwrap();
-        let figure = |column| read.get("route f32", column);
-        assert_eq!([figure("worst"), figure("stack"), figure("workspace")], [Some(73154), Some(1944), Some(2704)]);
-        assert_eq!(read.text().lines().nth(1).map(|head| head.split_whitespace().count()), Some(7));
-        assert_eq!(read.json()["route f32"]["agent"], 1296);
-        for bad in [
-            "",
-            "panicked at 3\n",
-            "route f32 256 11071 73154 1944 1296\n",
-            "route f32 256 11071 73154 1944 1296 2704 1\n",
-        ] {
+        let line = "route f32 256 11071 73154 1944 1296 2704";
+        let read = cases(&format!("{line}\n")).unwrap();
+        let row = &read["route f32"];
+        assert_eq!([row["worst"], row["stack"], row["agent"], row["workspace"]], [73154, 1944, 1296, 2704]);
+        assert_eq!(text("case", &read).lines().nth(1).map(|head| head.split_whitespace().count()), Some(7));
+        for bad in ["", "panicked at 3\n", &line[..35], &format!("{line} 1\n")] {
             assert!(cases(bad).is_err(), "{bad}");
         }
     }
