@@ -7,16 +7,16 @@
 use crate::prelude::*;
 use crate::repo::ended;
 
-/// Programs, and Debian's packages of them.
+/// Programs, and Debian's packages of them; all are words of a line.
 pub struct Tools {
-    pub packages: &'static [&'static str],
-    pub programs: &'static [&'static str],
+    pub packages: &'static str,
+    pub programs: &'static str,
     /// A command of the shell that succeeds if all of them start.
     pub question: &'static str,
     /// The ways to get the packages, in the order in which they are tried: `unpack` them with all
     /// that they need and this machine lacks, or `install` them as root, if no installed package
     /// has to go or change for it.
-    pub ways: &'static [&'static str],
+    pub ways: &'static str,
 }
 
 impl Tools {
@@ -26,25 +26,24 @@ impl Tools {
         if repo.says(self.question) {
             return Ok(());
         }
-        let mut reasons = Vec::new();
-        for way in self.ways {
+        let mut reason = String::new();
+        for way in self.ways.split(' ') {
             match self.get(repo, way) {
                 Ok(()) => return Ok(()),
-                Err(reason) => reasons.push(format!("{reason:#}")),
+                Err(error) => reason = format!("{error:#}"),
             }
         }
-        let (packages, programs, reasons) = (self.packages.join(" "), self.programs.join(", "), reasons.join(", "));
+        let Self { packages, programs, .. } = self;
         let remedy = format!("on Debian run, as root, `apt-get update && apt-get install {packages}`");
-        Err(skipped(format!("no {programs} ({reasons}); {remedy}")))
+        Err(skipped(format!("no {programs} ({reason}); {remedy}")))
     }
 
     fn get(&self, repo: &Repo, way: &str) -> Result<()> {
         ensure!(repo.says("apt-get --version"), "no apt-get here");
-        let packages = self.packages.join(" ");
-        println!("apt: {way} {packages}");
+        println!("apt: {way} {}", self.packages);
         let mut shell = repo.command("sh");
         shell.args(["-c", include_str!("apt.sh"), "apt.sh", way]).arg(repo.target.join("tools"));
-        ended(shell.args([packages, self.programs.join(" ")]).status()).context("apt, see above")?;
+        ended(shell.args([self.packages, self.programs]).status()).context("apt, see above")?;
         ensure!(repo.says(self.question), "it does not start");
         Ok(())
     }

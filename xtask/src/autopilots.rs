@@ -58,7 +58,7 @@ pub fn run(s: &mut Session, options: &Options) {
     ] {
         s.report.part(&format!("ArduPilot's {kind}s"), || {
             let found = simulation(&s.repo, kind, program.as_deref(), options.defaults.as_deref());
-            let [program, defaults] = found.needed()?;
+            let [program, defaults] = found.map_err(|error| skipped(format!("{error:#}")))?;
             let staya = staya.as_ref().map_err(|error| skipped(error.to_string()))?;
             let python = python::client_environment(&s.repo)?;
             let variables = [(variable, program), ("STAYA_AUTOPILOT_DEFAULTS", defaults), ("STAYA", staya.clone())];

@@ -11,10 +11,10 @@ use crate::swarms::TABLE;
 
 /// Debian's packages of the compiler for the part; no library of C is needed.
 pub const COMPILER: Tools = Tools {
-    packages: &["gcc-arm-none-eabi", "binutils-arm-none-eabi"],
-    programs: &["arm-none-eabi-gcc", "arm-none-eabi-g++", "arm-none-eabi-nm"],
+    packages: "gcc-arm-none-eabi binutils-arm-none-eabi",
+    programs: "arm-none-eabi-gcc arm-none-eabi-g++ arm-none-eabi-nm",
     question: "arm-none-eabi-gcc --version && arm-none-eabi-g++ --version && arm-none-eabi-nm --version",
-    ways: &["unpack"],
+    ways: "unpack",
 };
 /// Warnings that the sources must not cause, and where headers are.
 const STRICT: &str = "-Wall -Wextra -Werror -pedantic -Wno-variadic-macros -ffp-contract=off \

@@ -9,9 +9,9 @@ pub struct Part {
     pub name: &'static str,
     /// The target that its code is compiled for.
     pub target: &'static str,
-    /// The emulator that runs it, and the machine that it models.
+    /// The emulator that runs it, and its options for the machine.
     pub emulator: &'static str,
-    pub machine: &'static [&'static str],
+    pub machine: &'static str,
 }
 
 /// Every part.
@@ -20,20 +20,15 @@ pub const PARTS: [Part; 3] = [
         name: "stm32f405",
         target: "thumbv7em-none-eabihf",
         emulator: "qemu-system-arm",
-        machine: &["-machine", "netduinoplus2"],
+        machine: "-machine netduinoplus2",
     },
-    Part {
-        name: "nrf51",
-        target: "thumbv6m-none-eabi",
-        emulator: "qemu-system-arm",
-        machine: &["-machine", "microbit"],
-    },
+    Part { name: "nrf51", target: "thumbv6m-none-eabi", emulator: "qemu-system-arm", machine: "-machine microbit" },
     Part {
         name: "riscv32",
         target: "riscv32imac-unknown-none-elf",
         emulator: "qemu-system-riscv32",
         // Without firmware of the machine's own, which would be loaded over ours.
-        machine: &["-machine", "virt", "-bios", "none"],
+        machine: "-machine virt -bios none",
     },
 ];
 
@@ -50,13 +45,13 @@ pub fn part(name: &str) -> Result<&'static Part, String> {
 
 /// Debian's packaged Rust, which can build `core` from source for any target.
 const DEBIAN: Tools = Tools {
-    packages: &["rustc-web", "cargo-web", "rust-web-src", "lld"],
-    programs: &["rustc", "cargo", "ld.lld"],
+    packages: "rustc-web cargo-web rust-web-src lld",
+    programs: "rustc cargo ld.lld",
     question: "for bin in /usr/bin \"$1\"; do
         core=$(\"$bin/rustc\" --print sysroot)/lib/rustlib/src/rust/library/core/src/lib.rs
         if [ -f \"$bin/cargo\" ] && [ -f \"$bin/ld.lld\" ] && [ -f \"$core\" ]; then echo \"$bin\"; exit; fi
     done; exit 1",
-    ways: &["unpack"],
+    ways: "unpack",
 };
 const REMEDY: &str = "run `rustup target add thumbv7em-none-eabihf thumbv6m-none-eabi riscv32imac-unknown-none-elf`";
 

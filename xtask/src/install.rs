@@ -4,7 +4,7 @@
 use crate::device::PARTS;
 use crate::firmware::{self, Profile};
 use crate::prelude::*;
-use crate::session::programs;
+use crate::session::PROGRAMS;
 
 #[derive(clap::Args)]
 pub struct Options {
@@ -39,7 +39,7 @@ pub fn put_step(s: &mut Session, prefix: &Path, profile: &str) -> bool {
 }
 
 fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<()> {
-    for (_, name) in programs(repo)? {
+    for (_, name) in PROGRAMS {
         let program = repo.program(profile, name);
         // Tests do not build each program.
         if name == MAIN || program.is_file() {

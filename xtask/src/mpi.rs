@@ -7,10 +7,10 @@ use crate::python::{client_environment, suite};
 
 const NAME: &str = "one world over ranks of OpenMPI";
 const MPI: Tools = Tools {
-    packages: &["openmpi-bin", "libopenmpi-dev", "libclang1"],
-    programs: &["mpirun.openmpi", "mpicc.openmpi"],
+    packages: "openmpi-bin libopenmpi-dev libclang1",
+    programs: "mpirun.openmpi mpicc.openmpi",
     question: "test -f \"$1/mpirun.openmpi\"",
-    ways: &["unpack"],
+    ways: "unpack",
 };
 
 /// Builds `staya-mpi` and compares it with `staya`; with `is_scaling` times on 1, 2 and 4 ranks by
@@ -58,7 +58,7 @@ fn find(repo: &Repo) -> Result<Vec<(&'static str, String)>> {
         ("LD_LIBRARY_PATH", format!("{openmpi}:{openmpi}/openmpi/lib")),
         ("LIBCLANG_PATH", format!("{}/lib", find("lib/libclang.so.1")?)),
         ("BINDGEN_EXTRA_CLANG_ARGS", format!("-I{headers}")),
-        ("MPICC", repo.tools().join(MPI.programs[1]).display().to_string()),
-        ("MPIRUN", MPI.programs[0].to_string()),
+        ("MPICC", repo.tools().join("mpicc.openmpi").display().to_string()),
+        ("MPIRUN", String::from("mpirun.openmpi")),
     ])
 }

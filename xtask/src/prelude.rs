@@ -2,7 +2,7 @@
 
 pub(crate) use crate::files;
 pub(crate) use crate::repo::{Repo, Words, execute, output_of, run_reading};
-pub(crate) use crate::report::{Counts, Need, none_of, skipped};
+pub(crate) use crate::report::{Counts, none_of, skipped};
 pub(crate) use crate::session::{MAIN, Session};
 pub(crate) use crate::tally::counted;
 pub(crate) use anyhow::{Context, Result, anyhow, bail, ensure};

@@ -9,7 +9,7 @@ use crate::firmware::build_own;
 use crate::prelude::*;
 use crate::python;
 
-const MAKE: Tools = Tools { packages: &["make"], programs: &["make"], question: "make --version", ways: &["unpack"] };
+const MAKE: Tools = Tools { packages: "make", programs: "make", question: "make --version", ways: "unpack" };
 /// Parts of `staya new`, and the targets of their code.
 const PARTS: [(&str, &str); 4] = [
     ("stm32f405", "thumbv7em-none-eabihf"),

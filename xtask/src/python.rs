@@ -4,33 +4,33 @@ use crate::apt::Tools;
 use crate::prelude::*;
 
 const PYTHON: Tools = Tools {
-    packages: &["python3", "python3-venv"],
-    programs: &["Python 3 with venv"],
+    packages: "python3 python3-venv",
+    programs: "Python 3 with venv",
     question: "python3 -c 'import venv, ensurepip'",
-    ways: &["install"],
+    ways: "install",
 };
 /// Looks into a capture.
 const TSHARK: Tools = Tools {
-    packages: &["tshark"],
-    programs: &["tshark"],
+    packages: "tshark",
+    programs: "tshark",
     question: "tshark --version",
     // For root it reads its data from where it was built for, and nowhere else.
-    ways: &["install", "unpack"],
+    ways: "install unpack",
 };
 /// A browser without windows, and its fonts.
 const CHROMIUM: Tools = Tools {
-    packages: &["chromium-headless-shell", "chromium-common", "fontconfig-config", "fonts-dejavu-core"],
-    programs: &["chromium-headless-shell"],
+    packages: "chromium-headless-shell chromium-common fontconfig-config fonts-dejavu-core",
+    programs: "chromium-headless-shell",
     question: "chromium-headless-shell --version",
-    ways: &["unpack"],
+    ways: "unpack",
 };
 /// Slurm's daemons and clients, and GNU parallel.
 const CLUSTER: Tools = Tools {
-    packages: &["slurmctld", "slurmd", "slurm-client", "parallel"],
-    programs: &["slurmctld-wlm", "slurmd-wlm", "slurmstepd-wlm", "sbatch", "squeue", "scontrol", "scancel", "parallel"],
+    packages: "slurmctld slurmd slurm-client parallel",
+    programs: "slurmctld-wlm slurmd-wlm slurmstepd-wlm sbatch squeue scontrol scancel parallel",
     // Slurm's clients want a configuration before they say anything.
     question: "slurmctld-wlm -V && slurmd-wlm -V && command -v sbatch && parallel --version",
-    ways: &["unpack"],
+    ways: "unpack",
 };
 /// The package for Python, which has nothing in it without this feature.
 pub const FEATURE: &str = "staya-python/module";
@@ -151,7 +151,7 @@ pub fn suite(
         let program = program?;
         let mut tests = pytest(&s.repo, &prepare(&s.repo)?, arguments);
         tests.env("STAYA", program).env("STAYA_TOOLS", s.repo.target.join("tools"));
-        tests.env("STAYA_TABLES", &s.repo.target).env("CHROMIUM", CHROMIUM.programs[0]);
+        tests.env("STAYA_TABLES", &s.repo.target).env("CHROMIUM", CHROMIUM.programs);
         Ok(counted(tests.envs(variables.iter().cloned())))
     });
 }
@@ -171,7 +171,7 @@ fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf> {
     if output_of(repo.command(&python).arg("--version")).is_none() {
         PYTHON.prepare(repo)?;
         let made = execute(repo.command("python3").words("-m venv --clear").arg(&folder));
-        made.context("no environment for Python").needed()?;
+        made.map_err(|reason| skipped(format!("no environment for Python ({reason:#})")))?;
     }
     pip(repo, &python, "--requirement", &[Path::new(list)])?;
     Ok(python)
@@ -181,14 +181,14 @@ fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf> {
 pub fn pip(repo: &Repo, python: &Path, options: &str, packages: &[&Path]) -> Result<()> {
     let mut pip = repo.command(python);
     pip.words("-m pip install --quiet --disable-pip-version-check").words(options).args(packages);
-    execute(&mut pip).context("pip could not install packages, see above").needed()
+    execute(&mut pip).map_err(|reason| skipped(format!("pip could not install packages ({reason:#}), see above")))
 }
 
 /// The environment of clients: pytest, pymavlink and the dialect.
 pub fn client_environment(repo: &Repo) -> Result<PathBuf> {
     let python = environment(repo, "python", "tests/python/requirements.txt")?;
     let dialect = execute(repo.command(&python).arg("tests/python/dialect.py"));
-    dialect.context("the dialect could not be made for Python").needed()?;
+    dialect.map_err(|reason| skipped(format!("the dialect could not be made for Python ({reason:#})")))?;
     Ok(python)
 }
 

@@ -23,40 +23,14 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-impl std::fmt::Display for Counts {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { passed, failed, skipped } = self;
-        write!(out, "{passed} passed, {failed} failed, {skipped} skipped")
-    }
-}
-
 /// The error of a part that cannot run here: what is missing, and the remedy.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
 struct Skipped(String);
-
-impl std::error::Error for Skipped {}
-
-impl std::fmt::Display for Skipped {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        out.write_str(&self.0)
-    }
-}
 
 /// The error that skips a part instead of failing it.
 pub fn skipped(reason: impl Into<String>) -> anyhow::Error {
     Skipped(reason.into()).into()
-}
-
-/// Errors of preparations: without them a part is skipped.
-pub trait Need<T> {
-    /// Makes an error one that skips the part.
-    fn needed(self) -> Result<T>;
-}
-
-impl<T> Need<T> for Result<T> {
-    fn needed(self) -> Result<T> {
-        self.map_err(|error| skipped(format!("{error:#}")))
-    }
 }
 
 /// Prints all faults. The error counts them and shows the first.
@@ -137,9 +111,13 @@ impl Report {
         }
         let took: Duration = self.parts.iter().map(|part| part.took).sum();
         println!("{:.0} seconds in all", took.as_secs_f64());
-        println!("{total}");
+        println!("{}", closing_line(total));
         ExitCode::from(u8::from(total.failed > 0))
     }
+}
+
+fn closing_line(Counts { passed, failed, skipped }: Counts) -> String {
+    format!("{passed} passed, {failed} failed, {skipped} skipped")
 }
 
 /// Seconds to a tenth, for people.
@@ -179,14 +157,13 @@ mod tests {
     #[test]
     fn closing_line_is_plain() {
         let counts = Counts { passed: 7, failed: 0, skipped: 2 };
-        assert_eq!(counts.to_string(), "7 passed, 0 failed, 2 skipped");
+        assert_eq!(closing_line(counts), "7 passed, 0 failed, 2 skipped");
     }
 
     #[test]
     fn exit_code_tells_a_failure_from_a_skip() {
         let mut skips = Report::default();
         assert!(!skips.step("a", || Err(skipped("because"))));
-        assert!(!skips.step("b", || Err(anyhow::anyhow!("because")).needed()));
         assert_eq!(skips.close(), ExitCode::SUCCESS);
         let mut failed = Report::default();
         assert!(failed.step("a", || Ok(())));

@@ -9,8 +9,15 @@ use std::collections::BTreeMap;
 
 /// The program of the README's first command.
 pub const MAIN: &str = "staya";
-/// It and the programs that it hands over to; those that the workspace does not have are left out.
-const PROGRAMS: [&str; 6] = [MAIN, "staya-lab", "staya-view", "staya-mav", "staya-hil", "staya-voxel"];
+/// It and the programs that it hands over to, each behind its package.
+pub const PROGRAMS: [(&str, &str); 6] = [
+    (MAIN, MAIN),
+    ("staya-lab", "staya-lab"),
+    ("staya-view", "staya-view"),
+    ("staya-mav", "staya-mav"),
+    ("staya-hil", "staya-hil"),
+    ("staya-fvm", "staya-voxel"),
+];
 
 /// The session of a command.
 pub struct Session {
@@ -30,14 +37,10 @@ impl Session {
     /// `staya` of a profile, `debug` or `release`, in a folder with the programs that it hands over
     /// to. Builds them unless that was done before; what needs them is skipped if they cannot be.
     pub fn staya(&mut self, profile: &'static str) -> Result<PathBuf> {
-        let build = || {
-            let mut build = self.repo.cargo("build --locked");
-            for (package, program) in programs(&self.repo)? {
-                build.args(["--package", &package, "--bin", program]);
-            }
-            execute(build.args((profile == "release").then_some("--release")))
-        };
-        let build = || self.report.step(&format!("staya, {profile}"), build);
+        let mut build = self.repo.cargo("build --locked");
+        build.args(PROGRAMS.iter().flat_map(|(package, program)| ["--package", package, "--bin", program]));
+        build.args((profile == "release").then_some("--release"));
+        let build = || self.report.command(&format!("staya, {profile}"), &mut build);
         let is_built = *self.built.entry(profile).or_insert_with(build);
         is_built.then(|| self.repo.program(profile, MAIN)).ok_or_else(|| skipped("the program was not built"))
     }
@@ -66,15 +69,4 @@ pub fn folders(repo: &Repo) -> Result<Vec<PathBuf>> {
     let packages = packages(repo)?;
     let manifests = packages.iter().filter_map(|package| Path::new(package["manifest_path"].as_str()?).parent());
     Ok(manifests.map(Path::to_path_buf).collect())
-}
-
-/// The programs of the workspace that users start, each with the package that it is in.
-pub fn programs(repo: &Repo) -> Result<Vec<(String, &'static str)>> {
-    let packages = packages(repo)?;
-    let find = |program: &'static str| {
-        let is_it = |target: &Value| target["name"] == program && target["kind"][0] == "bin";
-        let has_it = |package: &&Value| package["targets"].as_array().is_some_and(|all| all.iter().any(is_it));
-        Some((packages.iter().find(has_it)?["name"].as_str()?.to_string(), program))
-    };
-    Ok(PROGRAMS.into_iter().filter_map(find).collect())
 }

@@ -3,7 +3,7 @@
 
 use crate::prelude::*;
 use crate::report::processor_time;
-use crate::session::{folders, programs};
+use crate::session::{PROGRAMS, folders};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -125,8 +125,8 @@ fn plan(repo: &Repo, package: &str, program: &str) -> Result<Vec<Value>> {
 /// Compares the plans of all programs: one folder has each library once if they want the same
 /// features of it.
 pub fn check_shared(repo: &Repo) -> Result<()> {
-    let plan = |(package, program): (String, &'static str)| Ok((program, plan(repo, &package, program)?));
-    let plans = programs(repo)?.into_iter().map(plan).collect::<Result<Vec<_>>>()?;
+    let plans = PROGRAMS.map(|(package, program)| Ok((program, plan(repo, package, program)?)));
+    let plans = plans.into_iter().collect::<Result<Vec<_>>>()?;
     none_of(&differences(&plans), "libraries are compiled twice")
 }
 
