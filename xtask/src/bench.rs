@@ -76,7 +76,7 @@ fn criterion(s: &mut Session, filter: Option<&str>) {
 fn judge(medians: &[(String, f64)]) -> Counts {
     let width = medians.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let mut counts = Counts { skipped: GOALS.len() as u64, ..Counts::default() };
-    println!("{:width$}  {:>10}  goal", "benchmark", "median");
+    println!("{:width$}  {:>14}  goal", "benchmark", "median, us");
     for (name, median) in medians {
         let goal = GOALS.iter().find(|(known, ..)| known == name).map(|(_, times, other)| {
             let Some((_, ns)) = medians.iter().find(|(name, _)| name == other) else {
@@ -89,7 +89,7 @@ fn judge(medians: &[(String, f64)]) -> Counts {
             let verdict = if is_met { "met" } else { "MISSED" };
             format!("{ratio:.1} times as fast as {other}, at least {times}: {verdict}")
         });
-        println!("{name:width$}  {:>10}  {}", shown(*median), goal.unwrap_or_default());
+        println!("{name:width$}  {:>14.4}  {}", median / 1e3, goal.unwrap_or_default());
     }
     counts
 }
@@ -110,16 +110,6 @@ fn medians(home: &Path, start: SystemTime) -> Vec<(String, f64)> {
 fn median(json: &str) -> Option<f64> {
     let estimates: serde_json::Value = serde_json::from_str(json).ok()?;
     estimates["median"]["point_estimate"].as_f64()
-}
-
-/// Nanoseconds for people.
-fn shown(ns: f64) -> String {
-    match ns {
-        ns if ns < 1e3 => format!("{ns:.1} ns"),
-        ns if ns < 1e6 => format!("{:.2} us", ns / 1e3),
-        ns if ns < 1e9 => format!("{:.2} ms", ns / 1e6),
-        ns => format!("{:.2} s", ns / 1e9),
-    }
 }
 
 #[cfg(test)]

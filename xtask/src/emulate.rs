@@ -28,7 +28,7 @@ pub fn on_part(
     s: &mut Session,
     name: &str,
     part: &Part,
-    (profile, bins): (Profile, &[&str]),
+    (profile, bins): (&Profile, &[&str]),
     work: impl FnOnce(&Repo) -> Result<()>,
 ) {
     let is_built = firmware::build(s, part, profile, bins);

@@ -2,7 +2,7 @@
 
 use crate::device::{Part, STM32F405};
 use crate::emulate::QEMU;
-use crate::firmware::{Profile, build_own};
+use crate::firmware::{FIRMWARE, build_own};
 use crate::install;
 use crate::prelude::*;
 
@@ -37,7 +37,7 @@ pub fn run(s: &mut Session, parts: &[Part]) {
 
 /// Whether the firmware of these parts and the emulators are there.
 fn is_ready(repo: &Repo, parts: &[Part]) -> Result<()> {
-    parts.iter().try_for_each(|part| Profile::Firmware.find(repo, part, "lockstep").map(drop))?;
+    parts.iter().try_for_each(|part| FIRMWARE.find(repo, part, "lockstep").map(drop))?;
     QEMU.prepare(repo)
 }
 

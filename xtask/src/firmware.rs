@@ -5,36 +5,31 @@ use crate::prelude::*;
 use object::{Object as _, ObjectSection as _, SectionFlags, SectionKind, elf};
 use std::process::{Child, Stdio};
 
-/// Cargo's profile for programs of a part, and the profile to debug them with.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Profile {
-    Firmware,
-    Debug,
+/// How programs of a part are built.
+pub struct Profile {
+    /// Cargo's profile, and the folder that it builds in.
+    name: &'static str,
+    built: &'static str,
+    /// The end of names behind that of a part.
+    pub suffix: &'static str,
+    /// The folder of the ELF files in that of the part.
+    folder: &'static str,
 }
 
+/// As robots have them.
+pub const FIRMWARE: &Profile = &Profile { name: "firmware", built: "firmware", suffix: "", folder: "" };
+/// To debug them.
+pub const DEBUG: &Profile = &Profile { name: "dev", built: "debug", suffix: ", debug", folder: "debug" };
+
 impl Profile {
-    /// The name of cargo's profile, and the folder that it builds in.
-    fn names(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Firmware => ("firmware", "firmware"),
-            Self::Debug => ("dev", "debug"),
-        }
-    }
-
-    /// The end of names behind that of a part.
-    pub fn suffix(self) -> &'static str {
-        if self == Self::Debug { ", debug" } else { "" }
-    }
-
     /// Where the ELF file of a program is put: `target/firmware/PART/BIN`, or
     /// `target/firmware/PART/debug/BIN`.
-    pub fn elf(self, repo: &Repo, part: &Part, bin: &str) -> PathBuf {
-        let folder = repo.target.join("firmware").join(part.name);
-        if self == Self::Debug { folder.join("debug").join(bin) } else { folder.join(bin) }
+    pub fn elf(&self, repo: &Repo, part: &Part, bin: &str) -> PathBuf {
+        repo.target.join("firmware").join(part.name).join(self.folder).join(bin)
     }
 
     /// The ELF file of a program that was built before; what needs it is skipped without it.
-    pub fn find(self, repo: &Repo, part: &Part, bin: &str) -> Result<PathBuf> {
+    pub fn find(&self, repo: &Repo, part: &Part, bin: &str) -> Result<PathBuf> {
         let elf = self.elf(repo, part, bin);
         ensure!(elf.is_file(), skipped(format!("no firmware for {}", part.name)));
         Ok(elf)
@@ -61,7 +56,7 @@ pub struct Options {
 
 /// The command: one step per part.
 pub fn run_command(s: &mut Session, options: &Options) {
-    let profile = if options.debug { Profile::Debug } else { Profile::Firmware };
+    let profile = if options.debug { DEBUG } else { FIRMWARE };
     let bins: Vec<&str> = options.bins.iter().map(String::as_str).collect();
     for part in &options.parts {
         match &options.folder {
@@ -87,19 +82,18 @@ pub fn begin(s: &mut Session) -> Option<Child> {
 
 /// Builds the programs of these names for a part as one step, or all of them if none is named.
 /// Returns whether the ELF files are there.
-pub fn build(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) -> bool {
-    let name = format!("firmware for {}{}", part.name, profile.suffix());
+pub fn build(s: &mut Session, part: &Part, profile: &Profile, bins: &[&str]) -> bool {
+    let name = format!("firmware for {}{}", part.name, profile.suffix);
     s.with_toolchain(&name, part.target, |repo, toolchain| make(repo, toolchain, part, profile, bins))
 }
 
 /// Builds programs for a part, and copies the ELF files to where they are looked for.
-fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only: &[&str]) -> Result<()> {
-    let is_debug = profile == Profile::Debug;
+fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: &Profile, only: &[&str]) -> Result<()> {
+    let is_debug = profile.name == DEBUG.name;
     ensure!(part.name != "nrf51" || !is_debug, skipped("256 KiB of flash hold it only optimised"));
-    let (profile_name, folder) = profile.names();
     let mut cargo = toolchain.cargo(repo, part.target, "build --locked --package staya-firmware --profile");
     // Flash has room for the canned swarms only if they are small.
-    cargo.arg(profile_name).env("CARGO_PROFILE_DEV_OPT_LEVEL", "s");
+    cargo.arg(profile.name).env("CARGO_PROFILE_DEV_OPT_LEVEL", "s");
     // Each file in src/bin is a program.
     let mut bins: Vec<String> =
         files::entries(&repo.root.join("hil/firmware/src/bin"))?.iter().map(|file| files::stem(file)).collect();
@@ -109,7 +103,7 @@ fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only:
     }
     bins.retain(|bin| only.is_empty() || only.contains(&bin.as_str()));
     execute(cargo.args(bins.iter().flat_map(|bin| ["--bin", bin])))?;
-    let built = toolchain.target_folder(repo).join(part.target).join(folder);
+    let built = toolchain.target_folder(repo).join(part.target).join(profile.built);
     println!("{:>8} {:>8}  file", "flash", "RAM");
     bins.iter().try_for_each(|bin| put(&built.join(bin), &profile.elf(repo, part, bin)))
 }
@@ -124,7 +118,7 @@ pub fn build_own(s: &mut Session, part: &Part, folder: &Path) -> bool {
         let manifest = folder.join("Cargo.toml");
         let shown = manifest.display();
         ensure!(manifest.is_file(), "{shown} is not there; docs/project.md says what such a crate has");
-        let (profile, built) = Profile::Firmware.names();
+        let Profile { name: profile, built, .. } = FIRMWARE;
         let mut cargo = toolchain.cargo(repo, part.target, "build --bin firmware --profile");
         cargo.arg(profile).arg("--manifest-path").arg(&manifest);
         // The repository's profile, which the crate need not have.

@@ -2,7 +2,7 @@
 //! figures of papers, its manual and what shells complete it by.
 
 use crate::device::PARTS;
-use crate::firmware::{self, Profile};
+use crate::firmware::{self, FIRMWARE};
 use crate::prelude::*;
 use crate::session::PROGRAMS;
 
@@ -25,7 +25,7 @@ pub fn run(s: &mut Session, options: &Options) {
         return;
     };
     for part in &PARTS {
-        firmware::build(s, part, Profile::Firmware, &["lockstep"]);
+        firmware::build(s, part, FIRMWARE, &["lockstep"]);
     }
     let profile = if options.debug { "debug" } else { "release" };
     if s.staya(profile).is_ok() {
@@ -47,7 +47,7 @@ fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<()> {
         }
     }
     for part in &PARTS {
-        let elf = Profile::Firmware.elf(repo, part, "lockstep");
+        let elf = FIRMWARE.elf(repo, part, "lockstep");
         let to = prefix.join("share/staya/firmware").join(part.name).join("lockstep");
         // It would be of another version than the program.
         files::remove(&to)?;

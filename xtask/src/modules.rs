@@ -81,21 +81,23 @@ fn fault(user: &str, used: &str) -> Option<String> {
 
 /// Each folder with modules that use each other in a circle, and these modules.
 fn circles(modules: &Modules) -> Vec<String> {
-    let found = uses(modules).into_iter().map(|(folder, uses)| {
-        let mut left: BTreeSet<&String> = uses.keys().collect();
+    let mut circles = Vec::new();
+    for (folder, uses) in uses(modules) {
+        let mut left: Vec<&String> = uses.keys().collect();
         // Modules that use or serve none of the others are in no circle.
-        let uses = |user: &String, used: &String| uses[user].contains(used);
-        let is_free = |module: &String, left: &BTreeSet<&String>| {
-            !left.iter().any(|other| uses(module, other)) || !left.iter().any(|other| uses(other, module))
+        let is_bound = |module: &String, others: &[&String]| {
+            let uses = |user: &String, used: &String| uses[user].contains(used);
+            others.iter().any(|other| uses(module, other)) && others.iter().any(|other| uses(other, module))
         };
-        while let Some(free) = left.iter().find(|module| is_free(module, &left)).copied() {
-            left.remove(free);
+        while let Some(at) = left.iter().position(|module| !is_bound(module, &left)) {
+            left.remove(at);
         }
-        let circle: Vec<&str> = left.into_iter().map(String::as_str).collect();
-        (folder.join("/"), circle.join(", "))
-    });
-    let found = found.filter(|(_, circle)| !circle.is_empty());
-    found.map(|(folder, circle)| format!("{folder}: {circle} use each other in a circle")).collect()
+        if !left.is_empty() {
+            let circle = left.iter().map(|module| module.as_str()).collect::<Vec<_>>().join(", ");
+            circles.push(format!("{}: {circle} use each other in a circle", folder.join("/")));
+        }
+    }
+    circles
 }
 
 /// For each folder which of its modules use which others of it, by the paths in them and in modules

@@ -7,7 +7,7 @@ mod reach;
 
 use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
-use crate::firmware::{Profile, Sections, sections};
+use crate::firmware::{FIRMWARE, Sections, sections};
 use crate::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -71,7 +71,7 @@ pub fn run(s: &mut Session, options: &Options) {
     }
     let mut all = Vec::new();
     for part in &PARTS {
-        on_part(s, &format!("budget of the {}", part.name), part, (Profile::Firmware, &[]), |repo| {
+        on_part(s, &format!("budget of the {}", part.name), part, (FIRMWARE, &[]), |repo| {
             let budget = budget::read(&files::read(&repo.root.join(BUDGETS))?, part.name).context(BUDGETS)?;
             let measured = measure(repo, part, budget::number(&budget))?;
             let Measured { programs, cases, laws, steps, formats } = &measured;
@@ -93,8 +93,8 @@ pub fn run(s: &mut Session, options: &Options) {
 /// Searches for the scene with the longest step behind ORCA, and prints it as an expression for
 /// `hil/cases/src/scene/found.rs`.
 fn search(s: &mut Session, options: &Options) {
-    on_part(s, "search for the longest step", STM32F405, (Profile::Firmware, &["search"]), |repo| {
-        let elf = Profile::Firmware.elf(repo, STM32F405, "search");
+    on_part(s, "search for the longest step", STM32F405, (FIRMWARE, &["search"]), |repo| {
+        let elf = FIRMWARE.elf(repo, STM32F405, "search");
         let arguments = [options.seed, options.scenes].map(|number| number.to_string());
         print!("{}", emulate::run(repo, STM32F405, &elf, "none", &arguments.each_ref().map(String::as_str))?);
         Ok(())
@@ -102,7 +102,7 @@ fn search(s: &mut Session, options: &Options) {
 }
 
 fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured> {
-    let elf = |program: &str| Profile::Firmware.elf(repo, part, program);
+    let elf = |program: &str| FIRMWARE.elf(repo, part, program);
     let sizes = ["lockstep", "replay", "bench"].map(|program| {
         let Sections { text, rodata, flash, ram } = sections(&elf(program))?;
         Ok((program.to_string(), Row::from([("text", text), ("rodata", rodata), ("flash", flash), ("ram", ram)])))

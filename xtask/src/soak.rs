@@ -3,7 +3,7 @@
 
 use crate::device::STM32F405;
 use crate::emulate::QEMU;
-use crate::firmware::{self, Profile};
+use crate::firmware::{self, FIRMWARE};
 use crate::prelude::*;
 use crate::python;
 
@@ -30,7 +30,7 @@ fn above_zero(text: &str) -> Result<f64, String> {
 /// The command, with the program as users have it.
 pub fn run_command(s: &mut Session, options: &Options) {
     if options.parts.iter().any(|part| part == HIL) {
-        firmware::build(s, STM32F405, Profile::Firmware, &["lockstep"]);
+        firmware::build(s, STM32F405, FIRMWARE, &["lockstep"]);
     }
     run(s, "release", options);
 }
@@ -46,7 +46,7 @@ fn run(s: &mut Session, profile: &'static str, options: &Options) {
     let program = s.staya(profile);
     let mut parts = options.parts.clone();
     if parts.iter().any(|part| part == HIL) {
-        let firmware = Profile::Firmware.find(&s.repo, STM32F405, "lockstep");
+        let firmware = FIRMWARE.find(&s.repo, STM32F405, "lockstep");
         if let Err(reason) = firmware.and_then(|_| QEMU.prepare(&s.repo)) {
             s.report.step("soak of firmware", || Err(reason));
             parts.retain(|part| part != HIL);

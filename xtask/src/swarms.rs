@@ -2,7 +2,7 @@
 
 use crate::device::{PARTS, Part, STM32F405};
 use crate::emulate::{self, on_part};
-use crate::firmware::Profile;
+use crate::firmware::{DEBUG, FIRMWARE, Profile};
 use crate::prelude::*;
 use regex::Regex;
 
@@ -21,23 +21,23 @@ pub fn run(s: &mut Session) {
         compare(&s.repo, &output, |_| true)
     });
     for part in &PARTS {
-        replay(s, part, Profile::Firmware, &[]);
+        replay(s, part, FIRMWARE, &[]);
     }
     // Without optimisation an operation too many or too few would show.
-    replay(s, STM32F405, Profile::Debug, &[]);
+    replay(s, STM32F405, DEBUG, &[]);
 }
 
 /// The programs that tests on emulated parts need, for these parts: devices in lockstep, canned
 /// swarms.
 pub fn run_short(s: &mut Session, parts: &[Part]) {
     for part in parts {
-        replay(s, part, Profile::Firmware, &["lockstep", "replay", "replay_mavlink"]);
+        replay(s, part, FIRMWARE, &["lockstep", "replay", "replay_mavlink"]);
     }
 }
 
 /// The programs of `bins` (all if it names none), then the canned swarms.
-fn replay(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) {
-    let name = format!("canned swarms on the {}{}", part.name, profile.suffix());
+fn replay(s: &mut Session, part: &Part, profile: &Profile, bins: &[&str]) {
+    let name = format!("canned swarms on the {}{}", part.name, profile.suffix);
     on_part(s, &name, part, (profile, bins), |repo| {
         let run = |bin| emulate::run(repo, part, &profile.elf(repo, part, bin), "none", &[]);
         let mut output = run("replay")?;
@@ -52,9 +52,9 @@ fn replay(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) {
 /// on these parts.
 pub fn faults(s: &mut Session, parts: impl IntoIterator<Item = &'static Part>) {
     for part in parts {
-        on_part(s, &format!("faults on the {}", part.name), part, (Profile::Firmware, &["faults"]), |repo| {
+        on_part(s, &format!("faults on the {}", part.name), part, (FIRMWARE, &["faults"]), |repo| {
             // The program ends with 0 only at its third start.
-            let said = emulate::run(repo, part, &Profile::Firmware.elf(repo, part, "faults"), "stdio", &[])?;
+            let said = emulate::run(repo, part, &FIRMWARE.elf(repo, part, "faults"), "stdio", &[])?;
             ensure!(is_told(part, &said), "what went wrong is not said: {said}");
             Ok(())
         });
