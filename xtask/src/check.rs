@@ -113,12 +113,11 @@ fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
     parts.map(|part| (named(part), check(part))).collect()
 }
 
-/// The list `feature-sets` in the metadata of the controller's manifest, and the set without any
-/// feature.
+/// The list `feature-sets` in the metadata of the controller's manifest.
 fn feature_sets(repo: &Repo) -> Result<Vec<String>> {
     let packages = packages(repo)?;
     let controller = packages.iter().find(|package| package["name"] == "staya-controller");
     let sets = controller.and_then(|package| package["metadata"]["staya"]["feature-sets"].as_array());
     let sets = sets.context("controller/Cargo.toml has no list package.metadata.staya.feature-sets")?;
-    Ok([""].into_iter().chain(sets.iter().filter_map(Value::as_str)).map(String::from).collect())
+    Ok(sets.iter().filter_map(Value::as_str).map(String::from).collect())
 }

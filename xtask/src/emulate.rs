@@ -13,7 +13,7 @@ const PATIENCE: &str = "600";
 pub const QEMU: Tools = Tools {
     packages: "qemu-system-arm qemu-system-misc",
     programs: "qemu-system-arm qemu-system-riscv32",
-    question: "qemu-system-arm --version && qemu-system-riscv32 --version && timeout 1 true",
+    question: "qemu-system-arm --version && qemu-system-riscv32 --version && timeout --foreground 1 true",
     ways: "unpack",
 };
 
@@ -46,7 +46,7 @@ pub fn run(repo: &Repo, part: &Part, elf: &Path, line: &str, arguments: &[&str])
     let arguments: String = arguments.iter().map(|argument| format!(",arg={argument}")).collect();
     let mut command = repo.command("timeout");
     command
-        .args([PATIENCE, part.emulator])
+        .args(["--foreground", PATIENCE, part.emulator])
         .words(part.machine)
         .words("-icount shift=0 -display none -monitor none -serial")
         .arg(line);

@@ -18,7 +18,7 @@ const MPI: Tools = Tools {
 pub fn run(s: &mut Session, is_scaling: bool) {
     let mut variables = Vec::new();
     let is_built = s.report.step("staya-mpi", || {
-        variables = find(&s.repo)?;
+        variables = find(&s.repo).map_err(|reason| skipped(format!("{reason:#}")))?;
         let mut build = s.repo.cargo("build --locked --package staya-mpi --features mpi");
         execute(build.args(is_scaling.then_some("--release")).envs(variables.iter().cloned()))
     });

@@ -7,7 +7,8 @@ use crate::firmware::{self, FIRMWARE};
 use crate::prelude::*;
 use crate::python;
 
-/// The part of `tests/python/soak.py` that needs firmware.
+/// Parts of the soak, as `tests/python/soak.py` names them; the last one needs firmware.
+const PARTS: [&str; 4] = ["flood", "key", "companion", HIL];
 const HIL: &str = "hil";
 
 #[derive(clap::Args)]
@@ -18,7 +19,7 @@ pub struct Options {
     /// Where judgements and samples are written
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    #[arg(value_parser = ["flood", "key", "companion", HIL], default_values = ["flood", "key", "companion", HIL])]
+    #[arg(value_name = "PART", value_parser = PARTS, default_values = PARTS)]
     parts: Vec<String>,
 }
 
@@ -38,7 +39,7 @@ pub fn run_command(s: &mut Session, options: &Options) {
 /// A short one with the program and the firmware that tests have brought, so that the command
 /// itself does not rot.
 pub fn run_short(s: &mut Session) {
-    let parts = ["flood", "key", "companion", HIL].map(String::from).to_vec();
+    let parts = PARTS.map(String::from).to_vec();
     run(s, "debug", &Options { minutes: Some(0.15), json: None, parts });
 }
 
