@@ -4,8 +4,9 @@
 //! one: the `qemu-utils` of backports excludes Debian's emulators. Only Python, and tshark for
 //! root, do not work from another folder and are installed, as root.
 
-use crate::prelude::*;
-use crate::repo::ended;
+use crate::repo::{Repo, ended};
+use crate::report::skipped;
+use anyhow::{Context as _, Result, ensure};
 
 /// Programs, and Debian's packages of them; all are words of a line.
 pub struct Tools {
@@ -20,8 +21,8 @@ pub struct Tools {
 }
 
 impl Tools {
-    /// Makes sure that the programs start, and gets the packages if they do not. What needs them is
-    /// skipped otherwise; the error names the remedy.
+    /// Makes sure that the programs start, and gets the packages if they do not. A part that needs
+    /// them is skipped otherwise; the error names the remedy.
     pub fn prepare(&self, repo: &Repo) -> Result<()> {
         if repo.says(self.question) {
             return Ok(());

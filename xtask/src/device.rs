@@ -1,7 +1,10 @@
 //! Microcontrollers, and what compiles for them: rustup's targets or Debian's packages.
 
 use crate::apt::Tools;
-use crate::prelude::*;
+use crate::repo::{Repo, Words as _, output_of};
+use crate::report::skipped;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// A microcontroller that there is firmware for.
 pub struct Part {

@@ -28,7 +28,7 @@ impl Profile {
         repo.target.join("firmware").join(part.name).join(self.folder).join(bin)
     }
 
-    /// The ELF file of a program that was built before; what needs it is skipped without it.
+    /// The ELF file of a program that was built before. A part that needs it is skipped without it.
     pub fn find(&self, repo: &Repo, part: &Part, bin: &str) -> Result<PathBuf> {
         let elf = self.elf(repo, part, bin);
         ensure!(elf.is_file(), skipped(format!("no firmware for {}", part.name)));

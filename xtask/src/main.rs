@@ -52,7 +52,7 @@ anything failed, 2 if the command line is wrong.";
 #[derive(clap::Parser)]
 #[command(bin_name = "cargo xtask", after_help = NOTES)]
 enum Command {
-    /// What can be judged without running the code; warnings are errors
+    /// Checks that run no program of the project; warnings are errors
     Check,
     /// Tests on the host, by MAVLink clients, on two emulated parts
     Test {

@@ -1,4 +1,4 @@
-//! The words of nearly every command.
+//! The words of nearly every command. Modules that they come from do not use this one.
 
 pub(crate) use crate::files;
 pub(crate) use crate::repo::{Repo, Words, execute, output_of, run_reading};

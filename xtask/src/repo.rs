@@ -1,8 +1,10 @@
 //! Where things are, and how a child process is started.
 
-use crate::prelude::*;
+use crate::files;
+use anyhow::{Context as _, Result, ensure};
 use std::io::{BufRead, BufReader};
-use std::process::Stdio;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 /// Set by `bless` for tests that compare with golden files: write instead of compare.
 pub const BLESS: &str = "STAYA_BLESS";

@@ -2,10 +2,12 @@
 //! are built.
 
 use crate::device::{Toolchain, Toolchains};
-use crate::prelude::*;
-use crate::report::Report;
+use crate::repo::{Repo, output_of};
+use crate::report::{Report, skipped};
+use anyhow::{Context as _, Result};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// The program of the README's first command.
 pub const MAIN: &str = "staya";
@@ -35,7 +37,7 @@ impl Session {
     }
 
     /// `staya` of a profile, `debug` or `release`, in a folder with the programs that it hands over
-    /// to. Builds them unless that was done before; what needs them is skipped if they cannot be.
+    /// to. Builds them unless that was done before. Parts that need them are skipped if that fails.
     pub fn staya(&mut self, profile: &'static str) -> Result<PathBuf> {
         let mut build = self.repo.cargo("build --locked");
         build.args(PROGRAMS.iter().flat_map(|(package, program)| ["--package", package, "--bin", program]));

@@ -1,6 +1,9 @@
 //! The closing lines of test programs, added up.
 
-use crate::prelude::*;
+use crate::repo::run_reading;
+use crate::report::Counts;
+use anyhow::anyhow;
+use std::process::Command;
 
 /// Where tests are that a short command leaves out.
 const LONG: &str = "a part of `cargo xtask test --all`";

@@ -51,7 +51,7 @@ fn measure(repo: &Repo, options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// To so many parts of one.
+/// Rounds to one of these parts of 1.
 fn round(figure: f64, parts: f64) -> f64 {
     (figure * parts).round() / parts
 }
