@@ -65,7 +65,11 @@ pub fn run(s: &mut Session, options: &Options) {
             let mut list = python::pytest(&s.repo, &python, &["--collect-only"]);
             list.envs(variables.clone()).args(tests.iter().map(|file| format!("{TOP}/autopilots/{file}")));
             list.args(options.name.iter().flat_map(|name| ["-k", name]));
-            flights.extend(names(&mut list).into_iter().map(|test| (python.clone(), variables.clone(), test)));
+            // Without any test pytest says so.
+            let _ = run_reading(&mut list, |line| {
+                let flight = || (python.clone(), variables.clone(), format!("{TOP}/{line}"));
+                flights.extend(line.contains("::test_").then(flight));
+            });
             Ok((Counts::default(), String::new()))
         });
     }
@@ -76,14 +80,6 @@ pub fn run(s: &mut Session, options: &Options) {
         let flight = || Ok(counted(python::pytest(&s.repo, &python, &arguments).envs(variables)));
         s.report.part(&row, flight);
     }
-}
-
-/// The tests that pytest would run.
-fn names(list: &mut Command) -> Vec<String> {
-    let mut names = Vec::new();
-    // Without any it says so, and that is all there is to say.
-    let _ = run_reading(list, |line| names.extend(line.contains("::test_").then(|| format!("{TOP}/{line}"))));
-    names
 }
 
 #[cfg(test)]

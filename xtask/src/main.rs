@@ -6,13 +6,11 @@
 mod apt;
 mod autopilots;
 mod bench;
-mod bless;
 mod c;
 mod check;
 mod device;
 mod documents;
 mod emulate;
-mod emulated;
 mod files;
 mod firmware;
 mod fuzz;
@@ -137,7 +135,7 @@ fn main() -> ExitCode {
         Command::Test { all } => test::run(s, all),
         Command::Autopilots(options) => autopilots::run(s, &options),
         Command::Bench { name } => bench::run(s, name.as_deref()),
-        Command::Bless { name } => bless::run(s, &name),
+        Command::Bless { name } => test::bless(s, &name),
         Command::Book => python::book(s),
         Command::Browser => python::browser(s),
         Command::C => c::run(s),

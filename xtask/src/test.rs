@@ -1,8 +1,10 @@
-//! `cargo xtask test`: everything that shows by running whether it is right.
+//! `cargo xtask test`: everything that shows by running whether it is right. `cargo xtask bless`
+//! rewrites the golden files of tests.
 
 use crate::device::PARTS;
 use crate::prelude::*;
-use crate::{bench, c, emulated, firmware, mpi, mutants, plants, project, python, size, soak, swarms};
+use crate::repo::BLESS;
+use crate::{bench, c, emulate, firmware, mpi, mutants, plants, project, python, size, soak, swarms};
 
 /// Properties are tried on the same random cases each time, so that a failure is the change's;
 /// `cargo test` alone takes new ones.
@@ -27,7 +29,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     if !is_all {
         project::run(s, is_all);
         swarms::run_short(s, &PARTS[..2]);
-        return emulated::run(s, &PARTS[..2]);
+        return emulate::run_fleets(s, &PARTS[..2]);
     }
     python::book(s);
     python::browser(s);
@@ -44,8 +46,8 @@ pub fn run(s: &mut Session, is_all: bool) {
     c::run(s);
     size::run(s, &size::Options::default());
     swarms::faults(s, &PARTS);
-    emulated::run(s, &PARTS);
-    s.report.step("ten robots of a formation as firmware, 1000 steps", || emulated::run_ten(&s.repo));
+    emulate::run_fleets(s, &PARTS);
+    s.report.step("ten robots of a formation as firmware, 1000 steps", || emulate::run_ten(&s.repo));
     // Cargo takes a copy of the firmware for the same packages, and builds those again afterwards.
     plants::run(s, false);
     soak::run_short(s);
@@ -63,4 +65,20 @@ pub fn run(s: &mut Session, is_all: bool) {
     });
     mutants::run(s, mutants::SHARD);
     bench::run_goals(s);
+}
+
+/// Runs the tests whose name contains `name` with the variable that makes them write, runs them
+/// again without it, and lists what changed.
+pub fn bless(s: &mut Session, name: &str) {
+    let tests = || s.repo.cargo(&format!("test --workspace --no-fail-fast {name}"));
+    s.report.step("rewrite golden files", || execute(tests().env(BLESS, "1")));
+    s.report.command("compare again", &mut tests());
+    match output_of(s.repo.command("git").args(["status", "--short", "--", "*golden*"])) {
+        Some(changed) if changed.is_empty() => println!("\nNo golden file changed."),
+        Some(changed) => {
+            println!("\nGolden files that differ from the last commit; look at each, and commit them apart:");
+            println!("{changed}");
+        }
+        None => println!("\nNo git here: see for yourself which golden files changed."),
+    }
 }
