@@ -173,16 +173,29 @@ mod tests {
     #[test]
     fn options_of_all_commands_are_consistent() {
         <Command as clap::CommandFactory>::command().debug_assert();
-        for sound in ["firmware", "soak --minutes 0.5 hil key", "faults nrf51", "size --search --seed 2", "mutants"] {
+        for sound in [
+            "firmware --debug --bin lockstep --bin bench stm32f405 nrf51",
+            "firmware --crate examples/own_part",
+            "soak --minutes 0.5 hil key",
+            "faults nrf51",
+            "size --json",
+            "size --search --seed 2",
+        ] {
             assert!(!refused(&format!("xtask {sound}")), "{sound}");
         }
     }
 
     #[test]
     fn wrong_numbers_and_names_are_refused() {
-        for wrong in
-            ["soak --minutes 0", "soak --minutes x", "soak flod", "faults stm32", "size --seed 1", "check orca"]
-        {
+        for wrong in [
+            "soak --minutes 0",
+            "soak --minutes x",
+            "soak flod",
+            "faults stm32",
+            "size --seed 1",
+            "check orca",
+            "firmware --crate a --debug",
+        ] {
             assert!(refused(&format!("xtask {wrong}")), "{wrong}");
         }
     }
