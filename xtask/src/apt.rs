@@ -5,53 +5,47 @@
 //! root, do not work from another folder and are installed, as root.
 
 use crate::repo::{Repo, ended};
+use crate::report::skipped;
+use anyhow::{Context as _, Result, ensure};
 
-/// Programs, and Debian's packages of them.
+/// Programs, and Debian's packages of them; all are words of a line.
 pub struct Tools {
-    pub packages: &'static [&'static str],
-    pub programs: &'static [&'static str],
+    pub packages: &'static str,
+    pub programs: &'static str,
     /// A command of the shell that succeeds if all of them start.
     pub question: &'static str,
+    /// The ways to get the packages, in the order in which they are tried: `unpack` them with all
+    /// that they need and this machine lacks, or `install` them as root, if no installed package
+    /// has to go or change for it.
+    pub ways: &'static str,
 }
 
 impl Tools {
-    /// Makes sure that the programs start: unpacks the packages if they do not. The error names
-    /// the remedy.
-    pub fn prepare(&self, repo: &Repo) -> Result<(), String> {
-        self.prepare_with(repo, Self::unpack)
-    }
-
-    /// The same by another way to get the packages.
-    pub fn prepare_with(&self, repo: &Repo, get: fn(&Self, &Repo) -> Result<(), String>) -> Result<(), String> {
+    /// Makes sure that the programs start, and gets the packages if they do not. A part that needs
+    /// them is skipped otherwise; the error names the remedy.
+    pub fn prepare(&self, repo: &Repo) -> Result<()> {
         if repo.says(self.question) {
             return Ok(());
         }
-        let starts = || if repo.says(self.question) { Ok(()) } else { Err(String::from("it does not start")) };
-        get(self, repo).and_then(|()| starts()).map_err(|reason| {
-            let (packages, programs) = (self.packages.join(" "), self.programs.join(", "));
-            format!("no {programs} ({reason}); on Debian run, as root, `apt-get update && apt-get install {packages}`")
-        })
-    }
-
-    /// Unpacks the packages, with all that they need and this machine lacks.
-    pub fn unpack(&self, repo: &Repo) -> Result<(), String> {
-        self.script(repo, "unpack")
-    }
-
-    /// Installs the packages, as root, if no installed package has to go or change for it.
-    pub fn install(&self, repo: &Repo) -> Result<(), String> {
-        self.script(repo, "install")
-    }
-
-    fn script(&self, repo: &Repo, work: &str) -> Result<(), String> {
-        if !repo.says("apt-get --version") {
-            return Err(String::from("no apt-get here"));
+        let mut reason = String::new();
+        for way in self.ways.split(' ') {
+            match self.get(repo, way) {
+                Ok(()) => return Ok(()),
+                Err(error) => reason = format!("{error:#}"),
+            }
         }
-        let packages = self.packages.join(" ");
-        println!("apt: {work} {packages}");
+        let Self { packages, programs, .. } = self;
+        let remedy = format!("on Debian run, as root, `apt-get update && apt-get install {packages}`");
+        Err(skipped(format!("no {programs} ({reason}); {remedy}")))
+    }
+
+    fn get(&self, repo: &Repo, way: &str) -> Result<()> {
+        ensure!(repo.says("apt-get --version"), "no apt-get here");
+        println!("apt: {way} {}", self.packages);
         let mut shell = repo.command("sh");
-        shell.args(["-c", include_str!("apt.sh"), "apt.sh", work]).arg(repo.target.join("tools"));
-        let status = shell.args([packages, self.programs.join(" ")]).status();
-        ended(status).map_err(|reason| format!("apt: {reason}, see above"))
+        shell.args(["-c", include_str!("apt.sh"), "apt.sh", way]).arg(repo.target.join("tools"));
+        ended(shell.args([self.packages, self.programs]).status()).context("apt, see above")?;
+        ensure!(repo.says(self.question), "it does not start");
+        Ok(())
     }
 }

@@ -1,12 +1,8 @@
 //! `cargo xtask bench`: the project's benchmarks and those beside peer crates, in one run on one
 //! machine.
 
-use crate::files;
+use crate::prelude::*;
 use crate::python;
-use crate::repo::run as run_command_line;
-use crate::report::Counts;
-use crate::session::Session;
-use std::path::Path;
 use std::time::SystemTime;
 
 const PEERS: &str = "tests/peers";
@@ -29,15 +25,16 @@ const GOALS: [(&str, f64, &str); 6] = [
 
 /// Runs the benchmarks whose name contains `name` and judges their medians.
 pub fn run(s: &mut Session, name: Option<&str>) {
+    let is_wanted = |known: &str| name.is_none_or(|name| known.contains(name));
     if !SCRIPTS.iter().any(|(script, ..)| name == Some(script)) {
         criterion(s, name);
     }
-    for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| name.is_none_or(|name| script.contains(name))) {
+    for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| is_wanted(script)) {
         script(s, row, file);
     }
-    if name.is_none_or(|name| "view".contains(name)) {
-        let bench = s.repo.cargo(&["bench", "--locked", "--package", "staya-view", "--bench", "view"]);
-        s.report.command("pictures a second", bench);
+    if is_wanted("view") {
+        let mut bench = s.repo.cargo("bench --locked --package staya-view --bench view");
+        s.report.command("pictures a second", &mut bench);
     }
 }
 
@@ -51,9 +48,9 @@ pub fn run_goals(s: &mut Session) {
 /// A benchmark in Python with the program as users have it; the script judges.
 fn script(s: &mut Session, name: &str, file: &str) {
     let program = s.staya("release");
-    let ready = program.and_then(|program| Ok((program, python::client_environment(&s.repo)?)));
-    s.report.step_with(name, ready, |(program, python)| {
-        run_command_line(s.repo.command(&python).arg(file).env("STAYA", program))
+    s.report.step(name, || {
+        let program = program?;
+        execute(s.repo.command(python::client_environment(&s.repo)?).arg(file).env("STAYA", program))
     });
 }
 
@@ -61,9 +58,9 @@ fn script(s: &mut Session, name: &str, file: &str) {
 fn criterion(s: &mut Session, filter: Option<&str>) {
     let home = s.repo.target.join("criterion");
     let start = SystemTime::now();
-    let mut benches = s.repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
-    benches.env("CRITERION_HOME", &home).args(filter.map(|name| ["--", name]).into_iter().flatten());
-    s.report.command("benchmarks", benches);
+    let mut benches = s.repo.cargo_in(PEERS, "bench --locked --bench *");
+    benches.env("CRITERION_HOME", &home).args(filter.iter().flat_map(|name| ["--", name]));
+    s.report.command("benchmarks", &mut benches);
     s.report.part("goals", || {
         let mut counts = judge(&medians(&home, start));
         if filter.is_some_and(|name| !name.starts_with('^')) {
@@ -71,7 +68,7 @@ fn criterion(s: &mut Session, filter: Option<&str>) {
             counts.skipped = 0;
         }
         let note = if counts.skipped > 0 { "skipped: goals of benchmarks that did not run" } else { "" };
-        (counts, note.to_string())
+        Ok((counts, note.to_string()))
     });
 }
 
@@ -79,7 +76,7 @@ fn criterion(s: &mut Session, filter: Option<&str>) {
 fn judge(medians: &[(String, f64)]) -> Counts {
     let width = medians.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let mut counts = Counts { skipped: GOALS.len() as u64, ..Counts::default() };
-    println!("{:width$}  {:>10}  goal", "benchmark", "median");
+    println!("{:width$}  {:>14}  goal", "benchmark", "median, us");
     for (name, median) in medians {
         let goal = GOALS.iter().find(|(known, ..)| known == name).map(|(_, times, other)| {
             let Some((_, ns)) = medians.iter().find(|(name, _)| name == other) else {
@@ -92,7 +89,7 @@ fn judge(medians: &[(String, f64)]) -> Counts {
             let verdict = if is_met { "met" } else { "MISSED" };
             format!("{ratio:.1} times as fast as {other}, at least {times}: {verdict}")
         });
-        println!("{name:width$}  {:>10}  {}", shown(*median), goal.unwrap_or_default());
+        println!("{name:width$}  {:>14.4}  {}", median / 1e3, goal.unwrap_or_default());
     }
     counts
 }
@@ -113,16 +110,6 @@ fn medians(home: &Path, start: SystemTime) -> Vec<(String, f64)> {
 fn median(json: &str) -> Option<f64> {
     let estimates: serde_json::Value = serde_json::from_str(json).ok()?;
     estimates["median"]["point_estimate"].as_f64()
-}
-
-/// Nanoseconds for people.
-fn shown(ns: f64) -> String {
-    match ns {
-        ns if ns < 1e3 => format!("{ns:.1} ns"),
-        ns if ns < 1e6 => format!("{:.2} us", ns / 1e3),
-        ns if ns < 1e9 => format!("{:.2} ms", ns / 1e6),
-        ns => format!("{:.2} s", ns / 1e9),
-    }
 }
 
 #[cfg(test)]

@@ -1,126 +1,123 @@
 //! `cargo xtask check`: everything that can be said without running the code.
 
 use crate::device::{PARTS, Part};
-use crate::firmware;
-use crate::modules;
-use crate::python;
-use crate::repo::{Repo, ended, output_of};
-use crate::session::{Session, folders, packages};
+use crate::prelude::*;
+use crate::python::{FEATURE, WITHOUT_PYTHON};
+use crate::repo::ended;
+use crate::session::{folders, packages};
+use crate::{documents, firmware, language, modules, plants, weight};
 use serde_json::Value;
-use std::thread::JoinHandle;
+use std::thread::{JoinHandle, spawn};
 
 /// Workspaces of their own, and how to leave out what needs more than a stable compiler.
-const OTHERS: [(&str, &[&str]); 2] = [("tests/peers", &[]), ("tests/fuzz", &["--no-default-features"])];
+const OTHERS: [(&str, &str); 2] = [("tests/peers", ""), ("tests/fuzz", "--no-default-features")];
 
 /// Packages that a user's own firmware depends on.
-const PACKAGES: [&str; 4] = ["staya-controller", "staya-mavlink", "staya-robot", "staya-voxel"];
+const PACKAGES: &str = "--package staya-controller --package staya-mavlink --package staya-robot --package staya-voxel";
 
 /// Formatting, layers, lints, documentation; the quick ones first, and beside the lints what has
 /// folders of its own.
 pub fn run(s: &mut Session) {
-    if has(s, "fmt", "rustfmt") {
-        let check = ["fmt", "--all", "--check"];
-        s.report.command("formatting", s.repo.cargo(&check));
-        let others = OTHERS.map(|(folder, _)| folder);
-        for folder in others.into_iter().chain([firmware::EXAMPLE]) {
-            let name = format!("formatting of {folder}");
-            s.report.command(&name, s.repo.cargo_in(folder, &check));
-        }
+    for folder in ["", OTHERS[0].0, OTHERS[1].0, firmware::EXAMPLE] {
+        cargo(s, &named("formatting", folder), folder, "fmt --all --check");
     }
-    let controller = s.repo.root.join("controller/src");
-    s.report.step("layers of the controller", || modules::check_layers(&controller));
-    s.report.step_with("no circles between modules", folders(&s.repo), |crates| modules::check_circles(&crates));
-    s.report.step(crate::weight::SHARED, || crate::weight::check_shared(&s.repo));
-    s.report.step("no log that panics", || crate::plants::check_logs(&s.repo.root));
-    crate::minimal::check(s);
-    s.report.step("references of the documentation", || crate::documents::check(&s.repo.root));
-    s.report.step("language", || crate::language::check(&s.repo.root));
+    let root = s.repo.root.clone();
+    s.report.step("layers of the controller", || modules::check_layers(&root.join("controller/src")));
+    s.report.step("no circles between modules", || modules::check_circles(&folders(&s.repo)?));
+    s.report.step(weight::SHARED, || weight::check_shared(&s.repo));
+    s.report.step("no log that panics", || plants::check_logs(&root));
+    s.report.step("the declared minimal Rust", || compiles_by_the_oldest_rust(&s.repo));
+    s.report.step("references of the documentation", || documents::check(&root));
+    s.report.step("language", || language::check(&root));
     let feature_checks = begin_feature_checks(s);
-    if has(s, "clippy", "clippy") {
-        let deny = ["--", "-D", "warnings"];
-        let arguments = |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
-        let own = ["--workspace", "--all-targets", "--features", python::FEATURE];
-        let mut clippy = s.repo.cargo(&arguments(&own));
-        clippy.envs(python::WITHOUT_PYTHON);
-        s.report.command("clippy", clippy);
-        let packages = PACKAGES.iter().flat_map(|name| ["--package", name]);
-        let defmt: Vec<_> = packages.chain(["--features", "staya-controller/defmt"]).collect();
-        s.report.command("clippy with defmt", s.repo.cargo(&arguments(&defmt)));
-        for (folder, features) in OTHERS {
-            let clippy = arguments(&[&["--all-targets"], features].concat());
-            let name = format!("clippy of {folder}");
-            s.report.command(&name, s.repo.cargo_in(folder, &clippy));
-        }
+    cargo(s, "clippy", "", &format!("clippy --locked --workspace --all-targets --features {FEATURE} -- -D warnings"));
+    let defmt = format!("clippy --locked {PACKAGES} --features staya-controller/defmt -- -D warnings");
+    cargo(s, "clippy with defmt", "", &defmt);
+    for (folder, features) in OTHERS {
+        let line = format!("clippy --locked --all-targets {features} -- -D warnings");
+        cargo(s, &named("clippy", folder), folder, &line);
     }
-    let bare = ["clippy", "--locked", "--package", "staya-c", "--no-default-features", "--", "-D", "warnings"];
-    s.report.command("clippy of the library for C without features", s.repo.cargo(&bare));
-    let mut package = s.repo.cargo(&["package", "--locked", "--allow-dirty", "--no-verify"]);
-    package.args(PACKAGES.iter().flat_map(|name| ["--package", name]));
-    s.report.command("packages that users depend on", package);
-    let mut doc = s.repo.cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
-    doc.env("RUSTDOCFLAGS", "-D warnings");
-    s.report.command("rustdoc", doc);
-    end_feature_checks(s, feature_checks);
+    let bare = "clippy --locked --package staya-c --no-default-features -- -D warnings";
+    cargo(s, "clippy of the library for C without features", "", bare);
+    let package = format!("package --locked --allow-dirty --no-verify {PACKAGES}");
+    cargo(s, "packages that users depend on", "", &package);
+    cargo(s, "rustdoc", "", "doc --locked --workspace --no-deps");
+    for (name, check) in feature_checks {
+        s.report.step(&name, || check?.join().map_err(|_| anyhow!("the check panicked"))?);
+    }
 }
 
-/// Whether a component of the toolchain is there; records a skipped part otherwise.
-fn has(s: &mut Session, subcommand: &str, component: &str) -> bool {
-    let found = output_of(&mut s.repo.cargo(&[subcommand, "--version"]));
-    s.report.need(component, found.ok_or(format!("not installed; run `rustup component add {component}`"))).is_some()
+fn named(step: &str, folder: &str) -> String {
+    if folder.is_empty() { step.to_string() } else { format!("{step} of {folder}") }
+}
+
+/// A step of cargo in a folder; skipped without the component of the toolchain that it needs.
+fn cargo(s: &mut Session, name: &str, folder: &str, line: &str) {
+    s.report.step(name, || {
+        for (subcommand, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
+            let is_there = || output_of(&mut s.repo.cargo(&format!("{subcommand} --version"))).is_some();
+            if line.starts_with(subcommand) && !is_there() {
+                return Err(skipped(format!("not installed; run `rustup component add {component}`")));
+            }
+        }
+        execute(s.repo.cargo_in(folder, line).envs(WITHOUT_PYTHON).env("RUSTDOCFLAGS", "-D warnings"))
+    });
+}
+
+/// The oldest Rust that the workspace declares (`rust-version`) compiles it. If the toolchain here
+/// is that Rust, all that is compiled shows it; else rustup's of that version has to check the
+/// workspace.
+fn compiles_by_the_oldest_rust(repo: &Repo) -> Result<()> {
+    const DECLARED: &str = env!("CARGO_PKG_RUST_VERSION");
+    let here = repo.answer("rustc --version").unwrap_or_default();
+    if here.starts_with(concat!("rustc ", env!("CARGO_PKG_RUST_VERSION"), ".")) {
+        println!("{here} compiles everything here");
+        return Ok(());
+    }
+    let remedy = format!("run `rustup toolchain install {DECLARED}`, or declare another rust-version in Cargo.toml");
+    ensure!(repo.says(&format!("rustup run {DECLARED} rustc --version")), skipped(format!("this is {here}; {remedy}")));
+    let mut check = repo.command("rustup");
+    check.args(["run", DECLARED, "cargo", "check", "--locked", "--workspace", "--target-dir"]);
+    execute(check.arg(repo.target.join("minimal")))
 }
 
 /// Checks of the controller for a part with each set of features that its manifest lists: the name
 /// of the step, and the thread that runs it while other steps run, or why none does.
-type FeatureCheck = (String, Result<JoinHandle<Result<(), String>>, String>);
+type FeatureCheck = (String, Result<JoinHandle<Result<()>>>);
 
 /// Begins them, one thread a part: the compiler has one thread for one crate. The part with a
 /// Cortex-M0 has no FPU and takes the sets with fixed point.
 fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
-    let mut sets = Vec::new();
-    s.report.step("list of the controller's feature sets", || {
-        sets = feature_sets(&s.repo)?;
-        Ok(())
-    });
-    let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
+    let sets = feature_sets(&s.repo);
     let mut check = |part: &Part| {
         let has_fpu = part.target.ends_with("hf");
         let fits = |features: &&String| has_fpu || features.split(',').any(|feature| feature == "fixed");
         let toolchain = s.toolchains.find(&s.repo, part.target)?;
         // Cargo lets one command at a time into a folder.
         let folder = toolchain.target_folder(&s.repo).join("sets").join(part.target);
+        let sets = sets.as_ref().map_err(|error| anyhow!("{error}"))?;
         let commands = sets.iter().filter(fits).map(|features| {
-            let mut check = toolchain.cargo(&s.repo, part.target, "check");
             // Quiet, because other steps run beside it.
-            check.args(["--locked", "--quiet", "--package", "staya-controller", "--no-default-features"]);
-            check.args(["--features", features]).env("CARGO_TARGET_DIR", &folder).env("RUSTFLAGS", "-Dwarnings");
+            let line = "check --locked --quiet --package staya-controller --no-default-features --features";
+            let mut check = toolchain.cargo(&s.repo, part.target, line);
+            check.arg(features).env("CARGO_TARGET_DIR", &folder).env("RUSTFLAGS", "-Dwarnings");
             (features.clone(), check)
         });
         let mut commands: Vec<_> = commands.collect();
-        Ok(std::thread::spawn(move || {
-            let mut checks = commands.iter_mut();
-            checks.try_for_each(|(set, check)| ended(check.status()).map_err(|reason| format!("`{set}`: {reason}")))
-        }))
+        let run =
+            move || commands.iter_mut().try_for_each(|(set, check)| ended(check.status()).context(format!("`{set}`")));
+        Ok(spawn(run))
     };
+    let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
     let named = |part: &Part| format!("feature sets of the controller for {}", part.target);
     parts.map(|part| (named(part), check(part))).collect()
 }
 
-/// Waits for them: one step a part.
-fn end_feature_checks(s: &mut Session, checks: Vec<FeatureCheck>) {
-    for (name, check) in checks {
-        let join = |check: JoinHandle<_>| check.join().unwrap_or_else(|_| Err(String::from("the check panicked")));
-        s.report.step_with(&name, check, join);
-    }
-}
-
-/// The list `feature-sets` in the metadata of the controller's manifest, and the set without any
-/// feature.
-fn feature_sets(repo: &Repo) -> Result<Vec<String>, String> {
+/// The list `feature-sets` in the metadata of the controller's manifest.
+fn feature_sets(repo: &Repo) -> Result<Vec<String>> {
     let packages = packages(repo)?;
     let controller = packages.iter().find(|package| package["name"] == "staya-controller");
     let sets = controller.and_then(|package| package["metadata"]["staya"]["feature-sets"].as_array());
-    let sets = sets.ok_or("controller/Cargo.toml has no list package.metadata.staya.feature-sets")?;
-    let mut names: Vec<&str> = std::iter::once("").chain(sets.iter().filter_map(Value::as_str)).collect();
-    names.dedup();
-    Ok(names.into_iter().map(String::from).collect())
+    let sets = sets.context("controller/Cargo.toml has no list package.metadata.staya.feature-sets")?;
+    Ok(sets.iter().filter_map(Value::as_str).map(String::from).collect())
 }

@@ -1,7 +1,8 @@
 //! Microcontrollers, and what compiles for them: rustup's targets or Debian's packages.
 
 use crate::apt::Tools;
-use crate::repo::{Repo, output_of};
+use crate::repo::{Repo, Words as _, output_of};
+use crate::report::skipped;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -11,9 +12,9 @@ pub struct Part {
     pub name: &'static str,
     /// The target that its code is compiled for.
     pub target: &'static str,
-    /// The emulator that runs it, and the machine that it models.
+    /// The emulator that runs it, and its options for the machine.
     pub emulator: &'static str,
-    pub machine: &'static [&'static str],
+    pub machine: &'static str,
 }
 
 /// Every part.
@@ -22,39 +23,38 @@ pub const PARTS: [Part; 3] = [
         name: "stm32f405",
         target: "thumbv7em-none-eabihf",
         emulator: "qemu-system-arm",
-        machine: &["-machine", "netduinoplus2"],
+        machine: "-machine netduinoplus2",
     },
-    Part {
-        name: "nrf51",
-        target: "thumbv6m-none-eabi",
-        emulator: "qemu-system-arm",
-        machine: &["-machine", "microbit"],
-    },
+    Part { name: "nrf51", target: "thumbv6m-none-eabi", emulator: "qemu-system-arm", machine: "-machine microbit" },
     Part {
         name: "riscv32",
         target: "riscv32imac-unknown-none-elf",
         emulator: "qemu-system-riscv32",
         // Without firmware of the machine's own, which would be loaded over ours.
-        machine: &["-machine", "virt", "-bios", "none"],
+        machine: "-machine virt -bios none",
     },
 ];
 
 /// The part with an FPU and room for all of the controller.
 pub const STM32F405: &Part = &PARTS[0];
 
-/// The parts of these names; all of them without names.
-pub fn parts(names: &[&str]) -> impl Iterator<Item = &'static Part> {
-    PARTS.iter().filter(move |part| names.is_empty() || names.contains(&part.name))
+/// The names of [`PARTS`].
+pub const NAMES: [&str; 3] = [PARTS[0].name, PARTS[1].name, PARTS[2].name];
+
+/// The part of this name.
+pub fn part(name: &str) -> Result<&'static Part, String> {
+    PARTS.iter().find(|part| part.name == name).ok_or_else(|| format!("the parts are {}", NAMES.join(", ")))
 }
 
 /// Debian's packaged Rust, which can build `core` from source for any target.
 const DEBIAN: Tools = Tools {
-    packages: &["rustc-web", "cargo-web", "rust-web-src", "lld"],
-    programs: &["rustc", "cargo", "ld.lld"],
+    packages: "rustc-web cargo-web rust-web-src lld",
+    programs: "rustc cargo ld.lld",
     question: "for bin in /usr/bin \"$1\"; do
         core=$(\"$bin/rustc\" --print sysroot)/lib/rustlib/src/rust/library/core/src/lib.rs
         if [ -f \"$bin/cargo\" ] && [ -f \"$bin/ld.lld\" ] && [ -f \"$core\" ]; then echo \"$bin\"; exit; fi
     done; exit 1",
+    ways: "unpack",
 };
 const REMEDY: &str = "run `rustup target add thumbv7em-none-eabihf thumbv6m-none-eabi riscv32imac-unknown-none-elf`";
 
@@ -71,12 +71,13 @@ pub enum Toolchain {
 /// needs them.
 #[derive(Default)]
 pub struct Toolchains {
-    debian: Option<Result<Toolchain, String>>,
+    debian: Option<Result<PathBuf, String>>,
 }
 
 impl Toolchains {
-    /// The toolchain for a target. The error says why there is none, and what to do.
-    pub fn find(&mut self, repo: &Repo, target: &str) -> Result<Toolchain, String> {
+    /// The toolchain for a target. Without one a part is skipped; the error says why there is none,
+    /// and what to do.
+    pub fn find(&mut self, repo: &Repo, target: &str) -> anyhow::Result<Toolchain> {
         let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         let folder = output_of(repo.command(rustc).args(["--print", "target-libdir", "--target", target]));
         if folder.is_some_and(|folder| Path::new(&folder).is_dir()) {
@@ -84,25 +85,24 @@ impl Toolchains {
         }
         let find = || {
             DEBIAN.prepare(repo).map_err(|reason| format!("{reason}; or {REMEDY}"))?;
-            repo.answer(DEBIAN.question).map(|bin| Toolchain::Debian(bin.into())).ok_or_else(|| REMEDY.into())
+            repo.answer(DEBIAN.question).map(PathBuf::from).ok_or_else(|| REMEDY.into())
         };
-        self.debian.get_or_insert_with(find).clone()
+        self.debian.get_or_insert_with(find).clone().map(Toolchain::Debian).map_err(skipped)
     }
 }
 
 impl Toolchain {
-    /// Cargo's subcommand for a target.
-    pub fn cargo(&self, repo: &Repo, target: &str, subcommand: &str) -> Command {
+    /// Cargo for a target, with its subcommand and the arguments of this line.
+    pub fn cargo(&self, repo: &Repo, target: &str, line: &str) -> Command {
+        let (subcommand, arguments) = line.split_once(' ').unwrap_or((line, ""));
         let mut command = match self {
-            Self::Own => repo.cargo(&[subcommand]),
+            Self::Own => repo.cargo(subcommand),
             Self::Debian(bin) => {
                 let mut command = repo.command(bin.join("cargo"));
                 // Cargo and rustup tell their children which toolchain runs; that is another one
                 // here.
-                for name in std::env::vars_os().filter_map(|(name, _)| name.into_string().ok()) {
-                    if names_a_toolchain(&name) {
-                        command.env_remove(name);
-                    }
+                for (name, _) in std::env::vars_os().filter(|(name, _)| names_a_toolchain(&name.to_string_lossy())) {
+                    command.env_remove(name);
                 }
                 command.args([subcommand, "-Zbuild-std=core"]);
                 command.env("RUSTC", bin.join("rustc")).env("RUSTC_BOOTSTRAP", "1");
@@ -112,7 +112,7 @@ impl Toolchain {
                 command
             }
         };
-        command.args(["--target", target]);
+        command.args(["--target", target]).words(arguments);
         // The same for every command: another level rebuilds everything that logs.
         if std::env::var_os("DEFMT_LOG").is_none() {
             command.env("DEFMT_LOG", "info");

@@ -1,13 +1,12 @@
 //! The documentation refers only to things that exist: paths, links and their headings, pages in
 //! comments, and the code that README.md quotes.
 
-use crate::files;
+use crate::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
 /// Reads every Markdown file of the repository and the comments of its Rust code. The error counts
 /// the faults, which are printed by file and line.
-pub fn check(root: &Path) -> Result<(), String> {
+pub fn check(root: &Path) -> Result<()> {
     let pages = Pages::of(root)?;
     let mut faults = Vec::new();
     for file in &files::sources(root, &["md", "rs"])? {
@@ -21,8 +20,7 @@ pub fn check(root: &Path) -> Result<(), String> {
     let quotes = quotes(&readme);
     let strange = quotes.iter().filter(|quote| !examples.iter().any(|example| is_in(quote, example)));
     faults.extend(strange.map(|quote| format!("README.md: in no file of examples/: {}", quote.join(" "))));
-    faults.iter().for_each(|fault| println!("{fault}"));
-    if faults.is_empty() { Ok(()) } else { Err(format!("{} references lead nowhere", faults.len())) }
+    none_of(&faults, "references lead nowhere")
 }
 
 /// The files and folders that texts can refer to.
@@ -32,7 +30,7 @@ struct Pages {
 }
 
 impl Pages {
-    fn of(root: &Path) -> Result<Self, String> {
+    fn of(root: &Path) -> Result<Self> {
         let files = files::below(root, &|path| !path.is_dir() || !files::is_made(path))?;
         let files = files.iter().filter_map(|file| file.strip_prefix(root).ok());
         let paths = files.flat_map(Path::ancestors).filter(|path| !path.as_os_str().is_empty());
@@ -42,37 +40,36 @@ impl Pages {
     /// The faults of a file by line: in Markdown links and paths that lead nowhere and conflict
     /// markers, in comments of Rust code missing pages such as `docs/python.md`.
     fn faults(&self, file: &Path, text: &str) -> Vec<(usize, String)> {
+        let mut faults = Vec::new();
         let is_code = files::has_extension(file, &["rs"]);
-        let lines = (1..).zip(text.lines()).filter(|(_, line)| !is_code || line.trim_start().starts_with("//"));
-        let faults = lines.flat_map(|(number, line)| {
-            let mut faults = Vec::new();
+        for (number, line) in
+            (1..).zip(text.lines()).filter(|(_, line)| !is_code || line.trim_start().starts_with("//"))
+        {
             let mut missing: Vec<&str> = if is_code {
                 words(line).filter(|word| word.ends_with(".md") && word.contains('/')).collect()
             } else {
                 let links = line.split("](").skip(1).filter_map(|rest| rest.split(')').next());
                 let broken = links.filter(|link| !link.contains("://") && !leads_somewhere(file, link));
-                faults.extend(broken.map(|link| format!("the link {link} leads nowhere")));
-                let is_mark = ["<<<<<<< ", ">>>>>>> "].iter().any(|mark| line.starts_with(mark));
-                faults.extend(is_mark.then(|| String::from("a merge has left this mark")));
+                faults.extend(broken.map(|link| (number, format!("the link {link} leads nowhere"))));
+                let is_mark = line.starts_with("<<<<<<< ") || line.starts_with(">>>>>>> ");
+                faults.extend(is_mark.then(|| (number, String::from("a merge has left this mark"))));
                 self.paths_in(line)
             };
             missing.retain(|path| !self.paths.iter().any(|known| known.ends_with(path)));
-            faults.extend(missing.iter().map(|path| format!("{path} does not exist")));
-            faults.into_iter().map(move |fault| (number, fault))
-        });
-        faults.collect()
+            faults.extend(missing.iter().map(|path| (number, format!("{path} does not exist"))));
+        }
+        faults
     }
 
     /// Words that begin with a top folder, and in backticks code and folders of any place.
     fn paths_in<'t>(&self, line: &'t str) -> Vec<&'t str> {
-        let spans = line.split('`').zip([false, true].into_iter().cycle());
-        let words = spans.flat_map(|(span, is_code)| words(span).map(move |word| (word, is_code && word == span)));
-        let paths = words.filter(|(word, is_span)| {
+        let spans: Vec<&str> = line.split('`').skip(1).step_by(2).collect();
+        let is_path = |word: &&str| {
             let is_below = word.split_once('/').is_some_and(|(top, _)| self.paths.contains(Path::new(top)));
-            let is_path = *is_span && (word.ends_with(".rs") || word.ends_with('/') && *word != "/");
-            (is_below || is_path) && !word.split('/').any(is_placeholder)
-        });
-        paths.map(|(word, _)| word).collect()
+            let is_named = word.ends_with(".rs") || word.ends_with('/') && *word != "/";
+            (is_below || is_named && spans.contains(word)) && !word.split('/').any(is_placeholder)
+        };
+        words(line).filter(is_path).collect()
     }
 }
 

@@ -1,64 +1,62 @@
 //! Files, with errors that name them.
 
+use anyhow::{Context as _, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-fn named<T>(path: &Path, result: std::io::Result<T>) -> Result<T, String> {
-    result.map_err(|error| format!("{}: {error}", path.display()))
-}
-
 /// A text file.
-pub fn read(path: &Path) -> Result<String, String> {
-    named(path, fs::read_to_string(path))
+pub fn read(path: &Path) -> Result<String> {
+    fs::read_to_string(path).with_context(|| path.display().to_string())
 }
 
 /// A file of bytes.
-pub fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    named(path, fs::read(path))
+pub fn bytes(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).with_context(|| path.display().to_string())
 }
 
 /// Writes a file, and makes the folder that it is in.
-pub fn write(path: &Path, text: impl AsRef<[u8]>) -> Result<(), String> {
+pub fn write(path: &Path, text: impl AsRef<[u8]>) -> Result<()> {
     make(path.parent().unwrap_or(path))?;
-    named(path, fs::write(path, text))
+    fs::write(path, text).with_context(|| path.display().to_string())
 }
 
 /// Makes a folder.
-pub fn make(folder: &Path) -> Result<(), String> {
-    named(folder, fs::create_dir_all(folder))
+pub fn make(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())
 }
 
-/// Removes a folder with all that is in it.
-pub fn remove(folder: &Path) -> Result<(), String> {
-    if folder.exists() { named(folder, fs::remove_dir_all(folder)) } else { Ok(()) }
+/// Removes a folder with all that is in it, or a file.
+pub fn remove(path: &Path) -> Result<()> {
+    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    if path.exists() { removed.with_context(|| path.display().to_string()) } else { Ok(()) }
 }
 
 /// Makes a folder that is empty.
-pub fn make_empty(folder: &Path) -> Result<(), String> {
+pub fn make_empty(folder: &Path) -> Result<()> {
     remove(folder)?;
     make(folder)
 }
 
 /// Copies a file, and makes the folder that it goes to. A program that runs cannot be written to,
 /// but another one can take its name.
-pub fn copy(from: &Path, to: &Path) -> Result<(), String> {
+pub fn copy(from: &Path, to: &Path) -> Result<()> {
     make(to.parent().unwrap_or(to))?;
     let beside = to.with_extension("new");
-    named(from, fs::copy(from, &beside))?;
-    named(to, fs::rename(&beside, to))
+    fs::copy(from, &beside).with_context(|| from.display().to_string())?;
+    fs::rename(&beside, to).with_context(|| to.display().to_string())
 }
 
 /// The contents of a folder, sorted.
-pub fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
+pub fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
-    let mut entries: Vec<PathBuf> = named(folder, entries)?;
+    let mut entries: Vec<PathBuf> = entries.with_context(|| folder.display().to_string())?;
     entries.sort();
     Ok(entries)
 }
 
 /// All files below a folder that `is_wanted` takes, sorted; folders that it does not take are left
 /// out whole.
-pub fn below(folder: &Path, is_wanted: &impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>, String> {
+pub fn below(folder: &Path, is_wanted: &impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for path in entries(folder)?.into_iter().filter(|path| is_wanted(path)) {
         if path.is_dir() {
@@ -71,7 +69,7 @@ pub fn below(folder: &Path, is_wanted: &impl Fn(&Path) -> bool) -> Result<Vec<Pa
 }
 
 /// The files below a folder with one of these extensions, except hidden folders and output.
-pub fn sources(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, String> {
+pub fn sources(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>> {
     below(folder, &|path| if path.is_dir() { !is_made(path) } else { has_extension(path, extensions) })
 }
 

@@ -1,59 +1,66 @@
 //! `cargo xtask firmware`: the ELF files of the parts, with the toolchain that is installed.
 
-use crate::device::{PARTS, Part, STM32F405, Toolchain, parts};
-use crate::files;
-use crate::options::Options;
-use crate::repo::{Repo, run};
-use crate::session::Session;
+use crate::device::{NAMES, PARTS, Part, STM32F405, Toolchain, part};
+use crate::prelude::*;
 use object::{Object as _, ObjectSection as _, SectionFlags, SectionKind, elf};
-use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 
-/// Cargo's profile for programs of a part, and the profile to debug them with.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Profile {
-    Firmware,
-    Debug,
+/// How programs of a part are built.
+pub struct Profile {
+    /// Cargo's profile, and the folder that it builds in.
+    name: &'static str,
+    built: &'static str,
+    /// The end of names behind that of a part.
+    pub suffix: &'static str,
+    /// The folder of the ELF files in that of the part.
+    folder: &'static str,
 }
 
+/// As robots have them.
+pub const FIRMWARE: &Profile = &Profile { name: "firmware", built: "firmware", suffix: "", folder: "" };
+/// To debug them.
+pub const DEBUG: &Profile = &Profile { name: "dev", built: "debug", suffix: ", debug", folder: "debug" };
+
 impl Profile {
-    /// The name of cargo's profile, and the folder that it builds in.
-    fn names(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Firmware => ("firmware", "firmware"),
-            Self::Debug => ("dev", "debug"),
-        }
-    }
-
-    /// The end of names behind that of a part.
-    pub fn suffix(self) -> &'static str {
-        if self == Self::Debug { ", debug" } else { "" }
-    }
-
     /// Where the ELF file of a program is put: `target/firmware/PART/BIN`, or
     /// `target/firmware/PART/debug/BIN`.
-    pub fn elf(self, repo: &Repo, part: &Part, bin: &str) -> PathBuf {
-        let folder = repo.target.join("firmware").join(part.name);
-        if self == Self::Debug { folder.join("debug").join(bin) } else { folder.join(bin) }
+    pub fn elf(&self, repo: &Repo, part: &Part, bin: &str) -> PathBuf {
+        repo.target.join("firmware").join(part.name).join(self.folder).join(bin)
     }
 
-    /// The ELF file of a program that was built before.
-    pub fn find(self, repo: &Repo, part: &Part, bin: &str) -> Result<PathBuf, String> {
+    /// The ELF file of a program that was built before. A part that needs it is skipped without it.
+    pub fn find(&self, repo: &Repo, part: &Part, bin: &str) -> Result<PathBuf> {
         let elf = self.elf(repo, part, bin);
-        if elf.is_file() { Ok(elf) } else { Err(format!("no firmware for {}", part.name)) }
+        ensure!(elf.is_file(), skipped(format!("no firmware for {}", part.name)));
+        Ok(elf)
     }
 }
 
 /// Programs of names that begin so link only when the optimiser has thrown out every panic.
 const ONLY_OPTIMISED: &str = "nopanic";
 
+#[derive(clap::Args)]
+pub struct Options {
+    /// To debug
+    #[arg(long)]
+    debug: bool,
+    /// Programs, without this option all
+    #[arg(long = "bin", value_name = "NAME", conflicts_with = "folder")]
+    bins: Vec<String>,
+    /// The program of a crate with a law of its own
+    #[arg(long = "crate", value_name = "DIR", conflicts_with = "debug")]
+    folder: Option<PathBuf>,
+    #[arg(value_name = "PART", value_parser = part, default_values = NAMES)]
+    parts: Vec<&'static Part>,
+}
+
 /// The command: one step per part.
-pub fn run_command(s: &mut Session, options: &Options<'_>) {
-    let profile = if options.has("--debug") { Profile::Debug } else { Profile::Firmware };
-    let bins: Vec<&str> = options.all("--bin").collect();
-    for part in parts(&options.names) {
-        match options.value("--crate") {
-            Some(folder) => build_own(s, part, Path::new(folder)),
+pub fn run_command(s: &mut Session, options: &Options) {
+    let profile = if options.debug { DEBUG } else { FIRMWARE };
+    let bins: Vec<&str> = options.bins.iter().map(String::as_str).collect();
+    for part in &options.parts {
+        match &options.folder {
+            Some(folder) => build_own(s, part, folder),
             None => build(s, part, profile, &bins),
         };
     }
@@ -75,32 +82,28 @@ pub fn begin(s: &mut Session) -> Option<Child> {
 
 /// Builds the programs of these names for a part as one step, or all of them if none is named.
 /// Returns whether the ELF files are there.
-pub fn build(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) -> bool {
-    let name = format!("firmware for {}{}", part.name, profile.suffix());
-    if part.name == "nrf51" && profile == Profile::Debug {
-        s.report.skip(&name, "256 KiB of flash hold it only optimised");
-        return false;
-    }
+pub fn build(s: &mut Session, part: &Part, profile: &Profile, bins: &[&str]) -> bool {
+    let name = format!("firmware for {}{}", part.name, profile.suffix);
     s.with_toolchain(&name, part.target, |repo, toolchain| make(repo, toolchain, part, profile, bins))
 }
 
 /// Builds programs for a part, and copies the ELF files to where they are looked for.
-fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only: &[&str]) -> Result<(), String> {
-    let (profile_name, folder) = profile.names();
-    let mut cargo = toolchain.cargo(repo, part.target, "build");
-    cargo.args(["--locked", "--profile", profile_name, "--package", "staya-firmware"]);
+fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: &Profile, only: &[&str]) -> Result<()> {
+    let is_debug = profile.name == DEBUG.name;
+    ensure!(part.name != "nrf51" || !is_debug, skipped("256 KiB of flash hold it only optimised"));
+    let mut cargo = toolchain.cargo(repo, part.target, "build --locked --package staya-firmware --profile");
     // Flash has room for the canned swarms only if they are small.
-    cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "s");
+    cargo.arg(profile.name).env("CARGO_PROFILE_DEV_OPT_LEVEL", "s");
     // Each file in src/bin is a program.
-    let bins = files::entries(&repo.root.join("hil/firmware/src/bin"))?.into_iter().map(|file| files::stem(&file));
     let mut bins: Vec<String> =
-        bins.filter(|bin| profile == Profile::Firmware || !bin.starts_with(ONLY_OPTIMISED)).collect();
+        files::entries(&repo.root.join("hil/firmware/src/bin"))?.iter().map(|file| files::stem(file)).collect();
+    bins.retain(|bin| !is_debug || !bin.starts_with(ONLY_OPTIMISED));
     if let Some(unknown) = only.iter().find(|&&name| !bins.iter().any(|bin| bin == name)) {
-        return Err(format!("no program {unknown} in hil/firmware"));
+        bail!("no program {unknown} in hil/firmware");
     }
     bins.retain(|bin| only.is_empty() || only.contains(&bin.as_str()));
-    run(cargo.args(bins.iter().flat_map(|bin| ["--bin", bin])))?;
-    let built = toolchain.target_folder(repo).join(part.target).join(folder);
+    execute(cargo.args(bins.iter().flat_map(|bin| ["--bin", bin])))?;
+    let built = toolchain.target_folder(repo).join(part.target).join(profile.built);
     println!("{:>8} {:>8}  file", "flash", "RAM");
     bins.iter().try_for_each(|bin| put(&built.join(bin), &profile.elf(repo, part, bin)))
 }
@@ -111,20 +114,19 @@ fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only:
 pub fn build_own(s: &mut Session, part: &Part, folder: &Path) -> bool {
     let name = format!("firmware of {} for {}", folder.display(), part.name);
     s.with_toolchain(&name, part.target, |repo, toolchain| {
-        let folder = std::path::absolute(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let folder = std::path::absolute(folder).with_context(|| folder.display().to_string())?;
         let manifest = folder.join("Cargo.toml");
-        if !manifest.is_file() {
-            return Err(format!("{} is not there; docs/project.md says what such a crate has", manifest.display()));
-        }
-        let mut cargo = toolchain.cargo(repo, part.target, "build");
-        let (profile, built) = Profile::Firmware.names();
-        cargo.arg("--manifest-path").arg(manifest).args(["--bin", "firmware", "--profile", profile]);
+        let shown = manifest.display();
+        ensure!(manifest.is_file(), "{shown} is not there; docs/project.md says what such a crate has");
+        let Profile { name: profile, built, .. } = FIRMWARE;
+        let mut cargo = toolchain.cargo(repo, part.target, "build --bin firmware --profile");
+        cargo.arg(profile).arg("--manifest-path").arg(&manifest);
         // The repository's profile, which the crate need not have.
         for line in ["inherits=\"release\"", "opt-level=\"s\"", "lto=\"fat\"", "codegen-units=1", "panic=\"abort\""] {
             cargo.args(["--config", &format!("profile.{profile}.{line}")]);
         }
         let target = toolchain.target_folder(repo);
-        run(cargo.env("CARGO_TARGET_DIR", &target))?;
+        execute(cargo.env("CARGO_TARGET_DIR", &target))?;
         println!("{:>8} {:>8}  file", "flash", "RAM");
         let from = target.join(part.target).join(built).join("firmware");
         put(&from, &folder.join("target/firmware").join(part.name).join("lockstep"))
@@ -137,13 +139,13 @@ pub const EXAMPLE: &str = "examples/stm32f4";
 /// Its release build: that it links is the test, since no emulator has the part's clocks.
 pub fn example(s: &mut Session) {
     s.with_toolchain("example firmware for the STM32F405", STM32F405.target, |repo, toolchain| {
-        let mut build = toolchain.cargo(repo, STM32F405.target, "build");
-        run(build.args(["--locked", "--release"]).current_dir(repo.root.join(EXAMPLE)))
+        let mut build = toolchain.cargo(repo, STM32F405.target, "build --locked --release");
+        execute(build.current_dir(repo.root.join(EXAMPLE)))
     });
 }
 
 /// Copies an ELF file to where it is looked for, and says what it takes.
-fn put(from: &Path, to: &Path) -> Result<(), String> {
+fn put(from: &Path, to: &Path) -> Result<()> {
     files::copy(from, to)?;
     let Sections { flash, ram, .. } = sections(to)?;
     println!("{flash:>8} {ram:>8}  {}", to.display());
@@ -164,8 +166,8 @@ pub struct Sections {
 }
 
 /// The sizes of an ELF file of 32 bits.
-pub fn sections(file: &Path) -> Result<Sections, String> {
-    sizes(&files::bytes(file)?).ok_or_else(|| format!("{} is not a 32-bit ELF file", file.display()))
+pub fn sections(file: &Path) -> Result<Sections> {
+    sizes(&files::bytes(file)?).with_context(|| format!("{} is not a 32-bit ELF file", file.display()))
 }
 
 /// The same from the file's section headers: loaded sections with contents are flash,

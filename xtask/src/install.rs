@@ -2,25 +2,32 @@
 //! figures of papers, its manual and what shells complete it by.
 
 use crate::device::PARTS;
-use crate::files;
-use crate::firmware::{self, Profile};
-use crate::options::Options;
-use crate::repo::{Repo, run};
-use crate::session::{MAIN, Session, programs};
-use std::fs;
-use std::path::Path;
+use crate::firmware::{self, FIRMWARE};
+use crate::prelude::*;
+use crate::session::PROGRAMS;
+
+#[derive(clap::Args)]
+pub struct Options {
+    /// Where to install [default: ~/.local]
+    #[arg(long, value_name = "DIR")]
+    prefix: Option<PathBuf>,
+    /// Programs that are not optimised
+    #[arg(long)]
+    debug: bool,
+}
 
 /// The command. Firmware for a part that no toolchain here builds is skipped, and was not there
 /// before.
-pub fn run_command(s: &mut Session, options: &Options<'_>) {
-    let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".local"));
-    let prefix = options.value("--prefix").and_then(|folder| std::path::absolute(folder).ok()).or(home);
-    let prefix = prefix.ok_or_else(|| String::from("there is no HOME to install into: give --prefix DIR"));
-    let Some(prefix) = s.report.need("install", prefix) else { return };
+pub fn run(s: &mut Session, options: &Options) {
+    let home = || std::env::home_dir().map(|home| home.join(".local"));
+    let Some(prefix) = options.prefix.clone().or_else(home).and_then(|folder| std::path::absolute(folder).ok()) else {
+        s.report.step("install", || Err(skipped("there is no HOME to install into: give --prefix DIR")));
+        return;
+    };
     for part in &PARTS {
-        firmware::build(s, part, Profile::Firmware, &["lockstep"]);
+        firmware::build(s, part, FIRMWARE, &["lockstep"]);
     }
-    let profile = if options.has("--debug") { "debug" } else { "release" };
+    let profile = if options.debug { "debug" } else { "release" };
     if s.staya(profile).is_ok() {
         put_step(s, &prefix, profile);
     }
@@ -31,8 +38,8 @@ pub fn put_step(s: &mut Session, prefix: &Path, profile: &str) -> bool {
     s.report.step(&format!("installed in {}", prefix.display()), || put(&s.repo, prefix, profile))
 }
 
-fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<(), String> {
-    for (_, name) in programs(repo)? {
+fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<()> {
+    for (_, name) in PROGRAMS {
         let program = repo.program(profile, name);
         // Tests do not build each program.
         if name == MAIN || program.is_file() {
@@ -40,32 +47,30 @@ fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<(), String> {
         }
     }
     for part in &PARTS {
-        let elf = Profile::Firmware.elf(repo, part, "lockstep");
+        let elf = FIRMWARE.elf(repo, part, "lockstep");
         let to = prefix.join("share/staya/firmware").join(part.name).join("lockstep");
+        // It would be of another version than the program.
+        files::remove(&to)?;
         if elf.is_file() {
             files::copy(&elf, &to)?;
-        } else if to.is_file() {
-            // It would be of another version than the program.
-            fs::remove_file(&to).map_err(|error| format!("{}: {error}", to.display()))?;
         }
     }
     put_figures(repo, &prefix.join("share/staya"))?;
     let program = prefix.join("bin").join(files::name(&repo.program(profile, MAIN)));
-    let mut shell = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya-shell"]);
-    run(shell.args((profile == "release").then_some("--release")).arg("--").arg(prefix))?;
+    let mut shell = repo.cargo("run --quiet --locked --package staya-shell");
+    execute(shell.args((profile == "release").then_some("--release")).arg("--").arg(prefix))?;
     println!("{}; is {} in PATH?", program.display(), prefix.join("bin").display());
     Ok(())
 }
 
 /// Copies the data of figures, and the maps that they name. Removes those of another version.
-fn put_figures(repo: &Repo, share: &Path) -> Result<(), String> {
+fn put_figures(repo: &Repo, share: &Path) -> Result<()> {
     for folder in ["papers", "maps"] {
         files::remove(&share.join(folder))?;
         let source = repo.root.join(folder);
         let is_data = |path: &Path| path != source.join("src") && files::name(path) != "Cargo.toml";
         for file in files::below(&source, &is_data)? {
-            let name = file.strip_prefix(&repo.root).map_err(|error| error.to_string())?;
-            files::copy(&file, &share.join(name))?;
+            files::copy(&file, &share.join(file.strip_prefix(&repo.root)?))?;
         }
     }
     Ok(())

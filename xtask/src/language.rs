@@ -2,9 +2,8 @@
 //! words of pages.
 
 use crate::documents::prose;
-use crate::files;
-use std::collections::HashMap;
-use std::path::Path;
+use crate::prelude::*;
+use regex::{Regex, RegexBuilder};
 
 /// The most phrases that may break a rule.
 const BROKEN: usize = 40;
@@ -19,19 +18,23 @@ const EXTENSIONS: [&str; 12] = ["rs", "md", "py", "pyi", "toml", "js", "html", "
 /// The phrases that break a rule.
 const PHRASES: &str = include_str!("../language.txt");
 
-/// Rules and the rest of their phrases, by the first word in a phrase.
-type Rules<'a> = HashMap<&'a str, Vec<(&'a str, &'a str)>>;
+/// The rules of [`PHRASES`]: their names, phrases and exceptions.
+struct Rules {
+    phrases: Vec<(&'static str, Regex, Regex)>,
+    /// Where a word begins inside a name in camel case.
+    hump: Regex,
+}
 
 /// Prints each finding by file and line, and the counts beside their limits. The error names the
 /// counts above their limit.
-pub fn check(root: &Path) -> Result<(), String> {
-    let rules = rules();
+pub fn check(root: &Path) -> Result<()> {
+    let rules = Rules::new();
     let (mut broken, mut long_lines, mut words, mut comments) = (0, 0, 0, 0);
     for file in files::sources(root, &EXTENSIONS)? {
         let text = files::read(&file)?;
         let shown = file.strip_prefix(root).unwrap_or(&file).display();
         for (line, number) in text.lines().zip(1..) {
-            for rule in broken_rules(&rules, line) {
+            for rule in rules.broken(line) {
                 broken += 1;
                 println!("{shown}:{number}: [{rule}] {}", line.trim());
             }
@@ -58,7 +61,8 @@ pub fn check(root: &Path) -> Result<(), String> {
     let shown = counts.map(|(count, limit, what)| (count > limit, format!("{count} {what}, at most {limit}")));
     shown.iter().for_each(|(_, line)| println!("{line}"));
     let faults: Vec<String> = shown.into_iter().filter_map(|(is_fault, line)| is_fault.then_some(line)).collect();
-    if faults.is_empty() { Ok(()) } else { Err(faults.join("; ")) }
+    ensure!(faults.is_empty(), "{}", faults.join("; "));
+    Ok(())
 }
 
 /// Whether a line can and should be wrapped: a path or an address cannot.
@@ -66,55 +70,27 @@ fn is_long(line: &str) -> bool {
     line.chars().count() > COLUMNS && line.trim_start_matches(['/', '!', ' ']).trim_end().contains(' ')
 }
 
-/// The rules of [`PHRASES`].
-fn rules() -> Rules<'static> {
-    let mut rules = Rules::new();
-    for (rule, phrase) in PHRASES.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once(": "))
-    {
-        let (first, rest) = phrase.split_once(' ').unwrap_or((phrase, ""));
-        first.split('|').for_each(|word| rules.entry(word).or_default().push((rule, rest)));
+impl Rules {
+    fn new() -> Self {
+        let regex = |text: &str| RegexBuilder::new(text).case_insensitive(true).build().expect("xtask/language.txt");
+        let lines = PHRASES.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once(": "));
+        let phrases = lines.map(|(rule, phrase)| {
+            let (phrase, exception) = phrase.split_once(" !! ").unwrap_or((phrase, "$^"));
+            (rule, regex(phrase), regex(exception))
+        });
+        Self { phrases: phrases.collect(), hump: Regex::new(r"(\p{Ll})(\p{Lu})").expect("sound") }
     }
-    rules
-}
 
-/// The rule of each phrase in the line that breaks one.
-fn broken_rules<'a>(rules: &Rules<'a>, line: &str) -> Vec<&'a str> {
-    let tokens = tokens(line);
-    let mut broken = Vec::new();
-    for (at, token) in tokens.iter().enumerate() {
-        let small = token.to_lowercase();
-        let any_case = rules.get(small.as_str()).filter(|_| small != *token);
-        let phrases = rules.get(token).into_iter().chain(any_case).flatten();
-        broken.extend(phrases.filter(|(_, rest)| follows(&tokens, at, rest)).map(|(rule, _)| *rule));
+    /// The rule of each phrase in the line that breaks one. `NoRoute` is two words, `no_route` is
+    /// one.
+    fn broken(&self, line: &str) -> Vec<&'static str> {
+        let line = self.hump.replace_all(line, "$1 $2");
+        let found = self.phrases.iter().flat_map(|(rule, phrase, exception)| {
+            let breaks = phrase.find_iter(&line).filter(|found| !exception.is_match(&line[found.start()..]));
+            breaks.map(|_| *rule)
+        });
+        found.collect()
     }
-    broken
-}
-
-/// Whether the rest of a phrase follows the token `first`.
-fn follows(tokens: &[&str], first: usize, rest: &str) -> bool {
-    let mut next = first + 1;
-    let is_in = |list: &str, token: &&str| list.split('|').any(|word| word.eq_ignore_ascii_case(token));
-    rest.split_whitespace().all(|slot| match slot.split_at(1) {
-        ("!", list) => !tokens.get(next).is_some_and(|token| is_in(list, token)),
-        ("^", list) => !tokens[..first].last().is_some_and(|token| is_in(list, token)),
-        ("~", list) => !tokens[next..].iter().any(|token| is_in(list, token)),
-        _ => {
-            next += 1;
-            let fits =
-                |token: &&str| if slot == "*" { token.starts_with(char::is_lowercase) } else { is_in(slot, token) };
-            tokens.get(next - 1).is_some_and(fits)
-        }
-    })
-}
-
-/// The words and marks of a line. `NoRoute` is two words, `no_route` is one.
-fn tokens(line: &str) -> Vec<&str> {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    let pairs = line.char_indices().zip(std::iter::once(' ').chain(line.chars()));
-    let starts = pairs
-        .filter(|((_, c), before)| !(is_word(*c) && is_word(*before)) || before.is_lowercase() && c.is_uppercase());
-    let cuts: Vec<usize> = starts.map(|((at, _), _)| at).chain([line.len()]).collect();
-    cuts.windows(2).map(|cut| line[cut[0]..cut[1]].trim()).filter(|token| !token.is_empty()).collect()
 }
 
 #[cfg(test)]
@@ -123,7 +99,7 @@ mod tests {
 
     /// The rules that a sentence breaks. A `+` in it keeps this file itself from being counted.
     fn broken(sentence: &str) -> Vec<&'static str> {
-        broken_rules(&rules(), &sentence.replace('+', ""))
+        Rules::new().broken(&sentence.replace('+', ""))
     }
 
     #[test]

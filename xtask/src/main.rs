@@ -6,24 +6,21 @@
 mod apt;
 mod autopilots;
 mod bench;
-mod bless;
 mod c;
 mod check;
 mod device;
 mod documents;
 mod emulate;
-mod emulated;
 mod files;
 mod firmware;
 mod fuzz;
 mod install;
 mod language;
-mod minimal;
 mod modules;
 mod mpi;
 mod mutants;
-mod options;
 mod plants;
+mod prelude;
 mod project;
 mod python;
 mod repo;
@@ -36,90 +33,170 @@ mod tally;
 mod test;
 mod weight;
 
-use options::Options;
+use clap::Parser as _;
+use device::{NAMES, Part};
 use session::Session;
+use std::num::NonZeroU64;
 use std::process::ExitCode;
 
-/// How a command is called, what it does, and what does it.
-type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
-
-/// The commands. Of lines that begin with the same word, the first that fits counts.
-#[rustfmt::skip]
-const COMMANDS: [Command; 32] = [
-    ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
-    ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, false)),
-    ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, true)),
-    ("autopilots [--rover PATH] [--copter PATH] [--defaults FOLDER] [NAME]", "flights with your build of ArduPilot",
-        autopilots::run_command),
-    ("bench [NAME]", "benchmarks: medians, ratios, goals", |s, o| bench::run(s, o.name())),
-    ("bless [NAME]", "rewrite golden files by tests named NAME (golden)", |s, o| bless::run(s, o.name())),
-    ("book", "the pages as a book with search: target/book/index.html", |s, _| python::book(s)),
-    ("browser", "the page of `staya view` in Chromium", |s, _| python::browser(s)),
-    ("c", "the library for C, on this machine and on an emulated STM32F405", |s, _| c::run(s)),
-    ("clients [NAME]", "MAVLink clients against staya", |s, o| python::clients(s, o.name(), true)),
-    ("cluster", "sweeps on Slurm and GNU parallel, on this machine", |s, _| python::cluster(s)),
-    ("example", "the example firmware of examples/stm32f4", |s, _| firmware::example(s)),
-    ("faults [stm32f405|nrf51|riscv32...]", "firmware that fails restarts", |s, o| swarms::faults(s, &o.names)),
-    ("figures [--out FILE] [--against FILE]", "figures of scenarios and experiments: target/figures.csv, or as before a change",
-        python::figures),
-    ("firmware [--debug] [--bin NAME] [stm32f405|nrf51|riscv32...]", "programs of hil/firmware: target/firmware/PART",
-        firmware::run_command),
-    ("firmware [--crate DIR] [stm32f405|nrf51|riscv32...]", "firmware of a crate with a law of its own",
-        firmware::run_command),
-    ("fuzz [--seconds N]", "each fuzz target for N seconds (60)", |s, o| fuzz::run(s, o.value("--seconds"))),
-    ("install [--prefix DIR] [--debug]", "programs, firmware, manual, completions below DIR (~/.local)",
-        install::run_command),
-    ("mpi", "one world over ranks of OpenMPI, on this machine", |s, _| mpi::run(s)),
-    ("mpi [--scaling]", "times of 200,000 robots on 1, 2 and 4 ranks", |s, _| mpi::run_scaling(s)),
-    ("mutants [--shard K/N]", "changes of the controller that its tests must notice",
-        |s, o| mutants::run_shard(s, o.value("--shard"))),
-    ("new", "what `staya new` makes, compiled and tested", |s, _| project::run(s, true)),
-    ("plants", "panics planted in the firmware's sources: the linker refuses each", |s, _| plants::run(s, true)),
-    ("pogema", "robots that negotiate on all maps of POGEMA's tables", |s, _| python::pogema(s, true)),
-    ("python", "the package for Python: its wheel, types and tests", |s, _| python::package(s)),
-    ("qemu", "fetches the emulators of the parts", |s, _| emulate::fetch(s)),
-    ("size [--json]", "flash, RAM, stack, instructions against budgets", |s, o| size::run(s, o.has("--json"))),
-    ("size [--search] [--seed N] [--scenes N]", "the longest step behind ORCA that a search finds", size::search),
-    ("soak [--minutes N] [--json FILE] [flood|key|companion|hil...]", "everything at once among hostile clients",
-        soak::run_command),
-    ("swarms", "the canned swarms give one hash on the host and on each part", |s, _| swarms::run(s)),
-    ("weight [--peer] [--record]", "the cost of the README's first command", weight::run_command),
-    ("help", "this text", |_, _| {}),
-];
-
-const NOTES: &str = "
-Programs that this machine lacks are unpacked into target/tools from Debian's packages. A part that cannot run
-is skipped, with the reason; with CI=true in the environment it has failed.
+const NOTES: &str = "\
+Programs that this machine lacks are unpacked into target/tools from Debian's packages. A part that
+cannot run is skipped, with the reason; with CI=true in the environment it has failed.
 
 The last line counts tests and steps: `N passed, N failed, N skipped`. The exit code is 1 if
-anything failed, 2 if the command line is wrong.
-";
+anything failed, 2 if the command line is wrong.";
 
-fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let (name, rest) = arguments.split_first().map_or(("", &[][..]), |(name, rest)| (*name, rest));
-    if ["help", "-h", "--help"].contains(&name) || rest.contains(&"--help") {
-        print!("{}", help());
-        return ExitCode::SUCCESS;
-    }
-    let mut reason = format!("no command `{name}`");
-    for (usage, _, run) in COMMANDS.iter().filter(|(usage, ..)| usage.split(' ').next() == Some(name)) {
-        match Options::read(usage, rest) {
-            Ok(options) => {
-                let mut session = Session::new();
-                run(&mut session, &options);
-                return session.report.close();
-            }
-            Err(wrong) => reason = wrong,
-        }
-    }
-    eprint!("xtask: {reason}\n\n{}", help());
-    ExitCode::from(2)
+/// The project's own commands.
+#[derive(clap::Parser)]
+#[command(bin_name = "cargo xtask", after_help = NOTES)]
+enum Command {
+    /// Checks that run no program of the project; warnings are errors
+    Check,
+    /// Tests on the host, by MAVLink clients, on two emulated parts
+    Test {
+        /// Also long tests, all parts and programs, sweeps, peers, goals
+        #[arg(long)]
+        all: bool,
+    },
+    /// Flights with your build of ArduPilot
+    Autopilots(autopilots::Options),
+    /// Benchmarks: medians, ratios, goals
+    Bench { name: Option<String> },
+    /// Rewrite golden files by tests named NAME
+    Bless {
+        #[arg(default_value = "golden")]
+        name: String,
+    },
+    /// The pages as a book with search: target/book/index.html
+    Book,
+    /// The page of `staya view` in Chromium
+    Browser,
+    /// The library for C, on this machine and on an emulated STM32F405
+    C,
+    /// MAVLink clients against staya
+    Clients { name: Option<String> },
+    /// Sweeps on Slurm and GNU parallel, on this machine
+    Cluster,
+    /// The example firmware of examples/stm32f4
+    Example,
+    /// Firmware that fails restarts
+    Faults {
+        #[arg(value_name = "PART", value_parser = device::part, default_values = NAMES)]
+        parts: Vec<&'static Part>,
+    },
+    /// Figures of scenarios and experiments, or their comparison with those before a change
+    Figures(python::Figures),
+    /// Programs of hil/firmware, or of a crate with a law of its own: target/firmware/PART
+    Firmware(firmware::Options),
+    /// Each fuzz target for some seconds
+    Fuzz {
+        #[arg(long, value_name = "N", default_value = "60")]
+        seconds: NonZeroU64,
+    },
+    /// Programs, firmware, manual, completions below a folder
+    Install(install::Options),
+    /// One world over ranks of OpenMPI, on this machine
+    Mpi {
+        /// Only times of 200,000 robots on 1, 2 and 4 ranks
+        #[arg(long)]
+        scaling: bool,
+    },
+    /// Changes of the controller that its tests must notice
+    Mutants {
+        /// Every N-th one from the K-th on
+        #[arg(long, value_name = "K/N", default_value = mutants::SHARD)]
+        shard: String,
+    },
+    /// What `staya new` makes, compiled and tested
+    New,
+    /// Panics planted in the firmware's sources: the linker refuses each
+    Plants,
+    /// Robots that negotiate on all maps of POGEMA's tables
+    Pogema,
+    /// The package for Python: its wheel, types and tests
+    Python,
+    /// Fetch the emulators of the parts
+    Qemu,
+    /// Flash, RAM, stack, instructions against budgets
+    Size(size::Options),
+    /// Everything at once among hostile clients
+    Soak(soak::Options),
+    /// The canned swarms give one hash on the host and on each part
+    Swarms,
+    /// The cost of the README's first command
+    Weight(weight::Options),
 }
 
-fn help() -> String {
-    let line = |(usage, about, _): &Command| format!("  {usage}\n        {about}\n");
-    let lines: String = COMMANDS.iter().map(line).collect();
-    format!("The project's own commands.\n\nUsage: cargo xtask COMMAND\n\n{lines}{NOTES}")
+fn main() -> ExitCode {
+    let command = Command::parse();
+    let s = &mut Session::new();
+    match command {
+        Command::Check => check::run(s),
+        Command::Test { all } => test::run(s, all),
+        Command::Autopilots(options) => autopilots::run(s, &options),
+        Command::Bench { name } => bench::run(s, name.as_deref()),
+        Command::Bless { name } => test::bless(s, &name),
+        Command::Book => python::book(s),
+        Command::Browser => python::browser(s),
+        Command::C => c::run(s),
+        Command::Clients { name } => python::clients(s, name.as_deref(), true),
+        Command::Cluster => python::cluster(s),
+        Command::Example => firmware::example(s),
+        Command::Faults { parts } => swarms::faults(s, parts),
+        Command::Figures(options) => python::figures(s, &options),
+        Command::Firmware(options) => firmware::run_command(s, &options),
+        Command::Fuzz { seconds } => fuzz::run(s, seconds),
+        Command::Install(options) => install::run(s, &options),
+        Command::Mpi { scaling } => mpi::run(s, scaling),
+        Command::Mutants { shard } => mutants::run(s, &shard),
+        Command::New => project::run(s, true),
+        Command::Plants => plants::run(s, true),
+        Command::Pogema => python::pogema(s, true),
+        Command::Python => python::package(s),
+        Command::Qemu => emulate::fetch(s),
+        Command::Size(options) => size::run(s, &options),
+        Command::Soak(options) => soak::run_command(s, &options),
+        Command::Swarms => swarms::run(s),
+        Command::Weight(options) => weight::run(s, &options),
+    }
+    std::mem::take(&mut s.report).close()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(line: &str) -> bool {
+        Command::try_parse_from(line.split(' ')).is_err()
+    }
+
+    #[test]
+    fn options_of_all_commands_are_consistent() {
+        <Command as clap::CommandFactory>::command().debug_assert();
+        for sound in [
+            "firmware --debug --bin lockstep --bin bench stm32f405 nrf51",
+            "firmware --crate examples/own_part",
+            "soak --minutes 0.5 hil key",
+            "faults nrf51",
+            "size --json",
+            "size --search --seed 2",
+        ] {
+            assert!(!refused(&format!("xtask {sound}")), "{sound}");
+        }
+    }
+
+    #[test]
+    fn wrong_numbers_and_names_are_refused() {
+        for wrong in [
+            "soak --minutes 0",
+            "soak --minutes x",
+            "soak flod",
+            "faults stm32",
+            "size --seed 1",
+            "check orca",
+            "firmware --crate a --debug",
+        ] {
+            assert!(refused(&format!("xtask {wrong}")), "{wrong}");
+        }
+    }
 }

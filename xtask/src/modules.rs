@@ -1,10 +1,9 @@
 //! Modules of one folder do not use each other in a circle, in any crate of the workspace. Layers
 //! of the controller point down only, and behaviours never import each other. Tests are left out.
 
-use crate::files;
+use crate::prelude::*;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 /// The layers of the controller from the lowest up. Modules of one layer may use each other, except
 /// where [`APART`] says not.
@@ -27,35 +26,26 @@ type Module = Vec<String>;
 /// Each module with the paths in it that begin with `crate`, `super` or `self`, from the root down.
 type Modules = BTreeMap<Module, BTreeSet<Module>>;
 
-/// Looks for circles in the crates in these folders. The error names the first; all are printed.
-pub fn check_circles(crates: &[impl AsRef<Path>]) -> Result<(), String> {
+/// Looks for circles in the crates in these folders.
+pub fn check_circles(crates: &[PathBuf]) -> Result<()> {
     let mut faults = Vec::new();
     // Packages of examples or tests alone have no sources.
-    for source in crates.iter().map(|folder| folder.as_ref().join("src")).filter(|source| source.is_dir()) {
+    for source in crates.iter().map(|folder| folder.join("src")).filter(|source| source.is_dir()) {
         let found = circles(&read(&source)?);
         faults.extend(found.iter().map(|circle| format!("{}: {circle}", source.display())));
     }
-    all_printed(&faults)
+    none_of(&faults, "circles")
 }
 
-/// Looks for imports of the controller that point up or sideways. The error names the first; all
-/// are printed.
-pub fn check_layers(source: &Path) -> Result<(), String> {
-    let mut faults = BTreeSet::new();
-    for (module, paths) in read(source)? {
-        // The crate's root and the list of laws name every module.
-        if module.is_empty() || *module == ["laws"] {
-            continue;
-        }
-        let found = paths.iter().filter(|path| !path.is_empty()).filter_map(|path| fault(unit(&module), unit(path)));
+/// Looks for imports of the controller that point up or sideways.
+pub fn check_layers(source: &Path) -> Result<()> {
+    let mut faults = Vec::new();
+    // The crate's root and the list of laws name every module.
+    for (module, paths) in read(source)?.iter().filter(|(module, _)| !module.is_empty() && **module != ["laws"]) {
+        let found = paths.iter().filter(|path| !path.is_empty()).filter_map(|path| fault(unit(module), unit(path)));
         faults.extend(found.map(|fault| format!("{}: {fault}", module.join("/"))));
     }
-    all_printed(&faults)
-}
-
-fn all_printed<'a>(faults: impl IntoIterator<Item = &'a String> + Copy) -> Result<(), String> {
-    faults.into_iter().for_each(|fault| println!("{fault}"));
-    faults.into_iter().next().cloned().map_or(Ok(()), Err)
+    none_of(&faults, "imports point up or sideways")
 }
 
 /// The part of a path that has a layer: a module of the root, or an algorithm in the folder of its
@@ -91,21 +81,23 @@ fn fault(user: &str, used: &str) -> Option<String> {
 
 /// Each folder with modules that use each other in a circle, and these modules.
 fn circles(modules: &Modules) -> Vec<String> {
-    let found = uses(modules).into_iter().map(|(folder, uses)| {
-        let mut left: BTreeSet<&String> = uses.keys().collect();
+    let mut circles = Vec::new();
+    for (folder, uses) in uses(modules) {
+        let mut left: Vec<&String> = uses.keys().collect();
         // Modules that use or serve none of the others are in no circle.
-        let uses = |user: &String, used: &String| uses[user].contains(used);
-        let is_free = |module: &String, left: &BTreeSet<&String>| {
-            !left.iter().any(|other| uses(module, other)) || !left.iter().any(|other| uses(other, module))
+        let is_bound = |module: &String, others: &[&String]| {
+            let uses = |user: &String, used: &String| uses[user].contains(used);
+            others.iter().any(|other| uses(module, other)) && others.iter().any(|other| uses(other, module))
         };
-        while let Some(free) = left.iter().find(|module| is_free(module, &left)).copied() {
-            left.remove(free);
+        while let Some(at) = left.iter().position(|module| !is_bound(module, &left)) {
+            left.remove(at);
         }
-        let circle: Vec<&str> = left.into_iter().map(String::as_str).collect();
-        (folder.join("/"), circle.join(", "))
-    });
-    let found = found.filter(|(_, circle)| !circle.is_empty());
-    found.map(|(folder, circle)| format!("{folder}: {circle} use each other in a circle")).collect()
+        if !left.is_empty() {
+            let circle = left.iter().map(|module| module.as_str()).collect::<Vec<_>>().join(", ");
+            circles.push(format!("{}: {circle} use each other in a circle", folder.join("/")));
+        }
+    }
+    circles
 }
 
 /// For each folder which of its modules use which others of it, by the paths in them and in modules
@@ -126,7 +118,7 @@ fn uses(modules: &Modules) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>
 }
 
 /// Reads the crate whose sources are in a folder.
-fn read(source: &Path) -> Result<Modules, String> {
+fn read(source: &Path) -> Result<Modules> {
     let mut code = Code::default();
     let is_wanted =
         |path: &Path| if path.is_dir() { files::name(path) != "bin" } else { files::has_extension(path, &["rs"]) };
@@ -137,9 +129,8 @@ fn read(source: &Path) -> Result<Modules, String> {
         if module.last().is_some_and(|name| ["lib", "main", "mod"].contains(&name.as_str())) {
             module.pop();
         }
-        let tokens: TokenStream =
-            files::read(&file)?.parse().map_err(|error| format!("{}: {error}", file.display()))?;
-        code.walk(tokens, &module);
+        let tokens = files::read(&file)?.parse::<TokenStream>();
+        code.walk(tokens.map_err(|error| anyhow!("{}: {error}", file.display()))?, &module);
     }
     Ok(code.without_tests())
 }

@@ -4,11 +4,8 @@
 //! That the sources as they are link, without one, is seen whenever the firmware is built.
 
 use crate::device::{Part, STM32F405, Toolchain};
-use crate::files;
-use crate::repo::{Repo, shown};
-use crate::session::Session;
-use std::path::Path;
-use std::process::Stdio;
+use crate::prelude::*;
+use crate::repo::shown;
 
 /// The symbol that the panic handler calls and that no crate defines.
 pub const SYMBOL: &str = "staya_panic_is_reachable";
@@ -62,13 +59,11 @@ pub fn run(s: &mut Session, all: bool) {
 /// Refuses sources that name a macro of `defmt` that panics: these have a panic handler of their
 /// own, which the linker accepts (`hil/firmware/build.rs`). Lints on the host do not see the
 /// firmware's code.
-pub fn check_logs(root: &Path) -> Result<(), String> {
-    for file in
-        [files::sources(&root.join("controller"), &["rs"])?, files::sources(&root.join("hil"), &["rs"])?].concat()
-    {
+pub fn check_logs(root: &Path) -> Result<()> {
+    let [controller, hil] = ["controller", "hil"].map(|folder| files::sources(&root.join(folder), &["rs"]));
+    for file in [controller?, hil?].concat() {
         if let Some(found) = panicking_log(&files::read(&file)?) {
-            let file = file.display();
-            return Err(format!("{file}: `{found}` panics without the linker noticing; log, then continue or reset"));
+            bail!("{}: `{found}` panics without the linker noticing; log, then continue or reset", file.display());
         }
     }
     Ok(())
@@ -80,7 +75,7 @@ fn panicking_log(text: &str) -> Option<String> {
     PANICS.iter().map(|name| format!("defmt::{name}")).find(|name| text.contains(name))
 }
 
-fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) -> Result<(), String> {
+fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) -> Result<()> {
     let copy = repo.target.join(COPY);
     let mut is_planted = false;
     repo.copy(&copy, |file, bytes| {
@@ -91,24 +86,19 @@ fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) ->
         is_planted = true;
         text.replace(plant.right, plant.wrong).into_bytes()
     })?;
-    if !is_planted {
-        return Err(format!("{}: not once `{}`: bring PLANTS up to date", plant.file, plant.right));
-    }
-    let mut build = toolchain.cargo(repo, part.target, "build");
-    build.current_dir(&copy).args(["--locked", "--profile", "firmware"]);
-    build.args(["--package", "staya-firmware", "--bin", plant.bin]);
+    ensure!(is_planted, "{}: not once `{}`: bring PLANTS up to date", plant.file, plant.right);
+    let line = "build --locked --profile firmware --package staya-firmware --bin";
+    let mut build = toolchain.cargo(repo, part.target, line);
+    build.arg(plant.bin).current_dir(&copy);
     println!("$ {}", shown(&build));
-    let output = build.stdout(Stdio::null()).output();
-    let output = output.map_err(|error| format!("cannot start: {error}"))?;
+    let output = build.output().context("cannot start")?;
+    ensure!(!output.status.success(), "it links");
     let said = String::from_utf8_lossy(&output.stderr);
-    if output.status.success() {
-        Err(String::from("it links"))
-    } else if said.contains(&format!("undefined symbol: {SYMBOL}")) {
-        Ok(())
-    } else {
+    if !said.contains(&format!("undefined symbol: {SYMBOL}")) {
         print!("{said}");
-        Err(format!("it fails, but not for want of {SYMBOL}"))
+        bail!("it fails, but not for want of {SYMBOL}");
     }
+    Ok(())
 }
 
 #[cfg(test)]

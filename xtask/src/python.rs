@@ -1,33 +1,36 @@
 //! Tests in Python, each suite in an environment of its own in the target folder.
 
 use crate::apt::Tools;
-use crate::files;
-use crate::options::Options;
-use crate::repo::{Repo, output_of, run};
-use crate::session::Session;
-use crate::tally::counted;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use crate::prelude::*;
 
 const PYTHON: Tools = Tools {
-    packages: &["python3", "python3-venv"],
-    programs: &["Python 3 with venv"],
+    packages: "python3 python3-venv",
+    programs: "Python 3 with venv",
     question: "python3 -c 'import venv, ensurepip'",
+    ways: "install",
 };
 /// Looks into a capture.
-const TSHARK: Tools = Tools { packages: &["tshark"], programs: &["tshark"], question: "tshark --version" };
+const TSHARK: Tools = Tools {
+    packages: "tshark",
+    programs: "tshark",
+    question: "tshark --version",
+    // For root it reads its data from where it was built for, and nowhere else.
+    ways: "install unpack",
+};
 /// A browser without windows, and its fonts.
 const CHROMIUM: Tools = Tools {
-    packages: &["chromium-headless-shell", "chromium-common", "fontconfig-config", "fonts-dejavu-core"],
-    programs: &["chromium-headless-shell"],
+    packages: "chromium-headless-shell chromium-common fontconfig-config fonts-dejavu-core",
+    programs: "chromium-headless-shell",
     question: "chromium-headless-shell --version",
+    ways: "unpack",
 };
 /// Slurm's daemons and clients, and GNU parallel.
 const CLUSTER: Tools = Tools {
-    packages: &["slurmctld", "slurmd", "slurm-client", "parallel"],
-    programs: &["slurmctld-wlm", "slurmd-wlm", "slurmstepd-wlm", "sbatch", "squeue", "scontrol", "scancel", "parallel"],
+    packages: "slurmctld slurmd slurm-client parallel",
+    programs: "slurmctld-wlm slurmd-wlm slurmstepd-wlm sbatch squeue scontrol scancel parallel",
     // Slurm's clients want a configuration before they say anything.
     question: "slurmctld-wlm -V && slurmd-wlm -V && command -v sbatch && parallel --version",
+    ways: "unpack",
 };
 /// The package for Python, which has nothing in it without this feature.
 pub const FEATURE: &str = "staya-python/module";
@@ -49,8 +52,7 @@ pub fn clients(s: &mut Session, only: Option<&str>, is_all: bool) {
 
 /// Pages of `staya view` in a browser.
 pub fn browser(s: &mut Session) {
-    let variables = [("CHROMIUM", CHROMIUM.programs[0].to_string())];
-    suite(s, "pages in a browser", &["tests/browser", "--timeout", "120"], &variables, |repo| {
+    suite(s, "pages in a browser", &["tests/browser", "--timeout", "120"], &[], |repo| {
         CHROMIUM.prepare(repo)?;
         environment(repo, "python", "tests/browser/requirements.txt")
     });
@@ -58,8 +60,7 @@ pub fn browser(s: &mut Session) {
 
 /// Sweeps on Slurm and GNU parallel.
 pub fn cluster(s: &mut Session) {
-    let variables = [("STAYA_TOOLS", s.repo.target.join("tools").display().to_string())];
-    suite(s, "sweeps on Slurm and GNU parallel", &["tests/cluster", "--timeout", "300"], &variables, |repo| {
+    suite(s, "sweeps on Slurm and GNU parallel", &["tests/cluster", "--timeout", "300"], &[], |repo| {
         CLUSTER.prepare(repo)?;
         client_environment(repo)
     });
@@ -67,17 +68,20 @@ pub fn cluster(s: &mut Session) {
 
 /// The package for Python: a wheel, the types of its Python code, tests.
 pub fn package(s: &mut Session) {
-    const NAME: &str = "the package for Python";
-    let Some(python) = s.report.need(NAME, package_environment(&s.repo)) else { return };
-    if !s.report.step("the wheel", || wheel(&s.repo, &python)) {
-        return s.report.skip(NAME, "the wheel was not built");
-    }
-    let mut types = s.repo.command(&python);
-    types.args(["-m", "mypy", "--strict", "--python-executable"]).arg(&python).arg("sim-host/python/python/staya");
-    types.arg("--cache-dir").arg(s.repo.target.join(PACKAGE).join("mypy"));
-    s.report.command("types of the package for Python", types);
-    let mut tests = pytest(&s.repo, &python, &["tests/python-package", "--timeout", "300"]);
-    s.report.part(NAME, || counted(&mut tests));
+    let (repo, python) = (&s.repo, s.repo.target.join(PACKAGE).join("bin/python"));
+    let make = || package_environment(repo).and_then(|python| wheel(repo, &python));
+    let is_made = s.report.step("the wheel", make);
+    let wheel_is_there = || if is_made { Ok(()) } else { Err(skipped("the wheel was not built")) };
+    s.report.step("types of the package for Python", || {
+        wheel_is_there()?;
+        let mut types = repo.command(&python);
+        types.words("-m mypy --strict sim-host/python/python/staya --python-executable").arg(&python);
+        execute(types.arg("--cache-dir").arg(repo.target.join(PACKAGE).join("mypy")))
+    });
+    s.report.part("the package for Python", || {
+        wheel_is_there()?;
+        Ok(counted(&mut pytest(repo, &python, &["tests/python-package", "--timeout", "300"])))
+    });
 }
 
 /// Robots that negotiate in POGEMA's world and by its rules in the simulator: a few maps, or all of
@@ -89,10 +93,9 @@ pub fn pogema(s: &mut Session, is_all: bool) {
     } else {
         arguments.extend(["-m", "not long"]);
     }
-    let variables = [("STAYA_TABLES", s.repo.target.display().to_string())];
-    suite(s, "robots in POGEMA's world", &arguments, &variables, |repo| {
+    suite(s, "robots in POGEMA's world", &arguments, &[], |repo| {
         let python = environment(repo, "python-pogema", "tests/pogema/requirements.txt")?;
-        pip(repo, &python, &["--no-deps", "--requirement", "tests/pogema/toolbox.txt"])?;
+        pip(repo, &python, "--no-deps --requirement tests/pogema/toolbox.txt", &[])?;
         wheel(repo, &python).map(|()| python)
     });
 }
@@ -100,99 +103,109 @@ pub fn pogema(s: &mut Session, is_all: bool) {
 /// The pages as a book with search, in `target/book`; warnings of Sphinx are errors.
 pub fn book(s: &mut Session) {
     let (repo, book) = (&s.repo, s.repo.target.join("book"));
-    s.report.step_with("book", environment(repo, "python-book", "docs/requirements.txt"), |python| {
+    s.report.step("book", || {
+        let python = environment(repo, "python-book", "docs/requirements.txt")?;
         files::make_empty(&book)?;
         let mut sphinx = repo.command(python);
-        sphinx.args(["-m", "sphinx", "--quiet", "--fail-on-warning", "--fresh-env", "--conf-dir", "docs"]);
-        run(sphinx.arg("--doctree-dir").arg(repo.target.join("book-trees")).arg(".").arg(&book))?;
+        sphinx.words("-m sphinx --quiet --fail-on-warning --fresh-env --conf-dir docs --doctree-dir");
+        execute(sphinx.arg(repo.target.join("book-trees")).arg(".").arg(&book))?;
         let index = book.join("index.html");
         println!("{}", index.display());
         files::write(&index, "<meta http-equiv=\"refresh\" content=\"0; url=README.html\">\n")
     });
 }
 
-/// The figures of all scenarios and experiments, in `target/figures.csv` or `--out`, compared with
-/// those of `--against`. Paths begin at the top of the repository.
-pub fn figures(s: &mut Session, options: &Options<'_>) {
+#[derive(clap::Args)]
+pub struct Figures {
+    /// Where the figures are written [default: target/figures.csv]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Figures before a change, to compare with
+    #[arg(long, value_name = "FILE")]
+    against: Option<PathBuf>,
+}
+
+/// The figures of all scenarios and experiments. Paths begin at the top of the repository.
+pub fn figures(s: &mut Session, options: &Figures) {
     let program = s.staya("release");
-    s.report.step_with("figures of scenarios and experiments", program, |staya| {
+    s.report.step("figures of scenarios and experiments", || {
         let mut figures = s.repo.command("python3");
-        figures.arg("xtask/figures.py").args(options.all_of(&["--out", "--against"]));
-        run(figures.env("STAYA", staya))
+        figures.arg("xtask/figures.py").env("STAYA", program?);
+        for (name, file) in [("--out", &options.out), ("--against", &options.against)] {
+            figures.args(file.iter().flat_map(|file| [name.as_ref(), file.as_os_str()]));
+        }
+        execute(&mut figures)
     });
 }
 
-/// Runs a suite on `staya`, which is in the variable `STAYA`, with further variables and the Python
-/// that `prepare` gives.
+/// Runs a suite on `staya` with further variables and the Python that `prepare` gives.
 pub fn suite(
     s: &mut Session,
     name: &str,
     arguments: &[&str],
     variables: &[(&str, String)],
-    prepare: impl FnOnce(&Repo) -> Result<PathBuf, String>,
+    prepare: impl FnOnce(&Repo) -> Result<PathBuf>,
 ) {
     let program = s.staya("debug");
-    let ready = program.and_then(|program| Ok((program, prepare(&s.repo)?)));
-    if let Some((program, python)) = s.report.need(name, ready) {
-        let mut tests = pytest(&s.repo, &python, arguments);
-        tests.env("STAYA", program).envs(variables.iter().cloned());
-        s.report.part(name, || counted(&mut tests));
-    }
+    s.report.part(name, || {
+        let program = program?;
+        let mut tests = pytest(&s.repo, &prepare(&s.repo)?, arguments);
+        tests.env("STAYA", program).env("STAYA_TOOLS", s.repo.target.join("tools"));
+        tests.env("STAYA_TABLES", &s.repo.target).env("CHROMIUM", CHROMIUM.programs);
+        Ok(counted(tests.envs(variables.iter().cloned())))
+    });
 }
 
 /// pytest with these arguments.
 pub fn pytest(repo: &Repo, python: &Path, arguments: &[&str]) -> Command {
     let mut tests = repo.command(python);
-    tests.args(["-m", "pytest", "-q", "--color", "no", "-p", "no:cacheprovider"]).args(arguments);
+    tests.words("-m pytest -q --color no -p no:cacheprovider").args(arguments);
     tests
 }
 
 /// An environment in a folder of the target folder, brought up to date with a list of packages from
-/// PyPI. Returns its Python.
-fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf, String> {
+/// PyPI. Returns its Python. Without it a part is skipped.
+fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf> {
     let folder = repo.target.join(folder);
     let python = folder.join("bin/python");
     if output_of(repo.command(&python).arg("--version")).is_none() {
-        PYTHON.prepare_with(repo, Tools::install)?;
-        run(repo.command("python3").args(["-m", "venv", "--clear"]).arg(&folder))
-            .map_err(|reason| format!("no environment for Python ({reason})"))?;
+        PYTHON.prepare(repo)?;
+        let made = execute(repo.command("python3").words("-m venv --clear").arg(&folder));
+        made.map_err(|reason| skipped(format!("no environment for Python ({reason:#})")))?;
     }
-    pip(repo, &python, &["--requirement", list])?;
+    pip(repo, &python, "--requirement", &[Path::new(list)])?;
     Ok(python)
 }
 
-/// Installs packages into an environment.
-pub fn pip(repo: &Repo, python: &Path, arguments: &[&str]) -> Result<(), String> {
+/// Installs packages into an environment. Without them a part is skipped.
+pub fn pip(repo: &Repo, python: &Path, options: &str, packages: &[&Path]) -> Result<()> {
     let mut pip = repo.command(python);
-    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(arguments);
-    run(&mut pip).map_err(|reason| format!("pip could not install {} ({reason})", arguments.join(" ")))
+    pip.words("-m pip install --quiet --disable-pip-version-check").words(options).args(packages);
+    execute(&mut pip).map_err(|reason| skipped(format!("pip could not install packages ({reason:#}), see above")))
 }
 
 /// The environment of clients: pytest, pymavlink and the dialect.
-pub fn client_environment(repo: &Repo) -> Result<PathBuf, String> {
+pub fn client_environment(repo: &Repo) -> Result<PathBuf> {
     let python = environment(repo, "python", "tests/python/requirements.txt")?;
-    run(repo.command(&python).arg("tests/python/dialect.py"))
-        .map_err(|reason| format!("the dialect could not be made for Python ({reason})"))?;
+    let dialect = execute(repo.command(&python).arg("tests/python/dialect.py"));
+    dialect.map_err(|reason| skipped(format!("the dialect could not be made for Python ({reason:#})")))?;
     Ok(python)
 }
 
-/// The same with MAVProxy and tshark.
-pub fn client_tools(repo: &Repo) -> Result<PathBuf, String> {
+/// The same with MAVProxy and tshark. Without tshark one test is skipped.
+pub fn client_tools(repo: &Repo) -> Result<PathBuf> {
     let python = client_environment(repo)?;
-    // For root it reads its data from where it was built for, and nowhere else. Without it one test
-    // is skipped.
-    let tshark = TSHARK.prepare_with(repo, |tools, repo| tools.install(repo).or_else(|_| tools.unpack(repo)));
-    tshark.unwrap_or_else(|reason| println!("{reason}"));
-    pip(repo, &python, &["--no-deps", "--requirement", "tests/python/mavproxy.txt"])?;
+    TSHARK.prepare(repo).unwrap_or_else(|reason| println!("{reason}"));
+    pip(repo, &python, "--no-deps --requirement tests/python/mavproxy.txt", &[])?;
     Ok(python)
 }
 
-fn package_environment(repo: &Repo) -> Result<PathBuf, String> {
+fn package_environment(repo: &Repo) -> Result<PathBuf> {
     environment(repo, PACKAGE, "tests/python-package/requirements.txt")
 }
 
 /// The Python of an environment in which the wheel is.
-pub fn with_wheel(repo: &Repo) -> Result<PathBuf, String> {
+pub fn with_wheel(repo: &Repo) -> Result<PathBuf> {
     let python = package_environment(repo)?;
     if output_of(repo.command(&python).args(["-c", "import staya"])).is_none() {
         wheel(repo, &python)?;
@@ -202,13 +215,12 @@ pub fn with_wheel(repo: &Repo) -> Result<PathBuf, String> {
 
 /// Builds the wheel with the profile of tests, which is quick to compile and fast enough, and
 /// installs it.
-fn wheel(repo: &Repo, python: &Path) -> Result<(), String> {
+fn wheel(repo: &Repo, python: &Path) -> Result<()> {
     let wheels = repo.target.join(PACKAGE).join("wheels");
     files::make_empty(&wheels)?;
     let mut build = repo.command(python);
-    build.args(["-m", "maturin", "build", "--locked", "--profile", "dev", "--target-dir"]).arg(&repo.target);
-    run(build.arg("--out").arg(&wheels))?;
-    let built: Vec<String> = files::entries(&wheels)?.iter().map(|wheel| wheel.display().to_string()).collect();
-    let wheels = built.iter().map(String::as_str);
-    pip(repo, python, &["--force-reinstall", "--no-deps"].into_iter().chain(wheels).collect::<Vec<_>>())
+    build.words("-m maturin build --locked --profile dev --target-dir").arg(&repo.target);
+    execute(build.arg("--out").arg(&wheels))?;
+    let built = files::entries(&wheels)?;
+    pip(repo, python, "--force-reinstall --no-deps", &built.iter().map(PathBuf::as_path).collect::<Vec<_>>())
 }

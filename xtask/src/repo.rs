@@ -1,12 +1,25 @@
 //! Where things are, and how a child process is started.
 
 use crate::files;
+use anyhow::{Context as _, Result, ensure};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Set by `bless` for tests that compare with golden files: write instead of compare.
 pub const BLESS: &str = "STAYA_BLESS";
+
+/// Arguments as on a command line.
+pub trait Words {
+    /// Adds the words of a line, which blanks separate.
+    fn words(&mut self, line: &str) -> &mut Self;
+}
+
+impl Words for Command {
+    fn words(&mut self, line: &str) -> &mut Self {
+        self.args(line.split_whitespace())
+    }
+}
 
 /// The repository that this program was built from.
 pub struct Repo {
@@ -20,15 +33,11 @@ impl Repo {
     /// Finds the repository. Cargo names the folder of this crate when it runs it, so a copied or
     /// moved repository is found as well.
     pub fn find() -> Self {
-        let here = std::env::var_os("CARGO_MANIFEST_DIR")
-            .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
-        let root = here.parent().map_or_else(|| here.clone(), Path::to_path_buf);
-        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(
-            || root.join("target"),
-            // Cargo reads a relative one from where it was started, as does `absolute`.
-            |dir| std::path::absolute(&dir).unwrap_or_else(|_| PathBuf::from(dir)),
-        );
-        Self { root, target }
+        let here = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+        let root = Path::new(&here).parent().unwrap_or(Path::new(&here)).to_path_buf();
+        // Cargo reads a relative one from where it was started, as does `absolute`.
+        let target = std::env::var_os("CARGO_TARGET_DIR").and_then(|folder| std::path::absolute(folder).ok());
+        Self { target: target.unwrap_or_else(|| root.join("target")), root }
     }
 
     /// Where programs are that were fetched for this repository alone.
@@ -66,9 +75,9 @@ impl Repo {
 
     /// Copies the sources, without what git ignores, to a folder: `change` gives the bytes of each
     /// file by its path. Unchanged files are not written, so that cargo builds only the difference.
-    pub fn copy(&self, to: &Path, mut change: impl FnMut(&Path, Vec<u8>) -> Vec<u8>) -> Result<(), String> {
+    pub fn copy(&self, to: &Path, mut change: impl FnMut(&Path, Vec<u8>) -> Vec<u8>) -> Result<()> {
         let listed = self.answer("git ls-files --cached --others --exclude-standard");
-        for file in listed.ok_or("git ls-files fails")?.lines().map(Path::new) {
+        for file in listed.context("git ls-files fails")?.lines().map(Path::new) {
             let (from, to) = (self.root.join(file), to.join(file));
             if from.is_file() {
                 let bytes = change(file, files::bytes(&from)?);
@@ -85,18 +94,17 @@ impl Repo {
         self.target.join(profile).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
     }
 
-    /// The cargo that runs this program, with these arguments.
-    pub fn cargo(&self, arguments: &[&str]) -> Command {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let mut command = self.command(cargo);
-        command.args(arguments).env("CARGO_TARGET_DIR", &self.target);
+    /// The cargo that runs this program, with the arguments of this line.
+    pub fn cargo(&self, line: &str) -> Command {
+        let mut command = self.command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        command.words(line).env("CARGO_TARGET_DIR", &self.target);
         command
     }
 
-    /// The same for a workspace of its own inside the repository. It builds in the same folder:
-    /// with the same profiles it finds there what it shares with the others.
-    pub fn cargo_in(&self, folder: &str, arguments: &[&str]) -> Command {
-        let mut command = self.cargo(arguments);
+    /// The same in a folder of the repository, which may be a workspace of its own. It builds in
+    /// the same folder: with the same profiles it finds there what it shares with the others.
+    pub fn cargo_in(&self, folder: &str, line: &str) -> Command {
+        let mut command = self.cargo(line);
         command.current_dir(self.root.join(folder));
         command
     }
@@ -104,26 +112,22 @@ impl Repo {
 
 /// The command line as a person would type it, without folders in front of the program's name.
 pub fn shown(command: &Command) -> String {
-    let program = Path::new(command.get_program());
-    let mut line = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    for argument in command.get_args() {
-        line.push(' ');
-        line.push_str(&argument.to_string_lossy());
-    }
-    line
+    let program = files::name(Path::new(command.get_program()));
+    let arguments = command.get_args().map(|argument| argument.to_string_lossy().into_owned());
+    [program].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 /// Runs a command with its output passed through. The error says why it did not succeed.
-pub fn run(command: &mut Command) -> Result<(), String> {
+pub fn execute(command: &mut Command) -> Result<()> {
     println!("$ {}", shown(command));
     ended(command.status())
 }
 
 /// Runs a command, passes its standard output on line by line as it comes, and shows each line to
 /// `seen`. The error says why it did not succeed.
-pub fn run_reading(command: &mut Command, mut seen: impl FnMut(&str)) -> Result<(), String> {
+pub fn run_reading(command: &mut Command, mut seen: impl FnMut(&str)) -> Result<()> {
     println!("$ {}", shown(command));
-    let mut child = command.stdout(Stdio::piped()).spawn().map_err(|error| format!("cannot start: {error}"))?;
+    let mut child = command.stdout(Stdio::piped()).spawn().context("cannot start")?;
     if let Some(output) = child.stdout.take() {
         let mut output = BufReader::new(output);
         let mut line = Vec::new();
@@ -145,10 +149,8 @@ pub fn output_of(command: &mut Command) -> Option<String> {
 }
 
 /// The reason why a command did not succeed.
-pub fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<(), String> {
-    match status {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(status.to_string()),
-        Err(error) => Err(format!("cannot start: {error}")),
-    }
+pub fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<()> {
+    let status = status.context("cannot start")?;
+    ensure!(status.success(), "{status}");
+    Ok(())
 }

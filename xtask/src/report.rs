@@ -1,5 +1,6 @@
 //! The parts of a command: passed, failed, or skipped with a reason.
 
+use anyhow::Result;
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
@@ -22,17 +23,20 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-impl std::fmt::Display for Counts {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { passed, failed, skipped } = self;
-        write!(out, "{passed} passed, {failed} failed, {skipped} skipped")
-    }
+/// The error of a part that cannot run here: what is missing, and the remedy.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct Skipped(String);
+
+/// The error that skips a part instead of failing it.
+pub fn skipped(reason: impl Into<String>) -> anyhow::Error {
+    Skipped(reason.into()).into()
 }
 
-/// The counts and the note of a part that failed as a whole.
-pub fn failure(reason: String) -> (Counts, String) {
-    println!("failed: {reason}");
-    (Counts { failed: 1, ..Counts::default() }, reason)
+/// Prints all faults. The error counts them and shows the first.
+pub fn none_of(faults: &[String], what: &str) -> Result<()> {
+    faults.iter().for_each(|fault| println!("{fault}"));
+    faults.first().map_or(Ok(()), |first| Err(anyhow::anyhow!("{} {what}, first: {first}", faults.len())))
 }
 
 /// One row of the closing table.
@@ -62,12 +66,16 @@ impl Report {
     }
 
     /// Runs one part that counts by itself; announces it first. `work` returns its counts and a
-    /// note for the table.
-    pub fn part(&mut self, name: &str, work: impl FnOnce() -> (Counts, String)) -> Counts {
+    /// note for the table. Returns whether all passed.
+    pub fn part(&mut self, name: &str, work: impl FnOnce() -> Result<(Counts, String)>) -> bool {
         println!("\n== {name}");
         let start = Instant::now();
         let before = processor_time();
-        let (mut counts, mut note) = work();
+        let (mut counts, mut note) = work().unwrap_or_else(|error| {
+            let skipped = u64::from(error.is::<Skipped>());
+            println!("{}: {error:#}", if skipped > 0 { "skipped" } else { "failed" });
+            (Counts { failed: 1 - skipped, skipped, passed: 0 }, format!("{error:#}"))
+        });
         let worked = before.and_then(|before| processor_time()?.checked_sub(before));
         if self.is_strict && counts.skipped > 0 {
             counts.failed += std::mem::take(&mut counts.skipped);
@@ -76,41 +84,17 @@ impl Report {
         let took = start.elapsed();
         println!("-- {} s, of processors {} s", seconds(Some(took)), seconds(worked));
         self.parts.push(Part { name: name.to_string(), counts, took, worked, note });
-        counts
+        counts.failed + counts.skipped == 0
     }
 
-    /// Runs one part that either succeeds or fails. Returns whether it succeeded.
-    pub fn step(&mut self, name: &str, work: impl FnOnce() -> Result<(), String>) -> bool {
-        let succeeded = || work().map(|()| (Counts { passed: 1, ..Counts::default() }, String::new()));
-        self.part(name, || succeeded().unwrap_or_else(failure)).failed == 0
-    }
-
-    /// The value that a part needs; records the part as skipped without it.
-    pub fn need<T>(&mut self, name: &str, needed: Result<T, String>) -> Option<T> {
-        needed.map_err(|reason| self.skip(name, &reason)).ok()
-    }
-
-    /// Runs one part with the value that it needs. Returns whether it could and succeeded.
-    pub fn step_with<T>(
-        &mut self,
-        name: &str,
-        needed: Result<T, String>,
-        work: impl FnOnce(T) -> Result<(), String>,
-    ) -> bool {
-        self.need(name, needed).is_some_and(|needed| self.step(name, || work(needed)))
+    /// Runs one part that succeeds, fails or is skipped. Returns whether it succeeded.
+    pub fn step(&mut self, name: &str, work: impl FnOnce() -> Result<()>) -> bool {
+        self.part(name, || work().map(|()| (Counts { passed: 1, ..Counts::default() }, String::new())))
     }
 
     /// Runs one command as a part.
-    pub fn command(&mut self, name: &str, mut command: Command) -> bool {
-        self.step(name, || crate::repo::run(&mut command))
-    }
-
-    /// Records a part that could not run.
-    pub fn skip(&mut self, name: &str, reason: &str) {
-        self.part(name, || {
-            println!("skipped: {reason}");
-            (Counts { skipped: 1, ..Counts::default() }, reason.to_string())
-        });
+    pub fn command(&mut self, name: &str, command: &mut Command) -> bool {
+        self.step(name, || crate::repo::execute(command))
     }
 
     /// Prints the table and the closing line.
@@ -127,9 +111,13 @@ impl Report {
         }
         let took: Duration = self.parts.iter().map(|part| part.took).sum();
         println!("{:.0} seconds in all", took.as_secs_f64());
-        println!("{total}");
+        println!("{}", closing_line(total));
         ExitCode::from(u8::from(total.failed > 0))
     }
+}
+
+fn closing_line(Counts { passed, failed, skipped }: Counts) -> String {
+    format!("{passed} passed, {failed} failed, {skipped} skipped")
 }
 
 /// Seconds to a tenth, for people.
@@ -142,18 +130,15 @@ fn seconds(time: Option<Duration>) -> String {
 /// server starts do not count.
 pub fn processor_time() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    let hundredths = hundredths_worked(&stat)?;
-    Some(Duration::from_millis(hundredths.checked_mul(10)?))
+    Some(Duration::from_millis(hundredths_worked(&stat)?.checked_mul(10)?))
 }
 
 /// The fields utime, stime, cutime and cstime of proc_pid_stat(5): hundredths of seconds on every
 /// Linux of today.
 fn hundredths_worked(stat: &str) -> Option<u64> {
     // The name in brackets may hold blanks; behind it the fields begin with the third.
-    let (_, fields) = stat.rsplit_once(')')?;
-    let numbers: Option<Vec<u64>> =
-        fields.split_whitespace().skip(11).take(4).map(|field| field.parse().ok()).collect();
-    numbers.filter(|numbers| numbers.len() == 4).map(|numbers| numbers.iter().sum())
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    fields.get(11..15)?.iter().map(|field| field.parse::<u64>().ok()).sum()
 }
 
 #[cfg(test)]
@@ -172,24 +157,24 @@ mod tests {
     #[test]
     fn closing_line_is_plain() {
         let counts = Counts { passed: 7, failed: 0, skipped: 2 };
-        assert_eq!(counts.to_string(), "7 passed, 0 failed, 2 skipped");
+        assert_eq!(closing_line(counts), "7 passed, 0 failed, 2 skipped");
     }
 
     #[test]
     fn exit_code_tells_a_failure_from_a_skip() {
-        let mut skipped = Report::default();
-        skipped.skip("a", "because");
-        assert_eq!(skipped.close(), ExitCode::SUCCESS);
+        let mut skips = Report::default();
+        assert!(!skips.step("a", || Err(skipped("because"))));
+        assert_eq!(skips.close(), ExitCode::SUCCESS);
         let mut failed = Report::default();
         assert!(failed.step("a", || Ok(())));
-        assert!(!failed.step("b", || Err("because".into())));
+        assert!(!failed.step("b", || anyhow::bail!("because")));
         assert_eq!(failed.close(), ExitCode::FAILURE);
     }
 
     #[test]
     fn what_is_skipped_has_failed_where_it_must_run() {
         let mut report = Report { is_strict: true, ..Report::default() };
-        report.skip("a", "no emulator");
+        report.step("a", || Err(skipped("no emulator")));
         let part = &report.parts[0];
         assert_eq!((part.counts.failed, part.counts.skipped), (1, 0));
         assert!(part.note.contains("no emulator"));

@@ -3,21 +3,35 @@
 
 use crate::device::STM32F405;
 use crate::emulate::QEMU;
-use crate::firmware::{self, Profile};
-use crate::options::Options;
+use crate::firmware::{self, FIRMWARE};
+use crate::prelude::*;
 use crate::python;
-use crate::session::Session;
-use crate::tally::counted;
 
-const NAME: &str = "soak";
 /// Parts of the soak, as `tests/python/soak.py` names them; the last one needs firmware.
 const PARTS: [&str; 4] = ["flood", "key", "companion", HIL];
 const HIL: &str = "hil";
 
+#[derive(clap::Args)]
+pub struct Options {
+    /// How long
+    #[arg(long, value_name = "N", value_parser = above_zero)]
+    minutes: Option<f64>,
+    /// Where judgements and samples are written
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[arg(value_name = "PART", value_parser = PARTS, default_values = PARTS)]
+    parts: Vec<String>,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| String::from("it is not a number above 0"))
+}
+
 /// The command, with the program as users have it.
-pub fn run_command(s: &mut Session, options: &Options<'_>) {
-    if options.names.is_empty() || options.names.contains(&HIL) {
-        firmware::build(s, STM32F405, Profile::Firmware, &["lockstep"]);
+pub fn run_command(s: &mut Session, options: &Options) {
+    if options.parts.iter().any(|part| part == HIL) {
+        firmware::build(s, STM32F405, FIRMWARE, &["lockstep"]);
     }
     run(s, "release", options);
 }
@@ -25,29 +39,31 @@ pub fn run_command(s: &mut Session, options: &Options<'_>) {
 /// A short one with the program and the firmware that tests have brought, so that the command
 /// itself does not rot.
 pub fn run_short(s: &mut Session) {
-    let options = Options::read("soak [--minutes N]", &["--minutes", "0.15"]).unwrap_or_default();
-    run(s, "debug", &options);
+    let parts = PARTS.map(String::from).to_vec();
+    run(s, "debug", &Options { minutes: Some(0.15), json: None, parts });
 }
 
-fn run(s: &mut Session, profile: &'static str, options: &Options<'_>) {
-    if !cfg!(target_os = "linux") {
-        return s.report.skip(NAME, "it looks at processes as Linux shows them");
-    }
+fn run(s: &mut Session, profile: &'static str, options: &Options) {
     let program = s.staya(profile);
-    let ready = program.and_then(|program| Ok((program, python::client_tools(&s.repo)?)));
-    let Some((program, python)) = s.report.need(NAME, ready) else { return };
-    let mut parts = if options.names.is_empty() { PARTS.to_vec() } else { options.names.clone() };
-    if parts.contains(&HIL) {
-        let firmware = Profile::Firmware.find(&s.repo, STM32F405, "lockstep").and_then(|_| QEMU.prepare(&s.repo));
-        if s.report.need("soak of firmware", firmware).is_none() {
-            parts.retain(|part| *part != HIL);
+    let mut parts = options.parts.clone();
+    if parts.iter().any(|part| part == HIL) {
+        let firmware = FIRMWARE.find(&s.repo, STM32F405, "lockstep");
+        if let Err(reason) = firmware.and_then(|_| QEMU.prepare(&s.repo)) {
+            s.report.step("soak of firmware", || Err(reason));
+            parts.retain(|part| part != HIL);
         }
     }
     if parts.is_empty() {
         return;
     }
-    let mut soak = s.repo.command(&python);
-    soak.arg("tests/python/soak.py").env("STAYA", program).env("STAYA_FIRMWARE", s.repo.target.join("firmware"));
-    soak.args(options.all_of(&["--minutes", "--json"]));
-    s.report.part(NAME, || counted(soak.args(parts)));
+    s.report.part("soak", || {
+        ensure!(cfg!(target_os = "linux"), skipped("it looks at processes as Linux shows them"));
+        let program = program?;
+        let mut soak = s.repo.command(python::client_tools(&s.repo)?);
+        soak.arg("tests/python/soak.py").env("STAYA", program);
+        soak.env("STAYA_FIRMWARE", s.repo.target.join("firmware"));
+        soak.args(options.minutes.iter().map(|minutes| format!("--minutes={minutes}")));
+        soak.args(options.json.iter().flat_map(|file| ["--json".as_ref(), file.as_os_str()]));
+        Ok(counted(soak.args(parts)))
+    });
 }

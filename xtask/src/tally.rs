@@ -2,6 +2,7 @@
 
 use crate::repo::run_reading;
 use crate::report::Counts;
+use anyhow::anyhow;
 use std::process::Command;
 
 /// Where tests are that a short command leaves out.
@@ -84,13 +85,13 @@ fn closing_line(line: &str) -> Option<(Counts, u64)> {
 pub fn counted(tests: &mut Command) -> (Counts, String) {
     let mut tally = Tally::default();
     let ended = run_reading(tests, |line| tally.read(line));
-    let ended = if tally.is_closed { ended } else { ended.and(Err(String::from("no closing line"))) };
+    let ended = if tally.is_closed { ended } else { ended.and(Err(anyhow!("no closing line"))) };
     let mut counts = tally.counts;
     counts.failed += tally.open;
     let mut notes: Vec<String> = tally.failures().into_iter().collect();
     if let Err(reason) = ended {
         counts.failed = counts.failed.max(1);
-        notes.push(format!("{reason}, see above"));
+        notes.push(format!("{reason:#}, see above"));
     }
     notes.extend((tally.others > 0).then(|| format!("{} tests: {LONG}", tally.others)));
     notes.extend(tally.figures);

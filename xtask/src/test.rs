@@ -1,9 +1,10 @@
-//! `cargo xtask test`: everything that shows by running whether it is right.
+//! `cargo xtask test`: everything that shows by running whether it is right. `cargo xtask bless`
+//! rewrites the golden files of tests.
 
 use crate::device::PARTS;
-use crate::report::Counts;
-use crate::session::Session;
-use crate::tally::counted;
+use crate::prelude::*;
+use crate::repo::BLESS;
+use crate::{bench, c, emulate, firmware, mpi, mutants, plants, project, python, size, soak, swarms};
 
 /// Properties are tried on the same random cases each time, so that a failure is the change's;
 /// `cargo test` alone takes new ones.
@@ -12,53 +13,72 @@ const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 /// Host tests and clients, then what other targets and other workspaces can show. Without `is_all`
 /// the tests that every change should pass: no long ones, and two parts, with an FPU and without.
 pub fn run(s: &mut Session, is_all: bool) {
-    let arguments = ["test", "--locked", "--workspace", "--no-fail-fast"];
-    let mut build = s.repo.cargo(&arguments);
-    build.arg("--no-run");
-    s.report.command("tests on the host, compiled", build);
+    let tests = "test --locked --workspace --no-fail-fast";
+    s.report.command("tests on the host, compiled", &mut s.repo.cargo(&format!("{tests} --no-run")));
     // Tests of the command line start the programs; without them these tests say so.
     let _ = s.staya("debug");
-    let mut tests = s.repo.cargo(&arguments);
-    tests.arg("--").args(is_all.then_some("--include-ignored"));
+    let mut tests = s.repo.cargo(&format!("{tests} -- {}", if is_all { "--include-ignored" } else { "" }));
     if std::env::var_os(SEED.0).is_none() {
         tests.env(SEED.0, SEED.1);
     }
     // Tests wait more than they compute, the clients' most of all.
-    let firmware = is_all.then(|| crate::firmware::begin(s)).flatten();
-    s.report.part("tests on the host", || counted(&mut tests));
-    crate::python::clients(s, None, is_all);
-    crate::python::pogema(s, is_all);
+    let firmware = is_all.then(|| firmware::begin(s)).flatten();
+    s.report.part("tests on the host", || Ok(counted(&mut tests)));
+    python::clients(s, None, is_all);
+    python::pogema(s, is_all);
     if !is_all {
-        crate::project::run(s, is_all);
-        crate::swarms::run_short(s, &PARTS[..2]);
-        return crate::emulated::run(s, &PARTS[..2]);
+        project::run(s, is_all);
+        swarms::run_short(s, &PARTS[..2]);
+        return emulate::run_fleets(s, &PARTS[..2]);
     }
-    crate::python::book(s);
-    crate::python::browser(s);
-    crate::python::cluster(s);
-    crate::mpi::run(s);
-    crate::python::package(s);
+    python::book(s);
+    python::browser(s);
+    python::cluster(s);
+    mpi::run(s, false);
+    python::package(s);
     if let Some(mut firmware) = firmware {
         s.report.part("the rest of the firmware, begun during the tests", || {
             let _ = firmware.wait();
-            (Counts::default(), String::new())
+            Ok((Counts::default(), String::new()))
         });
     }
-    crate::swarms::run(s);
-    crate::c::run(s);
-    crate::size::run(s, false);
-    crate::swarms::faults(s, &[]);
-    crate::emulated::run(s, &PARTS);
-    s.report.step("ten robots of a formation as firmware, 1000 steps", || crate::emulated::run_ten(&s.repo));
+    swarms::run(s);
+    c::run(s);
+    size::run(s, &size::Options::default());
+    swarms::faults(s, &PARTS);
+    emulate::run_fleets(s, &PARTS);
+    s.report.step("ten robots of a formation as firmware, 1000 steps", || emulate::run_ten(&s.repo));
     // Cargo takes a copy of the firmware for the same packages, and builds those again afterwards.
-    crate::plants::run(s, false);
-    crate::soak::run_short(s);
-    crate::firmware::example(s);
-    crate::project::run(s, is_all);
-    let mut peers = s.repo.cargo_in("tests/peers", &["test", "--locked"]);
-    s.report.part("same results as peers", || counted(&mut peers));
-    let mut fuzz = s.repo.cargo_in("tests/fuzz", &["test", "--locked", "--no-default-features"]);
-    s.report.part("fuzz targets on random bytes", || counted(&mut fuzz));
-    crate::mutants::run_shard(s, None);
-    crate::bench::run_goals(s);
+    plants::run(s, false);
+    soak::run_short(s);
+    firmware::example(s);
+    project::run(s, is_all);
+    for (name, folder, line) in [
+        ("same results as peers", "tests/peers", "test --locked"),
+        ("fuzz targets on random bytes", "tests/fuzz", "test --locked --no-default-features"),
+    ] {
+        s.report.part(name, || Ok(counted(&mut s.repo.cargo_in(folder, line))));
+    }
+    let staya = s.staya("release");
+    s.report.step("experiments show what they should, with few seeds", || {
+        execute(s.repo.command(staya?).args(["experiment", "--all", "--quick", "--restart"]))
+    });
+    mutants::run(s, mutants::SHARD);
+    bench::run_goals(s);
+}
+
+/// Runs the tests whose name contains `name` with the variable that makes them write, runs them
+/// again without it, and lists what changed.
+pub fn bless(s: &mut Session, name: &str) {
+    let tests = || s.repo.cargo(&format!("test --workspace --no-fail-fast {name}"));
+    s.report.step("rewrite golden files", || execute(tests().env(BLESS, "1")));
+    s.report.command("compare again", &mut tests());
+    match output_of(s.repo.command("git").args(["status", "--short", "--", "*golden*"])) {
+        Some(changed) if changed.is_empty() => println!("\nNo golden file changed."),
+        Some(changed) => {
+            println!("\nGolden files that differ from the last commit; look at each, and commit them apart:");
+            println!("{changed}");
+        }
+        None => println!("\nNo git here: see for yourself which golden files changed."),
+    }
 }

@@ -1,63 +1,65 @@
 //! `cargo xtask weight`: what the README's first command costs, beside the last record, and no
 //! library compiled twice.
 
-use crate::files;
-use crate::options::Options;
-use crate::repo::{Repo, output_of, run};
+use crate::prelude::*;
 use crate::report::processor_time;
-use crate::session::{MAIN, Session, folders, programs};
+use crate::session::{PROGRAMS, folders};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
 /// The records, one line each.
 const RECORDS: &str = "xtask/weight.csv";
 const HEADER: &str = "date,commit,units,processor_s,peer_s,program_bytes,code_lines";
-const PEER: [&str; 4] = ["install", "ripgrep", "--locked", "--root"];
 
-/// The command: prints each figure beside the last record; `--record` adds one, `--peer` also
-/// measures another program.
-pub fn run_command(s: &mut Session, options: &Options<'_>) {
+#[derive(clap::Args)]
+pub struct Options {
+    /// Also measure ripgrep
+    #[arg(long)]
+    peer: bool,
+    /// Add a record
+    #[arg(long)]
+    record: bool,
+}
+
+/// The command: prints each figure beside the last record.
+pub fn run(s: &mut Session, options: &Options) {
     s.report.step(SHARED, || check_shared(&s.repo));
     s.report.step("weight", || measure(&s.repo, options));
 }
 
-fn measure(repo: &Repo, options: &Options<'_>) -> Result<(), String> {
+fn measure(repo: &Repo, options: &Options) -> Result<()> {
     let folder = repo.target.join("weight");
     files::make_empty(&folder)?;
-    run(&mut repo.cargo(&["fetch", "--locked"]))?;
+    execute(&mut repo.cargo("fetch --locked"))?;
     let units = plan(repo, MAIN, MAIN)?.len();
-    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", MAIN]);
+    let mut build = repo.cargo(&format!("build --release --locked --package {MAIN}"));
     let processor_s = seconds(build.env("CARGO_TARGET_DIR", &folder))?;
     let bytes = files::bytes(&folder.join("release").join(files::name(&repo.program("release", MAIN))))?.len();
-    let mut peer = repo.cargo(&PEER);
+    let mut peer = repo.cargo("install ripgrep --locked --root");
     peer.arg(folder.join("ripgrep")).env("CARGO_TARGET_DIR", folder.join("peer"));
-    let peer_s = if options.has("--peer") { Some(seconds(&mut peer)?) } else { None };
-    let lines = code_lines(repo)?;
-    lines.iter().for_each(|(member, lines)| println!("{lines:>7}  {member}"));
-    let code_lines: usize = lines.iter().map(|(_, lines)| lines).sum();
+    let peer_s = if options.peer { Some(seconds(&mut peer)?) } else { None };
+    let code_lines = code_lines(repo)?;
     let figures = [Some(units as f64), Some(processor_s), peer_s, Some(bytes as f64), Some(code_lines as f64)];
     let file = repo.root.join(RECORDS);
-    let records = files::read(&file).unwrap_or_else(|_| format!("{HEADER}\n"));
+    let records = files::read(&file)?;
     print!("{}", table(&records, &figures));
-    if !options.has("--record") {
-        return Ok(());
+    if options.record {
+        let now = repo.answer("date -u +%F && git rev-parse --short HEAD").context("no commit here")?;
+        let figures = figures.map(|figure| figure.map_or(String::new(), |figure| format!("{}", round(figure, 10.0))));
+        files::write(&file, format!("{records}{},{}\n", now.replace('\n', ","), figures.join(",")))?;
     }
-    let date = output_of(repo.command("date").args(["-u", "+%F"])).unwrap_or_default();
-    let commit = output_of(repo.command("git").args(["rev-parse", "--short", "HEAD"])).unwrap_or_default();
-    let figures = figures.map(|figure| figure.map_or(String::new(), |figure| format!("{}", round(figure))));
-    files::write(&file, format!("{records}{date},{commit},{}\n", figures.join(",")))
+    Ok(())
 }
 
-/// To a tenth.
-fn round(figure: f64) -> f64 {
-    (figure * 10.0).round() / 10.0
+/// Rounds to one of these parts of 1.
+fn round(figure: f64, parts: f64) -> f64 {
+    (figure * parts).round() / parts
 }
 
 /// Runs a command; the seconds that processors worked for it, the system's included.
-fn seconds(command: &mut std::process::Command) -> Result<f64, String> {
-    let before = processor_time().ok_or("no /proc/self/stat here, which says how long processors worked")?;
-    run(command)?;
+fn seconds(command: &mut std::process::Command) -> Result<f64> {
+    let before = processor_time().context("no /proc/self/stat here, which says how long processors worked")?;
+    execute(command)?;
     let worked = processor_time().and_then(|after| after.checked_sub(before));
     Ok(worked.unwrap_or_default().as_secs_f64())
 }
@@ -65,38 +67,44 @@ fn seconds(command: &mut std::process::Command) -> Result<f64, String> {
 /// Each figure, its value in the last record that has it, and the ratio of both; the time also as a
 /// ratio to the peer's.
 fn table(records: &str, figures: &[Option<f64>; 5]) -> String {
-    let rows: Vec<Vec<Option<f64>>> =
-        records.lines().skip(1).map(|row| row.split(',').skip(2).map(|field| field.parse().ok()).collect()).collect();
-    let last = |at: usize| rows.iter().rev().find_map(|row| *row.get(at)?);
-    let mut text = format!("{:<24}{:>14}{:>14}{:>8}\n", "", "now", "recorded", "ratio");
-    let mut line = |name: &str, now: Option<f64>, before: Option<f64>| {
-        let shown = |value: Option<f64>| {
-            value.map_or(String::from("-"), |value| format!("{}", (value * 100.0).round() / 100.0))
-        };
-        let ratio = now.zip(before).map(|(now, before)| now / before);
-        text += &format!("{name:<24}{:>14}{:>14}{:>8}\n", shown(now), shown(before), shown(ratio));
-    };
-    for (at, name) in HEADER.split(',').skip(2).enumerate() {
-        line(name, figures[at], last(at));
-    }
     let over_peer = |row: &[Option<f64>]| Some((*row.get(1)?)? / (*row.get(2)?)?);
-    line("processor_s / peer_s", over_peer(figures), rows.iter().rev().find_map(|row| over_peer(row)));
+    let with_ratio = |mut row: Vec<Option<f64>>| {
+        row.push(over_peer(&row));
+        row
+    };
+    let rows = records.lines().skip(1).map(|row| row.split(',').skip(2).map(|field| field.parse().ok()).collect());
+    let rows: Vec<_> = rows.map(with_ratio).collect();
+    let mut text = format!("{:<24}{:>14}{:>14}{:>8}\n", "", "now", "recorded", "ratio");
+    let names = HEADER.split(',').skip(2).chain(["processor_s / peer_s"]);
+    for (at, (name, now)) in names.zip(with_ratio(figures.to_vec())).enumerate() {
+        let before = rows.iter().rev().find_map(|row| *row.get(at)?);
+        let ratio = now.zip(before).map(|(now, before)| now / before);
+        let shown = |value: Option<f64>| value.map_or(String::from("-"), |value| round(value, 100.0).to_string());
+        text += &format!("{name:<24}{:>14}{:>14}{:>8}\n", shown(now), shown(before), shown(ratio));
+    }
     text
 }
 
-/// Lines of code in the sources of each crate of the workspace. Blank lines and comments are left
-/// out, and tests: files of them, and modules of them at the end of other files.
-fn code_lines(repo: &Repo) -> Result<Vec<(String, usize)>, String> {
-    let count = |folder: &PathBuf| {
-        let is_code = |path: &Path| !["bin", "tests", "tests.rs"].contains(&files::name(path).as_str());
-        let is_rust = |path: &Path| path.is_dir() || files::has_extension(path, &["rs"]);
-        let sources = files::below(&folder.join("src"), &|path| is_code(path) && is_rust(path))?;
-        let texts = sources.iter().map(|file| files::read(file)).collect::<Result<Vec<_>, _>>()?;
-        let lines = texts.iter().flat_map(|text| text.lines().take_while(|line| *line != "mod tests {"));
-        let lines = lines.map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
-        Ok((folder.strip_prefix(&repo.root).unwrap_or(folder).display().to_string(), lines.count()))
+/// Lines of code in the sources of all crates of the workspace, which it prints for each. Blank
+/// lines and comments are left out, and tests: files of them, and modules of them at the end of
+/// other files.
+fn code_lines(repo: &Repo) -> Result<usize> {
+    let is_wanted = |path: &Path| {
+        let is_code = !["bin", "tests", "tests.rs"].contains(&files::name(path).as_str());
+        is_code && (path.is_dir() || files::has_extension(path, &["rs"]))
     };
-    folders(repo)?.iter().filter(|folder| folder.join("src").is_dir()).map(count).collect()
+    let mut sum = 0;
+    for folder in folders(repo)?.iter().filter(|folder| folder.join("src").is_dir()) {
+        let mut count = 0;
+        for file in files::below(&folder.join("src"), &is_wanted)? {
+            let text = files::read(&file)?;
+            let lines = text.lines().take_while(|line| *line != "mod tests {").map(str::trim);
+            count += lines.filter(|line| !line.is_empty() && !line.starts_with("//")).count();
+        }
+        println!("{count:>7}  {}", folder.strip_prefix(&repo.root)?.display());
+        sum += count;
+    }
+    Ok(sum)
 }
 
 /// The name of the step in `cargo xtask check`.
@@ -104,27 +112,22 @@ pub const SHARED: &str = "no library compiled twice for the programs";
 
 /// Cargo's plan for a program, `cargo build --unit-graph`: the calls of the compiler and of build
 /// scripts. Nothing is compiled.
-fn plan(repo: &Repo, package: &str, program: &str) -> Result<Vec<Value>, String> {
-    let mut plan = repo.cargo(&["build", "--release", "--locked", "--package", package, "--bin", program]);
+fn plan(repo: &Repo, package: &str, program: &str) -> Result<Vec<Value>> {
     // The option is stable enough to be read, and not stable.
-    plan.args(["--unit-graph", "-Zunstable-options"]).env("RUSTC_BOOTSTRAP", "1");
-    let text = output_of(&mut plan).ok_or_else(|| format!("cargo does not plan {program}"))?;
-    let graph: Value = serde_json::from_str(&text).map_err(|error| format!("cargo's plan of {program}: {error}"))?;
-    let units = graph["units"].as_array().ok_or_else(|| format!("cargo's plan of {program} has no units"))?;
-    Ok(units.iter().filter(|unit| unit["mode"] == "build").cloned().collect())
+    let line = format!("build --release --locked --package {package} --bin {program} --unit-graph -Zunstable-options");
+    let plan = output_of(repo.cargo(&line).env("RUSTC_BOOTSTRAP", "1"));
+    let mut graph: Value = serde_json::from_str(&plan.with_context(|| format!("cargo does not plan {program}"))?)?;
+    let units = graph["units"].as_array_mut().with_context(|| format!("cargo's plan of {program} has no units"))?;
+    units.retain(|unit| unit["mode"] == "build");
+    Ok(std::mem::take(units))
 }
 
 /// Compares the plans of all programs: one folder has each library once if they want the same
 /// features of it.
-pub fn check_shared(repo: &Repo) -> Result<(), String> {
-    let plan = |(package, program): (String, &'static str)| Ok((program, plan(repo, &package, program)?));
-    let plans = programs(repo)?.into_iter().map(plan).collect::<Result<Vec<_>, String>>()?;
-    let faults = differences(&plans);
-    faults.iter().for_each(|fault| println!("{fault}"));
-    match faults.len() {
-        0 => Ok(()),
-        count => Err(format!("{count} libraries compiled twice: {}", faults.join("; "))),
-    }
+pub fn check_shared(repo: &Repo) -> Result<()> {
+    let plans = PROGRAMS.map(|(package, program)| Ok((program, plan(repo, package, program)?)));
+    let plans = plans.into_iter().collect::<Result<Vec<_>>>()?;
+    none_of(&differences(&plans), "libraries are compiled twice")
 }
 
 /// Each library of which programs want different features, with what differs.

@@ -1,16 +1,17 @@
 //! Limits of a part, and which of them are breached.
 
 use super::Measured;
+use crate::prelude::*;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
 /// The limits of a part: figures, and tables of figures of cases or laws. Other figures have no
 /// limit.
-pub fn read(text: &str, part: &str) -> Result<Table, String> {
-    let parts: Table = text.parse().map_err(|error| format!("{error}"))?;
-    let limits = parts.get(part).and_then(Value::as_table).cloned();
-    let limits = limits.ok_or_else(|| format!("no limits for {part}"))?;
-    if number(&limits).is_empty() { Err(format!("no `number` for {part}")) } else { Ok(limits) }
+pub fn read(text: &str, part: &str) -> Result<Table> {
+    let parts: Table = text.parse()?;
+    let limits = parts.get(part).and_then(Value::as_table).with_context(|| format!("no limits for {part}"))?;
+    ensure!(!number(limits).is_empty(), "no `number` for {part}");
+    Ok(limits.clone())
 }
 
 /// The kind of number that the limits are for.
@@ -40,26 +41,25 @@ pub fn breaches(limits: &Table, measured: &Measured) -> Vec<String> {
 /// formats have none.
 fn figures(limits: &Table, measured: &Measured) -> BTreeMap<String, u64> {
     let mut figures = BTreeMap::new();
-    let mut most = |name: String, figure: Option<u64>| {
+    let mut most = |name: String, figure: u64| {
         let largest = figures.entry(name).or_insert(0);
-        *largest = figure.unwrap_or(0).max(*largest);
+        *largest = figure.max(*largest);
     };
-    for column in ["text", "rodata", "ram"] {
-        most(format!("lockstep_{column}"), measured.programs.get("lockstep", column));
+    for (column, figure) in &measured.programs["lockstep"] {
+        most(format!("lockstep_{column}"), *figure);
     }
-    for (law, _) in &measured.laws.rows {
-        most(format!("text.{law}"), measured.laws.get(law, "text"));
+    for (law, row) in &measured.laws {
+        most(format!("text.{law}"), row["text"]);
     }
-    for (row, _) in &measured.cases.rows {
-        let figure = |column| measured.cases.get(row, column);
-        let kinds = [number(limits), "-"];
-        let Some((case, _)) = row.split_once(' ').filter(|(_, kind)| kinds.contains(kind)) else { continue };
-        most(format!("instructions.{case}"), figure("worst"));
-        most(format!("stacks.{case}"), figure("stack"));
-        most("agent_and_workspace".into(), figure("agent").zip(figure("workspace")).map(|(a, b)| a + b));
+    let kinds = [number(limits), "-"];
+    let cases = measured.cases.iter().filter_map(|(name, row)| Some((name.split_once(' ')?, row)));
+    for ((case, _), row) in cases.filter(|((_, kind), _)| kinds.contains(kind)) {
+        most(format!("instructions.{case}"), row["worst"]);
+        most(format!("stacks.{case}"), row["stack"]);
+        most("agent_and_workspace".into(), row["agent"] + row["workspace"]);
         // Some cases have a limit of their own.
         if limits.get("stacks").is_none_or(|own| own.get(case).is_none()) {
-            most("stack".into(), figure("stack"));
+            most("stack".into(), row["stack"]);
         }
     }
     // Static RAM and the deepest step.
@@ -71,24 +71,22 @@ fn figures(limits: &Table, measured: &Measured) -> BTreeMap<String, u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Table as Figures;
+    use super::super::Row;
     use super::*;
 
     const TEXT: &str = "[a]\nnumber = 'f32'\nlockstep_text = 100\nram = 60\nstack = 10\n\
         [a.instructions]\nroute = 7\nfly = 9\n[b]\nnumber = 'Q16'\n";
 
     fn measured(text: u64, ram: u64, stack: u64, worst: u64) -> Measured {
-        let row = |name: &str, worst| (name.to_string(), vec![worst, stack]);
-        let empty = || Figures { columns: &["name", "text"], rows: Vec::new() };
+        let case = |case: &str, worst| {
+            let row = [("worst", worst), ("stack", stack), ("agent", 0), ("workspace", 0)];
+            (case.to_string(), Row::from(row))
+        };
         Measured {
-            programs: Figures { columns: &["name", "text", "ram"], rows: vec![("lockstep".into(), vec![text, ram])] },
-            cases: Figures {
-                columns: &["name", "worst", "stack"],
-                rows: vec![row("route f32", worst), row("fly f32", 1), row("route Q16", 1000)],
-            },
-            laws: Figures { rows: vec![("boids".into(), vec![worst])], ..empty() },
-            steps: empty(),
-            formats: empty(),
+            programs: [(String::from("lockstep"), Row::from([("text", text), ("ram", ram)]))].into(),
+            cases: [case("route f32", worst), case("fly f32", 1), case("route Q16", 1000)].into(),
+            laws: [(String::from("boids"), Row::from([("text", worst)]))].into(),
+            ..Measured::default()
         }
     }
 
@@ -107,11 +105,11 @@ mod tests {
     fn a_case_can_have_a_stack_of_its_own() {
         let text = TEXT.replace("[a.instructions]", "[a.stacks]\nroute = 20\n[a.instructions]");
         let mut measured = measured(1, 1, 10, 1);
-        measured.cases.rows[0].1[1] = 20;
+        measured.cases.get_mut("route f32").unwrap().insert("stack", 20);
         assert_eq!(told(&text, &measured), [""; 0]);
-        measured.cases.rows[0].1[1] = 21;
+        measured.cases.get_mut("route f32").unwrap().insert("stack", 21);
         assert_eq!(told(&text, &measured), ["stacks.route: 21, at most 20"]);
-        measured.cases.rows[1].1[1] = 11;
+        measured.cases.get_mut("fly f32").unwrap().insert("stack", 11);
         assert_eq!(told(&text, &measured).len(), 2);
     }
 

@@ -1,7 +1,7 @@
 //! The minimal firmware of each law: an agent with one law and one safety layer, measured in
 //! `bench` under its heaviest load.
 
-use super::Table;
+use super::{Row, Table};
 
 /// Each law with its case in `bench`, its guidance and its safety layer in numbers `#` with at most
 /// `K` half-planes.
@@ -20,9 +20,10 @@ const LAWS: [(&str, &str, &str, &str); 10] = [
 
 /// The laws in one kind of number, as far as they were measured, and `lockstep`.
 pub fn laws(number: &str, programs: &Table, cases: &Table, steps: &Table) -> Table {
+    let row =
+        |text, rodata, ram, stack| Row::from([("text", text), ("rodata", rodata), ("ram", ram), ("stack", stack)]);
     let law = |(law, case, guidance, safety): &(&str, &str, &str, &str)| {
-        let case = |column| cases.get(&format!("{case} {number}"), column);
-        let (step, _) = steps.rows.iter().find(|(step, _)| {
+        let (_, step) = steps.iter().find(|(step, _)| {
             // Twice as many half-planes as neighbours.
             let neighbors = step.rsplit(", ").next().and_then(|it| it.parse::<u32>().ok());
             let safety = safety.replace('#', number).replace('K', &(2 * neighbors.unwrap_or(0)).to_string());
@@ -30,16 +31,14 @@ pub fn laws(number: &str, programs: &Table, cases: &Table, steps: &Table) -> Tab
             matches!(arguments(step)[..], [kind, one, other, "Postcard", ..]
                 if kind == number && is_type(one, guidance) && is_type(other, &safety))
         })?;
-        let step = |column| steps.get(step, column);
-        let figures = vec![step("text")?, step("rodata")?, case("agent")? + case("workspace")?, case("stack")?];
-        Some((law.to_string(), figures))
+        let case = cases.get(&format!("{case} {number}"))?;
+        Some((law.to_string(), row(step["text"], step["rodata"], case["agent"] + case["workspace"], case["stack"])))
     };
-    let stack = cases.rows.iter().filter(|(case, _)| case.ends_with(&format!(" {number}")));
-    let stack = stack.filter_map(|(case, _)| cases.get(case, "stack")).max();
-    let lockstep = ["text", "rodata", "ram"].into_iter().filter_map(|column| programs.get("lockstep", column));
-    let lockstep = ("lockstep, all laws".to_string(), lockstep.chain(stack).collect());
-    let rows = LAWS.iter().filter_map(law).chain([lockstep]).collect();
-    Table { columns: &["agent of a law", "text", "rodata", "ram", "stack"], rows }
+    let of_number = cases.iter().filter(|(case, _)| case.ends_with(&format!(" {number}")));
+    let stack = of_number.map(|(_, case)| case["stack"]).max().unwrap_or(0);
+    let lockstep = programs.get("lockstep").map(|all| row(all["text"], all["rodata"], all["ram"], stack));
+    let lockstep = lockstep.map(|row| ("lockstep, all laws".to_string(), row));
+    LAWS.iter().filter_map(law).chain(lockstep).collect()
 }
 
 /// The arguments of a generic type, split at the commas between them.
@@ -58,21 +57,21 @@ mod tests {
 
     #[test]
     fn step_of_a_law_is_found_by_its_types() {
-        let row = |case: &str, figures: &[u64]| (case.to_string(), figures.to_vec());
-        let cases = Table {
-            columns: &["case", "stack", "agent", "workspace"],
-            rows: vec![row("worst_orca_found f32", &[30, 20, 1]), row("worst_push_out f32", &[40, 20, 1])],
+        let table = |columns: &[&'static str], rows: &[(&str, &[u64])]| -> Table {
+            let row = |figures: &[u64]| columns.iter().copied().zip(figures.iter().copied()).collect();
+            rows.iter().map(|(name, figures)| (name.to_string(), row(figures))).collect()
         };
-        let rows = vec![
-            row("Q16, WaypointGuidance<Q16>, OrcaSafety<Q16, 32>, Postcard, 16", &[1, 2]),
-            row("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32, VoxelTable2k>, Postcard, 16", &[2, 2]),
-            row("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32>, Postcard, 16", &[3, 2]),
-            row("f32, WaypointGuidance<f32>, PushOutSafety<f32>, Mavlink, 16", &[4, 2]),
+        let cases = [("worst_orca_found f32", &[30, 20, 1][..]), ("worst_push_out f32", &[40, 20, 1])];
+        let cases = table(&["stack", "agent", "workspace"], &cases);
+        let steps = [
+            ("Q16, WaypointGuidance<Q16>, OrcaSafety<Q16, 32>, Postcard, 16", &[1, 2][..]),
+            ("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32, VoxelTable2k>, Postcard, 16", &[2, 2]),
+            ("f32, WaypointGuidance<f32>, OrcaSafety<f32, 32>, Postcard, 16", &[3, 2]),
+            ("f32, WaypointGuidance<f32>, PushOutSafety<f32>, Mavlink, 16", &[4, 2]),
         ];
-        let steps = Table { columns: &["step", "text", "rodata"], rows };
-        let programs =
-            Table { columns: &["program", "text", "rodata", "ram"], rows: vec![row("lockstep", &[7, 8, 9])] };
-        let expected = [row("waypoint_orca", &[3, 2, 21, 30]), row("lockstep, all laws", &[7, 8, 9, 40])];
-        assert_eq!(laws("f32", &programs, &cases, &steps).rows, expected);
+        let steps = table(&["text", "rodata"], &steps);
+        let programs = table(&["text", "rodata", "ram"], &[("lockstep", &[7, 8, 9])]);
+        let expected = [("waypoint_orca", &[3, 2, 21, 30][..]), ("lockstep, all laws", &[7, 8, 9, 40])];
+        assert_eq!(laws("f32", &programs, &cases, &steps), table(&["text", "rodata", "ram", "stack"], &expected));
     }
 }

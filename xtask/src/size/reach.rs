@@ -5,7 +5,8 @@
 //! refers to what. Calls through pointers are followed where the pointer is stored. Constants
 //! without a name reach up to the next thing with a reference to it.
 
-use super::Table;
+use super::{Row, Table};
+use crate::prelude::*;
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,8 +22,8 @@ pub struct Program {
 
 impl Program {
     /// Reads an ELF file that was linked with its relocations.
-    pub fn read(bytes: &[u8]) -> Result<Self, String> {
-        let file = object::File::parse(bytes).map_err(|error| error.to_string())?;
+    pub fn read(bytes: &[u8]) -> Result<Self> {
+        let file = object::File::parse(bytes)?;
         let mut program = Self { things: BTreeMap::new(), names: Vec::new(), references: BTreeMap::new() };
         let is_thumb = file.architecture() == object::Architecture::Arm;
         // The lowest bit of a Thumb function's address says that it is one.
@@ -91,31 +92,27 @@ impl Program {
     /// The flash that each step of an agent in `bench` needs, of those with most neighbours.
     pub fn steps(&self) -> Table {
         let neighbors = |step: &str| step.rsplit(", ").next().and_then(|number| number.parse::<u32>().ok());
-        let mut rows = self.needs("step");
-        let most = rows.iter().map(|(step, _)| neighbors(step)).max();
-        rows.retain(|(step, _)| Some(neighbors(step)) == most);
-        const NAME: &str = "step of a behaviour: number, guidance, safety, wire format, neighbours";
-        Table { columns: &[NAME, "text", "rodata"], rows }
+        let mut rows: Table = self.needs("step").collect();
+        let most = rows.keys().map(|step| neighbors(step)).max();
+        rows.retain(|step, _| Some(neighbors(step)) == most);
+        rows
     }
 
-    /// The flash that one frame of each wire format needs. Formats share some constants and code.
+    /// The flash that one frame of each wire format needs.
     pub fn formats(&self) -> Table {
-        let needs = |way| self.needs(way).into_iter().map(move |(format, needs)| (format!("{way}, {format}"), needs));
-        let rows = ["decode", "encode"].into_iter().flat_map(needs).collect();
-        Table { columns: &["frame of a wire format", "text", "rodata"], rows }
+        let needs = |way| self.needs(way).map(move |(format, needs)| (format!("{way}, {format}"), needs));
+        ["decode", "encode"].into_iter().flat_map(needs).collect()
     }
 
-    /// The types of each function of `bench` by this name, without paths and sorted, and the
-    /// machine code and constants that it needs.
-    fn needs(&self, function: &str) -> Vec<(String, Vec<u64>)> {
+    /// The types of each function of `bench` by this name, without paths, and the machine code and
+    /// constants that it needs.
+    fn needs(&self, function: &str) -> impl Iterator<Item = (String, Row)> {
         let start = format!("bench::program::{function}::<");
-        let needs = self.names.iter().filter_map(|(name, at)| {
+        self.names.iter().filter_map(move |(name, at)| {
             let types = name.strip_prefix(&start)?.strip_suffix('>')?;
-            Some((without_paths(types), self.reach(*at).to_vec()))
-        });
-        let mut needs: Vec<_> = needs.collect();
-        needs.sort();
-        needs
+            let [text, rodata] = self.reach(*at);
+            Some((without_paths(types), Row::from([("text", text), ("rodata", rodata)])))
+        })
     }
 
     /// Bytes of machine code and of constants that are reached from the function at `root`.
@@ -171,7 +168,7 @@ mod tests {
             names: vec![(String::from("bench::program::encode::<a::F>"), 0)],
             references: references.into_iter().collect(),
         };
-        assert_eq!(program.formats().rows, [(String::from("encode, F"), vec![30, 8])]);
+        assert_eq!(program.formats()["encode, F"], Row::from([("text", 30), ("rodata", 8)]));
         assert_eq!(program.reach(30), [5, 0]);
         assert_eq!(program.reach(50), [0, 0]);
     }
