@@ -2,7 +2,7 @@
 //! any source of events; its generic layers produce three times as much machine code for the
 //! scenario tables.
 
-use serde::de::value::{MapAccessDeserializer, StrDeserializer};
+use serde::de::value::StrDeserializer;
 use serde::de::{
     DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, IntoDeserializer as _, MapAccess, SeqAccess,
     Unexpected, VariantAccess, Visitor,
@@ -10,7 +10,6 @@ use serde::de::{
 use serde::{Deserialize, forward_to_deserialize_any};
 use std::borrow::Cow;
 use std::fmt;
-use std::marker::PhantomData;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -68,19 +67,14 @@ impl serde::de::Error for Error {
     }
 
     fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
-        let renamed = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new));
-        let remedy = match (renamed, nearest(name, known.iter().copied())) {
-            (Some((_, new)), _) => format!("the field is called `{new}` now"),
-            (None, Some(near)) => format!("did you mean `{near}`?"),
-            (None, None) if known.is_empty() => "this table has no fields".to_owned(),
-            (None, None) => format!("this table has {}", listed(known)),
+        let remedy = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if known.is_empty() => "this table has no fields".to_owned(),
+            None => format!("this table has {}", listed(known)),
         };
         Self { remedy: Some(remedy), ..Self::custom(format!("unknown field `{name}`")) }
     }
 }
-
-/// Earlier names of fields, each with the present one.
-const RENAMED: [(&str, &str); 3] = [("eyes", "sensing"), ("claims", "plausibility"), ("remember_s", "stands_after_s")];
 
 /// The known name that is most similar to `name`, if any is similar.
 pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
@@ -88,7 +82,7 @@ pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&
     similar.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, one)| one)
 }
 
-fn listed(names: &[&str]) -> String {
+pub(super) fn listed(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
@@ -113,7 +107,7 @@ pub(super) fn short(value: f64) -> String {
 }
 
 /// Names the values that a type accepts, without the name of the Rust type.
-fn needed(expected: &str) -> &str {
+pub(super) fn needed(expected: &str) -> &str {
     match expected {
         "f64" | "f32" => "a number",
         "u8" => "a whole number from 0 to 255",
@@ -135,25 +129,8 @@ fn needed(expected: &str) -> &str {
     }
 }
 
-/// Reads a type with a derived reader that would accept its fields as a list, by their order.
-pub fn table<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<T, D::Error> {
-    struct OnlyTable<T>(PhantomData<T>);
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for OnlyTable<T> {
-        type Value = T;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("a table")
-        }
-
-        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
-            T::deserialize(MapAccessDeserializer::new(map))
-        }
-    }
-    from.deserialize_map(OnlyTable(PhantomData))
-}
-
-pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeTable<'de>>) -> Result<T, Error> {
-    T::deserialize(Table(root.get_ref())).map_err(|error| error.at(root.span()))
+pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeValue<'de>>) -> Result<T, Error> {
+    T::deserialize(Node(root))
 }
 
 struct Table<'a, 'de>(&'a DeTable<'de>);

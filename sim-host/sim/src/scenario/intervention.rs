@@ -1,17 +1,15 @@
 //! Interventions: changes to a running simulation, made by hand in the viewer or listed as
 //! `[[intervention]]` in a scenario.
 
-use super::de::table;
 use super::ranges::{micros, short};
 use super::source::{ScenarioError, Source};
-use super::{Robot, Scenario, ScenarioFile};
+use super::{Node, Read, Robot, Scenario, ScenarioFile, Table, Wrong, nearest};
+use crate::kinds;
 use crate::world::Refusal;
 use crate::world::plane::{FAR_M, Shape};
-use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::parameters;
 use staya_controller::robot::RobotId;
-use std::sync::LazyLock;
 
 /// One change to a running simulation. Robots are named by id; places are world metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,7 +35,6 @@ pub enum Intervention {
         /// Id of the robot; `None`: all.
         robot: Option<u32>,
         /// Name of the parameter.
-        #[serde(deserialize_with = "parameter")]
         name: String,
         /// New value.
         value: f32,
@@ -59,7 +56,6 @@ pub enum Intervention {
     /// Adds an obstacle to the plane.
     Solid {
         /// Shape of the obstacle.
-        #[serde(deserialize_with = "table")]
         solid: Shape,
     },
     /// Moves an obstacle instantly.
@@ -83,21 +79,42 @@ pub enum Intervention {
     },
 }
 
-fn parameter<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| parameters().map(|row| row.name).collect());
-    let name = String::deserialize(deserializer)?;
-    if NAMES.contains(&name.as_str()) { Ok(name) } else { Err(D::Error::unknown_variant(&name, &NAMES)) }
-}
+kinds!(Intervention {
+    Goal = "goal" { robot, place_m },
+    Waypoint = "waypoint" { goal, place_m },
+    Parameter = "parameter" { robot, name, value },
+    Down = "down" { robot, for_s },
+    Radio = "radio" { loss, range_m },
+    Solid = "solid" { solid },
+    Move = "move" { index, by_m },
+    Remove = "remove" { index },
+    Cell = "cell" { cell, class },
+});
+
+kinds!(Shape {
+    Circle = "circle" { center_m, radius_m },
+    Segment = "segment" { from_m, to_m },
+    Polygon = "polygon" { points_m },
+    Ball = "ball" { center_m, radius_m },
+});
 
 /// `[[intervention]]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct InterventionTable {
     /// Time after the start, seconds.
     pub at_s: f64,
-    /// The intervention, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
-    #[serde(rename = "do", deserialize_with = "table")]
+    /// The intervention `do`, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
     pub what: Intervention,
+}
+
+impl Read for InterventionTable {
+    const KIND: &'static str = "a table";
+
+    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
+        let table = Table::new(node, &["at_s", "do"])?;
+        let at_s = table.read("at_s", Some(&(0.0..=14_400_000.0, "seconds")))?;
+        Ok(Self { at_s: at_s.ok_or_else(|| table.missing("at_s"))?, what: table.need("do")? })
+    }
 }
 
 impl Intervention {
@@ -132,8 +149,14 @@ impl Intervention {
                 }
             }
             Self::Parameter { name, value, .. } => {
-                let known = parameters().find(|row| row.name == name);
-                let [least, greatest] = known.map_or([f32::MIN, f32::MAX], |row| row.range);
+                let Some(row) = parameters().find(|row| row.name == name) else {
+                    let remedy = match nearest(name, parameters().map(|row| row.name)) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => "give a name of tests/golden/parameters.txt".to_owned(),
+                    };
+                    return Err(Refusal::new("name", format!("unknown value `{name}`"), remedy));
+                };
+                let [least, greatest] = row.range;
                 if !(least..=greatest).contains(value) {
                     let what = format!("{} is out of range", short((*value).into()));
                     return Err(Refusal::new("value", what, format!("give {least} to {greatest}")));
@@ -176,7 +199,6 @@ pub(super) fn interventions(
     let mut interventions = Vec::with_capacity(file.intervention.len());
     for (index, table) in file.intervention.iter().enumerate() {
         let field = |name: &str| format!("intervention[{index}].{name}");
-        super::ranges::within(source, &field("at_s"), table.at_s, 0.0, 4000.0 * 3600.0, "seconds")?;
         table
             .what
             .check(robots)

@@ -79,7 +79,6 @@ impl Entry<'_> {
 
     fn change(&self, file: &ScenarioFile, land: &Terrain) -> Result<LandChange, ScenarioError> {
         let table = self.table;
-        within(self.source, &self.field("at_s"), table.at_s, 0.0, LONGEST_S, "seconds")?;
         let every = self.ticks("every_s", table.every_s, file.tick_s)?;
         let lasts = self.ticks("for_s", table.for_s, file.tick_s)?;
         if let (Some(every), Some(lasts)) = (every, lasts)
@@ -107,7 +106,6 @@ impl Entry<'_> {
                 if lasts.is_some() {
                     return Err(self.error("for_s", "a drift is never over", "leave it out"));
                 }
-                within(self.source, &self.field("drift.share"), drift.share, 0.0, 1.0, "(a share)")?;
                 if drift.step == 0 || drift.classes == Some(0) {
                     let name = if drift.step == 0 { "drift.step" } else { "drift.classes" };
                     return Err(self.error(name, "0 ticks change nothing", "give 1 to 255"));

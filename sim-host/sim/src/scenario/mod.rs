@@ -17,6 +17,7 @@ mod params;
 mod plane;
 mod plausibility;
 mod ranges;
+mod read;
 mod robots;
 mod schema;
 mod scouting;
@@ -38,6 +39,7 @@ pub use plane::{
 };
 pub use plausibility::PlausibilityTable;
 pub use ranges::within;
+pub use read::{Field as Read, Line, Node, Table, Wrong, empty, word};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,
@@ -63,6 +65,7 @@ use staya_controller::robot::RobotId;
 use staya_papers::criteria::PublishedParams;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use toml::de::DeValue;
 
 const LIST: &str = "scenarios/README.md";
 
@@ -227,7 +230,7 @@ impl Scenario {
     /// Refuses events that are later than `ticks`, than the text's ticks, and than the override's.
     fn build(text: &str, path: &Path, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
-        let mut file: ScenarioFile = source.read(LIST)?;
+        let mut file: ScenarioFile = source.table(LIST)?;
         let ticks = ticks.max(file.ticks);
         file.seed = overrides.seed.unwrap_or(file.seed);
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
@@ -365,7 +368,7 @@ impl Scenario {
 }
 
 fn parameters(source: &Source<'_>, file: &ScenarioFile) -> serde_json::Value {
-    let mut fields: serde_json::Value = source.read(LIST).unwrap_or_default();
+    let mut fields = read::json(&DeValue::Table(source.root().clone()));
     if let Some(fields) = fields.as_object_mut() {
         fields.insert("seed".into(), file.seed.into());
         fields.insert("ticks".into(), file.ticks.into());

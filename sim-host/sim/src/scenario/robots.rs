@@ -86,12 +86,12 @@ pub(super) fn build(
         ));
     };
     let mut formations = Vec::new();
-    let entries = match (&table.list, &table.formation[..], &table.scen, &table.scattered) {
+    let entries = match (&table.list, &table.formation.0[..], &table.scen, &table.scattered) {
         (Some(list), [], None, None) => listed(list),
         (None, [_, ..], None, None) => {
             let mut entries = Vec::new();
-            for (index, entry) in table.formation.iter().enumerate() {
-                let field = match table.formation.len() {
+            for (index, entry) in table.formation.0.iter().enumerate() {
+                let field = match table.formation.0.len() {
                     1 => "robots.formation".to_owned(),
                     _ => format!("robots.formation[{index}]"),
                 };

@@ -1,6 +1,5 @@
 //! `[scouting]`: the terrain that robots know before they see it.
 
-use super::ranges::within;
 use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use crate::terrain::Terrain;
@@ -23,15 +22,11 @@ pub(super) fn scouting(
         let (what, remedy) = ("these robots plan on no land", "leave this table out, or give guidance = \"route\"");
         return Err(source.error("scouting", what, remedy));
     };
-    for (field, value) in [("scouting.unknown", table.unknown), ("scouting.wrong", table.wrong)] {
-        within(source, field, value, 0.0, 1.0, "(a share)")?;
-    }
     if table.unknown + table.wrong > 1.0 {
         let what = format!("unknown {} and wrong {} add up to more than 1", table.unknown, table.wrong);
         return Err(source.error("scouting.wrong", what, "give shares with a sum of at most 1"));
     }
     let patch_cells = table.patch_cells.unwrap_or(1);
-    within(source, "scouting.patch_cells", patch_cells.into(), 1.0, 1000.0, "cells")?;
     if table.assumed == Some(0) {
         let what = "0 makes unknown cells impassable";
         return Err(source.error("scouting.assumed", what, "give 1 to 255 ticks"));

@@ -1,6 +1,7 @@
 //! TOML text of a scenario or another settings file, and errors that point into it.
 
 use super::de;
+use super::read::{Field, Node};
 use crate::file::read_remedy;
 use serde::Deserialize;
 use std::cell::RefCell;
@@ -46,7 +47,7 @@ fn prefix(field: &str) -> String {
 pub struct Source<'a> {
     path: &'a Path,
     text: &'a str,
-    root: Spanned<DeTable<'a>>,
+    root: Node<'a>,
     files: RefCell<Vec<PathBuf>>,
 }
 
@@ -54,7 +55,10 @@ impl<'a> Source<'a> {
     /// Parses the TOML syntax; the meaning of fields is not checked.
     pub fn new(path: &'a Path, text: &'a str) -> Result<Self, ScenarioError> {
         match DeTable::parse(text) {
-            Ok(root) => Ok(Self { path, text, root, files: vec![path.to_owned()].into() }),
+            Ok(root) => {
+                let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
+                Ok(Self { path, text, root, files: vec![path.to_owned()].into() })
+            }
             Err(error) => Err(ScenarioError::Field {
                 path: path.to_owned(),
                 line: line_of(text, error.span()),
@@ -122,7 +126,23 @@ impl<'a> Source<'a> {
     /// The parsed fields with their positions.
     #[must_use]
     pub fn root(&self) -> &DeTable<'a> {
-        self.root.get_ref()
+        self.root.get_ref().as_table().expect("a file is a table")
+    }
+
+    /// Reads the whole file as a table of [`table!`](crate::table!); `list` is the page that
+    /// documents all fields.
+    ///
+    /// # Errors
+    /// A field is unknown, missing, of another type, or out of range.
+    pub fn table<T: Field>(&self, list: &str) -> Result<T, ScenarioError> {
+        T::read(&self.root).map_err(|wrong| {
+            let remedy = match wrong.remedy {
+                Some(remedy) if wrong.is_listed => format!("{remedy} ({list} lists all fields)"),
+                Some(remedy) => remedy,
+                None => format!("{list} lists all fields with their units"),
+            };
+            self.error_at(wrong.span, &wrong.path, wrong.what, remedy)
+        })
     }
 
     /// Deserializes the whole file; `list` is the page that documents all fields.
@@ -138,7 +158,7 @@ impl<'a> Source<'a> {
         let mut field = String::new();
         // The span of the whole file is empty.
         if let Some(span) = span.as_ref().filter(|span| !span.is_empty()) {
-            deepest(self.root.get_ref(), span, &mut field);
+            deepest(self.root(), span, &mut field);
         }
         ScenarioError::Field {
             path: self.path.to_owned(),
@@ -154,12 +174,12 @@ impl<'a> Source<'a> {
 
     /// Whether the file has this field or table at its top level.
     pub fn has(&self, name: &str) -> bool {
-        self.root.get_ref().get(name).is_some()
+        self.root().get(name).is_some()
     }
 
     /// Whether the file has this field.
     pub fn stands(&self, field: &str) -> bool {
-        let mut at = Some(self.root.get_ref());
+        let mut at = Some(self.root());
         let mut segments = field.split('.').peekable();
         while let Some(segment) = segments.next() {
             let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
@@ -181,7 +201,7 @@ impl<'a> Source<'a> {
 
     fn span(&self, field: &str) -> Option<Range<usize>> {
         let mut span = None;
-        let mut table = self.root.get_ref();
+        let mut table = self.root();
         for segment in field.split('.') {
             let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
             let Some(entry) = parts.next().and_then(|name| table.get(name)) else {

@@ -1,3 +1,4 @@
+mod mutated;
 mod nonsense;
 mod readme;
 

@@ -16,7 +16,7 @@ const GAMMA_OF_TWO: f32 = 50.0;
 
 /// Size of the largest formation. Flock numbers start there: beacons store both in one field.
 pub(super) fn places(file: &ScenarioFile) -> u8 {
-    let in_cells = file.robots.iter().flat_map(|robots| &robots.formation);
+    let in_cells = file.robots.iter().flat_map(|robots| &robots.formation.0);
     let formations = in_cells.chain(file.group_formations());
     let places = formations.map(|formation| match (formation.rows, formation.columns, &formation.places) {
         (Some(rows), Some(columns), _) => usize::from(rows) * usize::from(columns),

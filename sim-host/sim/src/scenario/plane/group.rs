@@ -51,7 +51,7 @@ impl RobotGroup {
             radius_m,
             cruise_mps,
             tolerance_m,
-            sight_m: super::table::ten(),
+            sight_m: 10.0,
             guidance: waypoint(cruise_mps, tolerance_m),
             safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
             contact_loss: ContactLossPolicy::DEFAULT,

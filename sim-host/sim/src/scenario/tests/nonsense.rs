@@ -32,15 +32,15 @@ fn lists_of_another_length_and_lists_for_tables_are_refused() {
         (order("\"goal\""), "s.toml:9: intervention[0].do: \"goal\" is not a table; "),
         (
             order("{ kind = \"goal\", place_m = [1, 1, 0, 4] }"),
-            "s.toml:9: intervention[0].do: the list has 4 values, 3 are needed; ",
+            "s.toml:9: intervention[0].do.place_m: the list has 4 values, 3 are needed; ",
         ),
         (
             order("{ kind = \"goal\", place_m = [1, 1] }"),
-            "s.toml:9: intervention[0].do: the list has 2 values, 3 are needed; ",
+            "s.toml:9: intervention[0].do.place_m: the list has 2 values, 3 are needed; ",
         ),
         (
             order("{ kind = \"solid\", solid = [\"circle\", [1, 2], 0.5] }"),
-            "s.toml:9: intervention[0].do: a list is not a table; ",
+            "s.toml:9: intervention[0].do.solid: a list is not a table; ",
         ),
         (order("{ kind = 3 }"), "s.toml:9: intervention[0].do.kind: 3 is not a name in quotes; "),
     ] {
