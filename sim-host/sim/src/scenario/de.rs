@@ -2,6 +2,7 @@
 //! any source of events; its generic layers produce three times as much machine code for the
 //! scenario tables.
 
+use super::read::{Wrong, short};
 use serde::de::value::StrDeserializer;
 use serde::de::{
     DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, IntoDeserializer as _, MapAccess, SeqAccess,
@@ -10,41 +11,24 @@ use serde::de::{
 use serde::{Deserialize, forward_to_deserialize_any};
 use std::borrow::Cow;
 use std::fmt;
-use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-#[derive(Debug)]
-pub struct Error {
-    pub message: String,
-    /// How to correct it, if the error says so.
-    pub remedy: Option<String>,
-    /// Position of the value or its key in the text, bytes.
-    pub span: Option<Range<usize>>,
-}
-
-impl Error {
-    fn at(mut self, span: Range<usize>) -> Self {
-        self.span.get_or_insert(span);
-        self
-    }
-}
-
-impl fmt::Display for Error {
+impl fmt::Display for Wrong {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(&self.message)
+        out.write_str(&self.what)
     }
 }
 
-impl std::error::Error for Error {}
+impl std::error::Error for Wrong {}
 
-impl serde::de::Error for Error {
+impl serde::de::Error for Wrong {
     fn custom<T: fmt::Display>(message: T) -> Self {
-        Self { message: message.to_string(), remedy: None, span: None }
+        Self::about(message.to_string())
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::custom(format!("{} is not {}", in_words(found), needed(&expected.to_string())))
+        Self::about(format!("{} is not {}", in_words(found), needed(&expected.to_string())))
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -55,35 +39,16 @@ impl serde::de::Error for Error {
         // "an array of length 3", or "3 elements in sequence".
         let expected = expected.to_string();
         let wanted = expected.split(' ').find(|word| word.parse::<usize>().is_ok()).unwrap_or("other numbers");
-        Self::custom(format!("the list has {length} values, {wanted} are needed"))
+        Self::about(format!("the list has {length} values, {wanted} are needed"))
     }
 
     fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
-        let remedy = match nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("give one of {}", listed(known)),
-        };
-        Self { remedy: Some(remedy), ..Self::custom(format!("unknown value `{name}`")) }
+        Self::unknown_value(name, known)
     }
 
     fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
-        let remedy = match nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None if known.is_empty() => "this table has no fields".to_owned(),
-            None => format!("this table has {}", listed(known)),
-        };
-        Self { remedy: Some(remedy), ..Self::custom(format!("unknown field `{name}`")) }
+        Self::unknown_field(name, known)
     }
-}
-
-/// The known name that is most similar to `name`, if any is similar.
-pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
-    let similar = known.map(|one| (strsim::jaro_winkler(name, one), one)).filter(|(likeness, _)| *likeness > 0.8);
-    similar.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, one)| one)
-}
-
-pub(super) fn listed(names: &[&str]) -> String {
-    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 fn in_words(found: Unexpected<'_>) -> String {
@@ -98,12 +63,6 @@ fn in_words(found: Unexpected<'_>) -> String {
         Unexpected::Other(what) => format!("a {what}"),
         other => other.to_string(),
     }
-}
-
-/// Formats a number for an error text: huge and tiny numbers have an exponent.
-pub(super) fn short(value: f64) -> String {
-    let has_few_digits = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
-    if has_few_digits { value.to_string() } else { format!("{value:e}") }
 }
 
 /// Names the values that a type accepts, without the name of the Rust type.
@@ -129,17 +88,17 @@ pub(super) fn needed(expected: &str) -> &str {
     }
 }
 
-pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeValue<'de>>) -> Result<T, Error> {
+pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeValue<'de>>) -> Result<T, Wrong> {
     T::deserialize(Node(root))
 }
 
 struct Table<'a, 'de>(&'a DeTable<'de>);
 
 impl<'a> Deserializer<'a> for Table<'a, '_> {
-    type Error = Error;
+    type Error = Wrong;
 
-    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_map(Entries { entries: Box::new(self.0.iter()), value: None })
+    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        visitor.visit_map(Entries { entries: Box::new(self.0.iter()), last: None })
     }
 
     forward_to_deserialize_any! {
@@ -153,37 +112,38 @@ type Entry<'a, 'de> = (&'a Spanned<Cow<'de, str>>, &'a Spanned<DeValue<'de>>);
 
 struct Entries<'a, 'de> {
     entries: Box<dyn Iterator<Item = Entry<'a, 'de>> + 'a>,
-    value: Option<&'a Spanned<DeValue<'de>>>,
+    last: Option<Entry<'a, 'de>>,
 }
 
 impl<'a> MapAccess<'a> for Entries<'a, '_> {
-    type Error = Error;
+    type Error = Wrong;
 
-    fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
+    fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Wrong> {
         let Some((key, value)) = self.entries.next() else {
             return Ok(None);
         };
-        self.value = Some(value);
-        let name: StrDeserializer<'_, Error> = key.get_ref().as_ref().into_deserializer();
-        seed.deserialize(name).map(Some).map_err(|error| error.at(key.span()))
+        self.last = Some((key, value));
+        let name: StrDeserializer<'_, Wrong> = key.get_ref().as_ref().into_deserializer();
+        seed.deserialize(name).map(Some).map_err(|error| error.at(key.span()).under(key.get_ref()))
     }
 
-    fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Error> {
-        let value = self.value.take().ok_or_else(|| Error::custom("a value without a key"))?;
-        seed.deserialize(Node(value)).map_err(|error| error.at(value.span()))
+    fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Wrong> {
+        let (key, value) = self.last.take().ok_or_else(|| Wrong::about("a value without a key"))?;
+        seed.deserialize(Node(value)).map_err(|error| error.at(value.span()).under(key.get_ref()))
     }
 }
 
-struct Elements<'a, 'de>(std::slice::Iter<'a, Spanned<DeValue<'de>>>);
+struct Elements<'a, 'de>(std::iter::Enumerate<std::slice::Iter<'a, Spanned<DeValue<'de>>>>);
 
 impl<'a> SeqAccess<'a> for Elements<'a, '_> {
-    type Error = Error;
+    type Error = Wrong;
 
-    fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
-        let Some(value) = self.0.next() else {
+    fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Wrong> {
+        let Some((index, value)) = self.0.next() else {
             return Ok(None);
         };
-        seed.deserialize(Node(value)).map(Some).map_err(|error| error.at(value.span()))
+        let read = seed.deserialize(Node(value)).map(Some);
+        read.map_err(|error| error.at(value.span()).under(&format!("[{index}]")))
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -194,9 +154,9 @@ impl<'a> SeqAccess<'a> for Elements<'a, '_> {
 struct Node<'a, 'de>(&'a Spanned<DeValue<'de>>);
 
 impl<'a> Deserializer<'a> for Node<'a, '_> {
-    type Error = Error;
+    type Error = Wrong;
 
-    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Wrong> {
         let read = match self.0.get_ref() {
             DeValue::String(text) => visitor.visit_str(text),
             DeValue::Boolean(value) => visitor.visit_bool(*value),
@@ -204,19 +164,19 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
                 Ok(value) => visitor.visit_i64(value),
                 Err(_) => match u64::from_str_radix(integer.as_str(), integer.radix()) {
                     Ok(value) => visitor.visit_u64(value),
-                    Err(_) => Err(Error::custom("a whole number beyond 64 bits")),
+                    Err(_) => Err(Wrong::about("a whole number beyond 64 bits")),
                 },
             },
             DeValue::Float(float) => match float.as_str().parse() {
                 Ok(value) => visitor.visit_f64(value),
-                Err(_) => Err(Error::custom("invalid number")),
+                Err(_) => Err(Wrong::about("invalid number")),
             },
-            DeValue::Datetime(_) => Err(Error::invalid_type(Unexpected::Other("date"), &visitor)),
+            DeValue::Datetime(_) => Err(Wrong::invalid_type(Unexpected::Other("date"), &visitor)),
             DeValue::Array(list) => {
-                let mut elements = Elements(list.iter());
+                let mut elements = Elements(list.iter().enumerate());
                 let read = visitor.visit_seq(&mut elements);
                 match (elements.0.len(), read) {
-                    (left @ 1.., Ok(_)) => Err(Error::custom(format!(
+                    (left @ 1.., Ok(_)) => Err(Wrong::about(format!(
                         "the list has {} values, {} are needed",
                         list.len(),
                         list.len() - left
@@ -229,11 +189,11 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
         read.map_err(|error| error.at(self.0.span()))
     }
 
-    fn deserialize_option<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+    fn deserialize_option<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Wrong> {
         visitor.visit_some(self)
     }
 
-    fn deserialize_newtype_struct<V: Visitor<'a>>(self, _: &'static str, visitor: V) -> Result<V::Value, Error> {
+    fn deserialize_newtype_struct<V: Visitor<'a>>(self, _: &'static str, visitor: V) -> Result<V::Value, Wrong> {
         visitor.visit_newtype_struct(self)
     }
 
@@ -242,15 +202,15 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
         _: &'static str,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Error> {
+    ) -> Result<V::Value, Wrong> {
         let span = self.0.span();
         let read = match self.0.get_ref() {
             DeValue::String(name) => visitor.visit_enum(Variant { name, value: None }),
             DeValue::Table(table) if table.len() == 1 => match table.iter().next() {
                 Some((name, value)) => visitor.visit_enum(Variant { name: name.get_ref(), value: Some(value) }),
-                None => Err(Error::custom("an empty table")),
+                None => Err(Wrong::about("an empty table")),
             },
-            _ => Err(Error::custom("not a name in quotes, and not a table with one entry")),
+            _ => Err(Wrong::about("not a name in quotes, and not a table with one entry")),
         };
         read.map_err(|error| error.at(span))
     }
@@ -266,10 +226,10 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
         _: &'static str,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Error> {
+    ) -> Result<V::Value, Wrong> {
         // A derived visitor would read the fields of a list by their order.
         match self.0.get_ref() {
-            DeValue::Array(_) => Err(Error::custom("a list is not a table").at(self.0.span())),
+            DeValue::Array(_) => Err(Wrong::about("a list is not a table").at(self.0.span())),
             _ => self.deserialize_any(visitor),
         }
     }
@@ -281,40 +241,40 @@ struct Variant<'a, 'de> {
 }
 
 impl<'a> EnumAccess<'a> for Variant<'a, '_> {
-    type Error = Error;
+    type Error = Wrong;
     type Variant = Self;
 
-    fn variant_seed<V: DeserializeSeed<'a>>(self, seed: V) -> Result<(V::Value, Self), Error> {
-        let name: StrDeserializer<'_, Error> = self.name.into_deserializer();
+    fn variant_seed<V: DeserializeSeed<'a>>(self, seed: V) -> Result<(V::Value, Self), Wrong> {
+        let name: StrDeserializer<'_, Wrong> = self.name.into_deserializer();
         Ok((seed.deserialize(name)?, self))
     }
 }
 
 impl<'a, 'de> Variant<'a, 'de> {
-    fn content(self) -> Result<Node<'a, 'de>, Error> {
-        self.value.map(Node).ok_or_else(|| Error::custom(format!("{} needs a value: {} = ...", self.name, self.name)))
+    fn content(self) -> Result<Node<'a, 'de>, Wrong> {
+        self.value.map(Node).ok_or_else(|| Wrong::about(format!("{} needs a value: {} = ...", self.name, self.name)))
     }
 }
 
 impl<'a> VariantAccess<'a> for Variant<'a, '_> {
-    type Error = Error;
+    type Error = Wrong;
 
-    fn unit_variant(self) -> Result<(), Error> {
+    fn unit_variant(self) -> Result<(), Wrong> {
         match self.value {
             None => Ok(()),
-            Some(_) => Err(Error::custom(format!("{} takes no value", self.name))),
+            Some(_) => Err(Wrong::about(format!("{} takes no value", self.name))),
         }
     }
 
-    fn newtype_variant_seed<T: DeserializeSeed<'a>>(self, seed: T) -> Result<T::Value, Error> {
+    fn newtype_variant_seed<T: DeserializeSeed<'a>>(self, seed: T) -> Result<T::Value, Wrong> {
         seed.deserialize(self.content()?)
     }
 
-    fn tuple_variant<V: Visitor<'a>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
+    fn tuple_variant<V: Visitor<'a>>(self, _: usize, visitor: V) -> Result<V::Value, Wrong> {
         self.content()?.deserialize_any(visitor)
     }
 
-    fn struct_variant<V: Visitor<'a>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Error> {
+    fn struct_variant<V: Visitor<'a>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Wrong> {
         self.content()?.deserialize_struct("", fields, visitor)
     }
 }

@@ -33,12 +33,15 @@ pub struct FormationEntries(pub Vec<FormationEntry>);
 
 impl Read for FormationEntries {
     const KIND: &'static str = "a table or a list of tables";
-    const LINES: &'static [Line] = FormationEntry::LINES;
 
     fn read(node: &Node<'_>) -> Result<Self, Wrong> {
         match node.get_ref() {
             DeValue::Array(_) => Vec::read(node).map(Self),
             _ => FormationEntry::read(node).map(|entry| Self(vec![entry])),
         }
+    }
+
+    fn lines() -> Vec<Line> {
+        FormationEntry::lines()
     }
 }

@@ -1,7 +1,7 @@
 //! `[law]`: a law that the program adds, instead of those of Staya.
 
-use super::de::nearest;
 use super::ranges;
+use super::read::nearest;
 use super::source::{ScenarioError, Source};
 use super::{PlaneSetup, ScenarioFile};
 use crate::own_law::{NEGOTIATION, Own, named};

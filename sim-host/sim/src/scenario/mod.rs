@@ -5,7 +5,7 @@
 mod authentication;
 mod check;
 mod de;
-pub use de::nearest;
+pub use read::nearest;
 mod field;
 mod fingerprint;
 mod formation;
@@ -39,7 +39,7 @@ pub use plane::{
 };
 pub use plausibility::PlausibilityTable;
 pub use ranges::within;
-pub use read::{Field as Read, Line, Node, Table, Wrong, empty, word};
+pub use read::{Field as Read, Fields, Line, Node, Table, Wrong, empty, word};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,
@@ -65,7 +65,6 @@ use staya_controller::robot::RobotId;
 use staya_papers::criteria::PublishedParams;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use toml::de::DeValue;
 
 const LIST: &str = "scenarios/README.md";
 
@@ -229,7 +228,9 @@ impl Scenario {
 
     /// Refuses events that are later than `ticks`, than the text's ticks, and than the override's.
     fn build(text: &str, path: &Path, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
-        let source = Source::new(path, text)?;
+        let mut source = Source::new(path, text)?;
+        let parameters = source.json();
+        plane::inherit(source.root_mut());
         let mut file: ScenarioFile = source.table(LIST)?;
         let ticks = ticks.max(file.ticks);
         file.seed = overrides.seed.unwrap_or(file.seed);
@@ -333,7 +334,7 @@ impl Scenario {
             plausibility: PlausibilityLimits::ANY,
             attacks,
             files: source.files(),
-            parameters: parameters(&source, &file),
+            parameters: with_overrides(parameters, &file),
         };
         scenario.plausibility = plausibility::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
         Ok(scenario)
@@ -367,8 +368,8 @@ impl Scenario {
     }
 }
 
-fn parameters(source: &Source<'_>, file: &ScenarioFile) -> serde_json::Value {
-    let mut fields = read::json(&DeValue::Table(source.root().clone()));
+/// The fields of the file with overrides applied, without secrets.
+fn with_overrides(mut fields: serde_json::Value, file: &ScenarioFile) -> serde_json::Value {
     if let Some(fields) = fields.as_object_mut() {
         fields.insert("seed".into(), file.seed.into());
         fields.insert("ticks".into(), file.ticks.into());

@@ -1,7 +1,7 @@
 //! Reads the tables of a settings file without serde. [`table!`](crate::table!) defines a struct
 //! with reader, ranges, units, defaults and documentation. An error carries the place of the value.
 
-use super::de::{listed, nearest, needed, short};
+use super::de::needed;
 use super::plane::Place;
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
@@ -16,7 +16,7 @@ pub type Node<'a> = Spanned<DeValue<'a>>;
 #[derive(Debug)]
 pub struct Wrong {
     /// Position of the value or its key, bytes.
-    pub span: Range<usize>,
+    pub span: Option<Range<usize>>,
     /// Path of the field below the value that is being read.
     pub path: String,
     /// Cause.
@@ -30,26 +30,62 @@ pub struct Wrong {
 impl Wrong {
     /// Creates an error about a value.
     pub fn new(node: &Node<'_>, what: impl Into<String>) -> Self {
-        Self { span: node.span(), path: String::new(), what: what.into(), remedy: None, is_listed: true }
+        Self::about(what).at(node.span())
+    }
+
+    pub(super) fn about(what: impl Into<String>) -> Self {
+        Self { span: None, path: String::new(), what: what.into(), remedy: None, is_listed: true }
     }
 
     fn not(node: &Node<'_>, needed: &str) -> Self {
         Self::new(node, format!("{} is not {needed}", in_words(node.get_ref())))
     }
 
-    fn unknown(span: Range<usize>, what: String, name: &str, known: &[&'static str], all: &str) -> Self {
+    pub(super) fn unknown_field(name: &str, known: &[&'static str]) -> Self {
         let remedy = match nearest(name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("{all} {}", listed(known)),
+            None if known.is_empty() => "this table has no fields".to_owned(),
+            None => format!("this table has {}", listed(known)),
         };
-        Self { span, path: String::new(), what, remedy: Some(remedy), is_listed: true }
+        Self { remedy: Some(remedy), ..Self::about(format!("unknown field `{name}`")) }
     }
 
-    fn under(mut self, key: &str) -> Self {
+    pub(super) fn unknown_value(name: &str, known: &[&'static str]) -> Self {
+        let remedy = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("give one of {}", listed(known)),
+        };
+        Self { remedy: Some(remedy), ..Self::about(format!("unknown value `{name}`")) }
+    }
+
+    /// Adds the position, unless it is known.
+    pub(super) fn at(mut self, span: Range<usize>) -> Self {
+        self.span.get_or_insert(span);
+        self
+    }
+
+    /// Adds the key of the table, or the index of the list, above the path.
+    pub(super) fn under(mut self, key: &str) -> Self {
         let dot = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
         self.path = format!("{key}{dot}{}", self.path);
         self
     }
+}
+
+/// The known name that is most similar to `name`, if any is similar.
+pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let similar = known.map(|one| (strsim::jaro_winkler(name, one), one)).filter(|(likeness, _)| *likeness > 0.8);
+    similar.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, one)| one)
+}
+
+fn listed(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// Formats a number for an error text: huge and tiny numbers have an exponent.
+pub(super) fn short(value: f64) -> String {
+    let has_few_digits = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
+    if has_few_digits { value.to_string() } else { format!("{value:e}") }
 }
 
 fn in_words(value: &DeValue<'_>) -> String {
@@ -78,15 +114,13 @@ pub struct Line {
     /// Value if the field is absent, as Rust code; empty if there is none.
     pub default: &'static str,
     /// Fields of the table, or of the tables in the list.
-    pub inner: &'static [Line],
+    pub inner: Vec<Line>,
 }
 
 /// A type that can be read from a settings file.
 pub trait Field: Sized {
     /// Kind of the value for people.
     const KIND: &'static str;
-    /// Fields, if this is a table or a list of tables.
-    const LINES: &'static [Line] = &[];
 
     /// Reads a value.
     ///
@@ -99,6 +133,24 @@ pub trait Field: Sized {
     fn absent() -> Option<Self> {
         None
     }
+
+    /// Fields, if this is a table or a list of tables.
+    #[must_use]
+    fn lines() -> Vec<Line> {
+        Vec::new()
+    }
+}
+
+/// The fields of a table, or some of them.
+pub trait Fields: Sized {
+    /// Names of its parts' fields, then of its own.
+    const NAMES: &'static [&'static [&'static str]];
+
+    /// Reads the fields.
+    ///
+    /// # Errors
+    /// See [`Field::read`]; also a missing field.
+    fn fields(table: &Table<'_>) -> Result<Self, Wrong>;
 }
 
 fn integer(node: &Node<'_>) -> Option<i128> {
@@ -165,7 +217,6 @@ impl Field for f32 {
 
 impl<T: Field> Field for Option<T> {
     const KIND: &'static str = T::KIND;
-    const LINES: &'static [Line] = T::LINES;
 
     fn read(node: &Node<'_>) -> Result<Self, Wrong> {
         T::read(node).map(Some)
@@ -174,16 +225,23 @@ impl<T: Field> Field for Option<T> {
     fn absent() -> Option<Self> {
         Some(None)
     }
+
+    fn lines() -> Vec<Line> {
+        T::lines()
+    }
 }
 
 impl<T: Field> Field for Vec<T> {
     const KIND: &'static str = "a list";
-    const LINES: &'static [Line] = T::LINES;
 
     fn read(node: &Node<'_>) -> Result<Self, Wrong> {
         let DeValue::Array(list) = node.get_ref() else { return Err(Wrong::not(node, Self::KIND)) };
         let elements = list.iter().enumerate();
         elements.map(|(at, element)| T::read(element).map_err(|wrong| wrong.under(&format!("[{at}]")))).collect()
+    }
+
+    fn lines() -> Vec<Line> {
+        T::lines()
     }
 }
 
@@ -240,8 +298,7 @@ impl<'a> Table<'a> {
             return Ok(fields);
         };
         let name = key.get_ref();
-        let all = if known.is_empty() { "this table has no fields" } else { "this table has" };
-        let mut wrong = Wrong::unknown(key.span(), format!("unknown field `{name}`"), name, known, all);
+        let mut wrong = Wrong::unknown_field(name, known).at(key.span());
         if let Some((_, new)) = RENAMED.iter().find(|(old, new)| old == name && known.contains(new)) {
             wrong.remedy = Some(format!("the field is called `{new}` now"));
         }
@@ -303,7 +360,10 @@ fn present(name: &str) -> &str {
 /// Checks a number, or the numbers of a list.
 fn within(node: &Node<'_>, range: &RangeInclusive<f64>, unit: &str) -> Result<(), Wrong> {
     if let DeValue::Array(list) = node.get_ref() {
-        return list.iter().try_for_each(|element| within(element, range, unit));
+        let mut elements = list.iter().enumerate();
+        return elements.try_for_each(|(at, element)| {
+            within(element, range, unit).map_err(|wrong| wrong.under(&format!("[{at}]")))
+        });
     }
     match number(node) {
         Some(value) if !range.contains(&value) => {
@@ -332,7 +392,7 @@ pub fn word<T: Copy>(node: &Node<'_>, names: &[(&'static str, T)]) -> Result<T, 
     let found = names.iter().find(|(known, _)| known == name);
     found.map(|(_, value)| *value).ok_or_else(|| {
         let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
-        Wrong::unknown(node.span(), format!("unknown value `{name}`"), name, &known, "give one of")
+        Wrong::unknown_value(name, &known).at(node.span())
     })
 }
 
@@ -411,35 +471,57 @@ macro_rules! kinds {
 }
 
 /// Defines a table of a settings file: a struct with documented fields, each with type, default
-/// (after `=`; without one it is required, unless it is an `Option`), range and unit.
+/// (after `=`; without one it is required, unless it is an `Option`), range and unit. The fields of
+/// a struct in `part` belong to the same table.
 #[macro_export]
 macro_rules! table {
     ($(#[$outer:meta])* pub struct $name:ident {
+        $(part $part:ident: $part_type:ty;)*
         $($(#[doc = $doc:literal])* pub $field:ident: $type:ty $(= $default:expr)? $(, $range:expr, $unit:literal)?;)*
     }) => {
         $(#[$outer])*
         #[derive(Clone, Debug)]
         pub struct $name {
+            $(/// Fields of the same table.
+            pub $part: $part_type,)*
             $($(#[doc = $doc])* pub $field: $type,)*
+        }
+
+        impl $crate::scenario::Fields for $name {
+            const NAMES: &'static [&'static [&'static str]] =
+                &[$(<$part_type as $crate::scenario::Fields>::NAMES[0],)* &[$(stringify!($field)),*]];
+
+            fn fields(table: &$crate::scenario::Table<'_>) -> Result<Self, $crate::scenario::Wrong> {
+                Ok(Self {
+                    $($part: $crate::scenario::Fields::fields(table)?,)*
+                    $($field: {
+                        let value = table.read(stringify!($field), $crate::table!(@range $($range, $unit)?).as_ref())?;
+                        $crate::table!(@or table, $field, value $(, $default)?)
+                    }),*
+                })
+            }
         }
 
         impl $crate::scenario::Read for $name {
             const KIND: &'static str = "a table";
-            const LINES: &'static [$crate::scenario::Line] = &[$($crate::scenario::Line {
-                name: stringify!($field),
-                doc: concat!($($doc),*),
-                kind: <$type as $crate::scenario::Read>::KIND,
-                range: $crate::table!(@range $($range, $unit)?),
-                default: concat!($(stringify!($default))?),
-                inner: <$type as $crate::scenario::Read>::LINES,
-            }),*];
 
             fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
-                let table = $crate::scenario::Table::new(node, &[$(stringify!($field)),*])?;
-                Ok(Self { $($field: {
-                    let value = table.read(stringify!($field), $crate::table!(@range $($range, $unit)?).as_ref())?;
-                    $crate::table!(@or table, $field, value $(, $default)?)
-                }),* })
+                let names = <Self as $crate::scenario::Fields>::NAMES.concat();
+                $crate::scenario::Fields::fields(&$crate::scenario::Table::new(node, &names)?)
+            }
+
+            fn lines() -> Vec<$crate::scenario::Line> {
+                let mut lines = Vec::new();
+                $(lines.extend(<$part_type as $crate::scenario::Read>::lines());)*
+                $(lines.push($crate::scenario::Line {
+                    name: stringify!($field),
+                    doc: concat!($($doc),*),
+                    kind: <$type as $crate::scenario::Read>::KIND,
+                    range: $crate::table!(@range $($range, $unit)?),
+                    default: concat!($(stringify!($default))?),
+                    inner: <$type as $crate::scenario::Read>::lines(),
+                });)*
+                lines
             }
         }
     };

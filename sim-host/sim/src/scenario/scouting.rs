@@ -17,7 +17,7 @@ pub(super) fn scouting(
     let Some(table) = &file.scouting else {
         return Ok(None);
     };
-    let guidance = file.plane.as_ref().map(|plane| plane.guidance);
+    let guidance = file.plane.as_ref().map(|plane| plane.body.guidance);
     let Some(land) = land.filter(|_| guidance.is_none_or(|guidance| guidance.is_on_grid())) else {
         let (what, remedy) = ("these robots plan on no land", "leave this table out, or give guidance = \"route\"");
         return Err(source.error("scouting", what, remedy));

@@ -1,7 +1,7 @@
 //! TOML text of a scenario or another settings file, and errors that point into it.
 
 use super::de;
-use super::read::{Field, Node};
+use super::read::{Field, Node, Wrong, json};
 use crate::file::read_remedy;
 use serde::Deserialize;
 use std::cell::RefCell;
@@ -99,7 +99,7 @@ impl<'a> Source<'a> {
     pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
         ScenarioError::Field {
             path: self.path.to_owned(),
-            line: line_of(self.text, self.span(field)),
+            line: line_of(self.text, self.find(field).0.map(Spanned::span)),
             field: field.to_owned(),
             what: what.into(),
             remedy: remedy.into(),
@@ -129,20 +129,25 @@ impl<'a> Source<'a> {
         self.root.get_ref().as_table().expect("a file is a table")
     }
 
+    /// The fields as JSON; numbers that JSON lacks are null.
+    pub(super) fn json(&self) -> serde_json::Value {
+        json(self.root.get_ref())
+    }
+
+    pub(super) fn root_mut(&mut self) -> &mut DeTable<'a> {
+        match self.root.get_mut() {
+            DeValue::Table(table) => table,
+            _ => unreachable!("a file is a table"),
+        }
+    }
+
     /// Reads the whole file as a table of [`table!`](crate::table!); `list` is the page that
     /// documents all fields.
     ///
     /// # Errors
     /// A field is unknown, missing, of another type, or out of range.
     pub fn table<T: Field>(&self, list: &str) -> Result<T, ScenarioError> {
-        T::read(&self.root).map_err(|wrong| {
-            let remedy = match wrong.remedy {
-                Some(remedy) if wrong.is_listed => format!("{remedy} ({list} lists all fields)"),
-                Some(remedy) => remedy,
-                None => format!("{list} lists all fields with their units"),
-            };
-            self.error_at(wrong.span, &wrong.path, wrong.what, remedy)
-        })
+        T::read(&self.root).map_err(|wrong| self.refuse(wrong, list))
     }
 
     /// Deserializes the whole file; `list` is the page that documents all fields.
@@ -150,26 +155,16 @@ impl<'a> Source<'a> {
     /// # Errors
     /// A field is unknown, missing, or of another type; the error names file, line and field.
     pub fn read<'s, T: Deserialize<'s>>(&'s self, list: &str) -> Result<T, ScenarioError> {
-        de::read(&self.root).map_err(|error| self.serde_error(&error, list))
+        de::read(&self.root).map_err(|wrong| self.refuse(wrong, list))
     }
 
-    fn serde_error(&self, error: &de::Error, list: &str) -> ScenarioError {
-        let span = error.span.clone();
-        let mut field = String::new();
-        // The span of the whole file is empty.
-        if let Some(span) = span.as_ref().filter(|span| !span.is_empty()) {
-            deepest(self.root(), span, &mut field);
-        }
-        ScenarioError::Field {
-            path: self.path.to_owned(),
-            line: line_of(self.text, span),
-            field,
-            what: first_line(&error.message),
-            remedy: match &error.remedy {
-                Some(remedy) => format!("{remedy} ({list} lists all fields)"),
-                None => format!("{list} lists all fields with their units"),
-            },
-        }
+    fn refuse(&self, wrong: Wrong, list: &str) -> ScenarioError {
+        let remedy = match wrong.remedy {
+            Some(remedy) if wrong.is_listed => format!("{remedy} ({list} lists all fields)"),
+            Some(remedy) => remedy,
+            None => format!("{list} lists all fields with their units"),
+        };
+        self.error_at(wrong.span.unwrap_or_default(), &wrong.path, first_line(&wrong.what), remedy)
     }
 
     /// Whether the file has this field or table at its top level.
@@ -179,107 +174,23 @@ impl<'a> Source<'a> {
 
     /// Whether the file has this field.
     pub fn stands(&self, field: &str) -> bool {
-        let mut at = Some(self.root());
-        let mut segments = field.split('.').peekable();
-        while let Some(segment) = segments.next() {
-            let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
-            let mut value = at.and_then(|table| table.get(parts.next()?)).map(Spanned::get_ref);
-            for index in parts {
-                value = match (value, index.parse::<usize>()) {
-                    (Some(DeValue::Array(array)), Ok(index)) => array.get(index).map(Spanned::get_ref),
-                    _ => None,
-                };
-            }
-            match (value, segments.peek()) {
-                (Some(_), None) => return true,
-                (Some(DeValue::Table(inner)), Some(_)) => at = Some(inner),
-                _ => return false,
-            }
-        }
-        false
+        self.find(field).1
     }
 
-    fn span(&self, field: &str) -> Option<Range<usize>> {
-        let mut span = None;
-        let mut table = self.root();
-        for segment in field.split('.') {
-            let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
-            let Some(entry) = parts.next().and_then(|name| table.get(name)) else {
-                return span;
+    /// The deepest value on the path of a field, and whether it is the field itself.
+    fn find(&self, field: &str) -> (Option<&Node<'a>>, bool) {
+        let (mut node, mut found) = (&self.root, None);
+        for step in field.split(['.', '[', ']']).filter(|step| !step.is_empty()) {
+            let next = match node.get_ref() {
+                DeValue::Table(table) => table.get(step),
+                DeValue::Array(list) => step.parse::<usize>().ok().and_then(|index| list.get(index)),
+                _ => None,
             };
-            let mut value = entry;
-            span = Some(value.span());
-            for index in parts {
-                let element = match (value.get_ref(), index.parse::<usize>()) {
-                    (DeValue::Array(array), Ok(index)) => array.get(index),
-                    _ => None,
-                };
-                let Some(element) = element else { return span };
-                value = element;
-                span = Some(value.span());
-            }
-            match value.get_ref() {
-                DeValue::Table(inner) => table = inner,
-                _ => return span,
-            }
+            let Some(next) = next else { return (found, false) };
+            (node, found) = (next, Some(next));
         }
-        span
+        (found, found.is_some())
     }
-}
-
-fn deepest(table: &DeTable<'_>, span: &Range<usize>, field: &mut String) {
-    for (key, value) in table {
-        if holds(&key.span(), span) || holds(&value.span(), span) {
-            if !field.is_empty() {
-                field.push('.');
-            }
-            field.push_str(key.get_ref());
-            deepest_value(value.get_ref(), span, field);
-            return;
-        }
-        // The span of a `[table]` header does not cover the lines below it.
-        let tables = match value.get_ref() {
-            DeValue::Table(inner) => vec![(String::new(), inner)],
-            DeValue::Array(array) => array
-                .iter()
-                .enumerate()
-                .filter_map(|(index, element)| match element.get_ref() {
-                    DeValue::Table(inner) => Some((format!("[{index}]"), inner)),
-                    _ => None,
-                })
-                .collect(),
-            _ => Vec::new(),
-        };
-        for (index, inner) in tables {
-            let mut below = String::new();
-            deepest(inner, span, &mut below);
-            if !below.is_empty() {
-                if !field.is_empty() {
-                    field.push('.');
-                }
-                field.push_str(&format!("{}{index}.{below}", key.get_ref()));
-                return;
-            }
-        }
-    }
-}
-
-fn deepest_value(value: &DeValue<'_>, span: &Range<usize>, field: &mut String) {
-    match value {
-        DeValue::Table(inner) => deepest(inner, span, field),
-        DeValue::Array(array) => {
-            let found = array.iter().enumerate().find(|(_, e)| holds(&e.span(), span));
-            if let Some((index, element)) = found {
-                field.push_str(&format!("[{index}]"));
-                deepest_value(element.get_ref(), span, field);
-            }
-        }
-        _ => {}
-    }
-}
-
-fn holds(outer: &Range<usize>, inner: &Range<usize>) -> bool {
-    outer.start <= inner.start && inner.end <= outer.end
 }
 
 fn line_of(text: &str, span: Option<Range<usize>>) -> usize {

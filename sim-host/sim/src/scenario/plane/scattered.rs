@@ -2,8 +2,8 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
+use super::group::Group;
 use super::place::{Start, Target};
-use super::spec::Spec;
 use super::table::{BallsEntry, Place, ScatteredDiscs};
 use super::{checks, within};
 use crate::world::plane::{Solid, Solids};
@@ -63,28 +63,27 @@ impl Taken {
 /// Places are two radii or more from solids; starts are also clear of `others` (place, radius).
 pub(super) fn starts(
     source: &Source<'_>,
-    spec: &Spec,
+    group: &Group,
     entry: &ScatteredDiscs,
     others: &[([f64; 3], f64)],
     solids: &[Solid],
     seed: u64,
 ) -> Result<Vec<Start>, ScenarioError> {
-    let table = format!("{}.robots.scattered", spec.table());
+    let table = format!("{}.robots.scattered", group.table);
     let field = |name: &str| format!("{table}.{name}");
-    if !matches!(spec.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
-        let what = format!("robots with guidance \"{}\" have no goals", spec.guidance.name());
+    if !matches!(group.body.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
+        let what = format!("robots with guidance \"{}\" have no goals", group.body.guidance.name());
         return Err(source.error(&table, what, "give a cloud, or guidance \"waypoint\""));
     }
-    let (least_m, spacing_m) = (2.0 * spec.radius_m, entry.spacing_m.unwrap_or(3.0 * spec.radius_m));
+    let (least_m, spacing_m) = (2.0 * group.body.radius_m, entry.spacing_m.unwrap_or(3.0 * group.body.radius_m));
     within(source, &field("spacing_m"), spacing_m, least_m, 1e6, "metres")?;
-    within(source, &field("travel_m"), entry.travel_m, 0.001, f64::INFINITY, "metres")?;
     let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
     let solids = Solids::new(solids.to_vec(), least_m);
     let is_outside = |place| solids.near(place, least_m).all(|solid| solid.distance_m(place) >= least_m);
     let is_beside = |place: [f64; 3]| {
         others.iter().all(|(other, other_m)| {
             let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared >= (spec.radius_m + other_m) * (spec.radius_m + other_m)
+            squared >= (group.body.radius_m + other_m) * (group.body.radius_m + other_m)
         })
     };
     let (mut taken, mut aims) = (Taken::new(spacing_m), Taken::new(spacing_m));
@@ -113,10 +112,6 @@ pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> R
     let mut balls = Vec::new();
     for (number, entry) in (0..).zip(entries) {
         let table = format!("plane.balls[{number}]");
-        let field = |name: &str| format!("{table}.{name}");
-        within(source, &field("count"), entry.count.into(), 1.0, 1e6, "balls")?;
-        within(source, &field("radius_m"), entry.radius_m, 0.001, 1e6, "metres")?;
-        within(source, &field("gap_m"), entry.gap_m, 0.0, 1e6, "metres")?;
         let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
         let mut taken = Taken::new(2.0 * entry.radius_m + entry.gap_m);
         for index in 0..entry.count {

@@ -5,29 +5,55 @@ use crate::{defaults, names, table};
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::push_out::Model;
 
+/// Largest coordinate along each axis, metres: beacons encode positions as 32-bit millimetres.
+pub(super) const FAR_M: f64 = 2_000_000.0;
+
+pub(super) const MAX_ROBOTS: f64 = 1_000_000.0;
+
+/// Largest side of a torus, metres: up to here, whole millimetres are also exact in `f32`.
+const LARGEST_M: f64 = 16_000.0;
+
 table! {
-    /// `[plane]`.
-    pub struct PlaneTable {
+    /// Fields of `[plane]` and `[[plane.group]]`. A group inherits those of `[plane]` that it
+    /// lacks, and the tables of a law or a safety layer if it has the same one.
+    pub struct BodyTable {
         /// Radius of each body, metres.
-        pub radius_m: f64;
+        pub radius_m: f64, 0.001..=65.0, "metres";
         /// Highest speed on easy land, m/s.
-        pub max_speed_mps: f64;
+        pub max_speed_mps: f64, 0.001..=32.0, "m/s";
         /// Highest acceleration, m/s^2. Default: no limit.
         pub max_acceleration_mps2: f64 = f64::INFINITY;
         /// Time constant with which the velocity follows a command, seconds. Default: 0, at once.
-        pub lag_s: f64 = 0.0;
+        pub lag_s: f64 = 0.0, 0.0..=10.0, "seconds";
         /// Preferred speed, m/s. Default: the highest.
         pub cruise_mps: Option<f64>;
         /// Distance at which a goal counts as reached, metres. Default: a tenth of the radius.
         pub tolerance_m: Option<f64>;
         /// Range of obstacle detection, metres. Default: 10.
-        pub sight_m: f64 = 10.0;
-        /// Side lengths of a torus with periodic borders, metres. Default: the open plane.
-        pub torus_m: Option<[f64; 2]>;
-        /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs `robots.formation` too.
-        pub guidance: GuidanceKind = Default::default();
+        pub sight_m: f64 = 10.0, 0.0..=FAR_M, "metres";
+        /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs a formation too.
+        pub guidance: GuidanceKind = GuidanceKind::Waypoint;
         /// Safety layer.
-        pub safety: SafetyKind = Default::default();
+        pub safety: SafetyKind = SafetyKind::Orca;
+        /// Parameters of ORCA.
+        pub orca: Option<OrcaTable>;
+        /// Parameters of push-out; required for it.
+        pub push_out: Option<PushOutTable>;
+        /// Parameters of the alpha flock; required for it.
+        pub lattice: Option<LatticeTable>;
+        /// Parameters of the goal flock; required for it.
+        pub goal_flock: Option<GoalFlockTable>;
+        /// Parameters of boids; required for them.
+        pub boids: Option<BoidsTable>;
+    }
+}
+
+table! {
+    /// `[plane]`.
+    pub struct PlaneTable {
+        part body: BodyTable;
+        /// Side lengths of a torus with periodic borders, metres. Default: the open plane.
+        pub torus_m: Option<[f64; 2]>, 0.01..=LARGEST_M, "metres";
         /// The robots, unless the top-level `robots` gives them in cells.
         pub robots: Option<PlaneRobots>;
         /// Further robots with other properties.
@@ -42,16 +68,6 @@ table! {
         pub balls: Vec<BallsEntry> = Vec::new();
         /// Half-spaces.
         pub half_space: Vec<HalfSpaceEntry> = Vec::new();
-        /// Parameters of ORCA.
-        pub orca: OrcaTable = Default::default();
-        /// Parameters of push-out; required for it.
-        pub push_out: Option<PushOutTable>;
-        /// Parameters of the alpha flock; required for it.
-        pub lattice: Option<LatticeTable>;
-        /// Parameters of the goal flock; required for it.
-        pub goal_flock: Option<GoalFlockTable>;
-        /// Parameters of boids; required for them.
-        pub boids: Option<BoidsTable>;
         /// Detection of other robots by sensors.
         pub sensing: Option<SensingTable>;
         /// Goals that an operator sends during the run.
@@ -64,28 +80,28 @@ table! {
     #[derive(Copy)]
     pub struct SensingTable {
         /// Range from centre to centre, metres.
-        pub range_m: f64;
+        pub range_m: f64, 0.01..=1e6, "metres";
         /// Standard deviation of measured positions along each axis, metres. Default: 0.
-        pub noise_m: f64 = 0.0;
+        pub noise_m: f64 = 0.0, 0.0..=10.0, "metres";
         /// Whether bodies, obstacles and closed cells occlude robots behind them. Default: true.
         pub occlusion: bool = true;
         /// Whether a detection contains the robot's id. Default: false.
         pub names: bool = false;
         /// Ticks between two detections of a robot. Default: 1.
-        pub every_ticks: u32 = 1;
+        pub every_ticks: u32 = 1, 1.0..=1000.0, "ticks";
         /// Delay of a detection, ticks. Default: 0.
-        pub delay_ticks: u32 = 0;
+        pub delay_ticks: u32 = 0, 0.0..=1000.0, "ticks";
         /// Whether robots send beacons; an operator's orders reach them in either case. Default:
         /// true.
         pub beacons: bool = true;
         /// Standard deviation of the other robots' accelerations in the tracking filter, m/s^2.
         /// Default: their limit, at most four times the highest speed per second.
-        pub acceleration_mps2: Option<f64>;
+        pub acceleration_mps2: Option<f64>, 0.001..=1000.0, "m/s^2";
         /// Gate of the assignment to a track, standard deviations. Default: 4.
-        pub gate: f64 = 4.0;
+        pub gate: f64 = 4.0, 0.1..=100.0, "standard deviations";
         /// Standard deviations of the position that are added to a detected robot's radius.
         /// Default: 2.
-        pub margin: f64 = 2.0;
+        pub margin: f64 = 2.0, 0.0..=100.0, "standard deviations";
         /// Time after which a robot without beacons and detections is dropped, seconds. Default:
         /// three detection intervals plus the delay, at least four ticks.
         pub forget_s: Option<f64>;
@@ -98,7 +114,7 @@ table! {
         /// Individual robots.
         pub list: Option<Vec<PlaneRobotEntry>>;
         /// Largest random offset of a listed start along each axis, metres. Default: 0.
-        pub noise_m: f64 = 0.0;
+        pub noise_m: f64 = 0.0, 0.0..=1e6, "metres";
         /// Robots evenly spaced on a circle, with goals on the opposite side.
         pub circle: Option<CircleEntry>;
         /// Robots at random places with the same goals.
@@ -122,49 +138,21 @@ table! {
         /// Initial velocity, m/s. Default: at rest.
         pub velocity_mps: Place = Default::default();
         /// Radius of the body, metres. Default: that of its group.
-        pub radius_m: Option<f64>;
+        pub radius_m: Option<f64>, 0.001..=65.0, "metres";
         /// Highest speed on easy land, m/s. Default: that of its group.
-        pub max_speed_mps: Option<f64>;
+        pub max_speed_mps: Option<f64>, 0.001..=32.0, "m/s";
     }
 }
 
 table! {
-    /// `[[plane.group]]`: robots that differ from `[plane]`, which gives the defaults. A group with
-    /// another law or safety layer has its own tables for them.
+    /// `[[plane.group]]`: robots that differ from those of `[plane]`.
     pub struct GroupTable {
+        part body: BodyTable;
         /// The robots of the group.
         pub robots: PlaneRobots;
-        /// Radius of each body, metres.
-        pub radius_m: Option<f64>;
-        /// Highest speed on easy land, m/s.
-        pub max_speed_mps: Option<f64>;
-        /// Highest acceleration, m/s^2.
-        pub max_acceleration_mps2: Option<f64>;
-        /// Time constant with which the velocity follows a command, seconds.
-        pub lag_s: Option<f64>;
-        /// Preferred speed, m/s.
-        pub cruise_mps: Option<f64>;
-        /// Distance at which a goal counts as reached, metres.
-        pub tolerance_m: Option<f64>;
-        /// Range of obstacle detection, metres.
-        pub sight_m: Option<f64>;
-        /// Guidance law; laws that move from cell to cell or in formation need terrain.
-        pub guidance: Option<GuidanceKind>;
         /// Flock number; 0 is the flock of the robots of `[plane]`. If there are formations, at
         /// least the number of places of the largest. Default: a flock of its own.
         pub flock: Option<u8>;
-        /// Safety layer.
-        pub safety: Option<SafetyKind>;
-        /// Parameters of ORCA.
-        pub orca: Option<OrcaTable>;
-        /// Parameters of push-out.
-        pub push_out: Option<PushOutTable>;
-        /// Parameters of the alpha flock.
-        pub lattice: Option<LatticeTable>;
-        /// Parameters of the goal flock.
-        pub goal_flock: Option<GoalFlockTable>;
-        /// Parameters of boids.
-        pub boids: Option<BoidsTable>;
     }
 }
 
@@ -177,7 +165,7 @@ table! {
         /// Constant velocity, m/s.
         pub velocity_mps: Place;
         /// Radius of the body, metres.
-        pub radius_m: f64;
+        pub radius_m: f64, 0.001..=65.0, "metres";
         /// Whether it sends beacons; if not, robots detect its place but not its speed. Default:
         /// true.
         pub heard: bool = true;
@@ -193,11 +181,11 @@ table! {
     #[derive(Copy)]
     pub struct CircleEntry {
         /// Number of robots.
-        pub count: u32;
+        pub count: u32, 1.0..=MAX_ROBOTS, "robots";
         /// Radius of the circle around the origin, metres.
-        pub radius_m: f64;
+        pub radius_m: f64, 0.001..=1e6, "metres";
         /// Largest random offset of a start along each axis, metres. Default: 0, the exact circle.
-        pub noise_m: f64 = 0.0;
+        pub noise_m: f64 = 0.0, 0.0..=1e6, "metres";
     }
 }
 
@@ -205,7 +193,7 @@ table! {
     /// `plane.robots.cloud`.
     pub struct CloudEntry {
         /// Number of robots.
-        pub count: u32;
+        pub count: u32, 1.0..=MAX_ROBOTS, "robots";
         /// Corner of the box of uniform random starts, metres; overlapping starts are redrawn.
         pub from_m: Place;
         /// Opposite corner.
@@ -226,14 +214,14 @@ table! {
     #[derive(Copy)]
     pub struct ScatteredDiscs {
         /// Number of robots.
-        pub count: u32;
+        pub count: u32, 1.0..=MAX_ROBOTS, "robots";
         /// Corner of the box of uniform starts and goals, metres; those too close are redrawn.
         pub from_m: Place;
         /// Opposite corner.
         pub to_m: Place;
         /// Farthest distance of a goal from its start along each axis, metres. Default: the whole
         /// box.
-        pub travel_m: f64 = f64::INFINITY;
+        pub travel_m: f64 = f64::INFINITY, 0.001..=f64::INFINITY, "metres";
         /// Smallest distance of starts and of goals, metres, two radii or more. Default: three.
         pub spacing_m: Option<f64>;
     }
@@ -258,7 +246,7 @@ table! {
         /// Centre, metres.
         pub center_m: Place;
         /// Radius, metres.
-        pub radius_m: f64;
+        pub radius_m: f64, 0.001..=1e6, "metres";
     }
 }
 
@@ -267,15 +255,15 @@ table! {
     #[derive(Copy)]
     pub struct BallsEntry {
         /// Number of balls.
-        pub count: u32;
+        pub count: u32, 1.0..=1e6, "balls";
         /// Radius of each, metres.
-        pub radius_m: f64;
+        pub radius_m: f64, 0.001..=1e6, "metres";
         /// Corner of the box of uniform random centres, metres.
         pub from_m: Place;
         /// Opposite corner.
         pub to_m: Place;
         /// Smallest distance between two surfaces, metres. Default: 0.
-        pub gap_m: f64 = 0.0;
+        pub gap_m: f64 = 0.0, 0.0..=1e6, "metres";
     }
 }
 
@@ -295,7 +283,7 @@ table! {
     #[derive(Copy)]
     pub struct OrderEntry {
         /// Time, seconds after the start.
-        pub at_s: f64;
+        pub at_s: f64, 0.0..=1e9, "seconds";
         /// Index of the goal, from 0. Default: 0.
         pub goal: u8 = 0;
         /// Position of the goal, metres.
@@ -319,32 +307,20 @@ table! {
         /// Distance kept in addition to the radii, metres.
         pub margin_m: Option<f64>;
         /// Growth rate of the ball around a silent robot, m/s. Default: the highest speed.
-        pub inflation_mps: Option<f64>;
+        pub inflation_mps: Option<f64>, 0.0..=1000.0, "m/s";
         /// Largest growth of the ball around a lost robot, metres. Default: the radius.
-        pub inflation_m: Option<f64>;
+        pub inflation_m: Option<f64>, 0.0..=1000.0, "metres";
         /// In space: ratio of the vertical to the horizontal separation. Default: 1.
-        pub downwash: Option<f64>;
+        pub downwash: Option<f64>, 1.0..=10.0, "";
         /// Silence after which a lost robot counts as standing even if most are lost, seconds.
-        pub stands_after_s: Option<f64>;
+        pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
         /// How long a robot stands and listens after its start, seconds. Default: two beacon
         /// periods and the delay of the radio.
-        pub listen_s: Option<f64>;
+        pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
         /// Whether a robot that has not heard another one stands. Default: false.
         pub expects_others: Option<bool>;
         /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
-        pub alone_mps: Option<f64>;
-    }
-}
-
-impl OrcaTable {
-    /// Whether no field is set.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, .. } = self;
-        let Self { downwash, stands_after_s, listen_s, expects_others, alone_mps, .. } = self;
-        let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m];
-        let fields = fields.into_iter().chain([downwash, stands_after_s, listen_s, alone_mps]);
-        expects_others.is_none() && fields.into_iter().all(Option::is_none)
+        pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
     }
 }
 

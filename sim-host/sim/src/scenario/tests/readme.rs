@@ -10,11 +10,11 @@ use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
 
 /// The paths of all fields.
-fn paths(lines: &'static [Line], table: &str, all: &mut Vec<(String, &'static Line)>) {
-    for line in lines {
+fn paths(lines: Vec<Line>, table: &str, all: &mut Vec<(String, Line)>) {
+    for mut line in lines {
         let path = format!("{table}{}", line.name);
-        all.push((path.clone(), line));
-        paths(line.inner, &format!("{path}."), all);
+        paths(std::mem::take(&mut line.inner), &format!("{path}."), all);
+        all.push((path, line));
     }
 }
 
@@ -23,7 +23,7 @@ fn every_field_is_in_the_table_of_the_readme() {
     // The page of maps lists the fields of `terrain.load`.
     let pages = [include_str!("../../../../../scenarios/README.md"), include_str!("../../../../../maps/README.md")];
     let mut fields = Vec::new();
-    paths(ScenarioFile::LINES, "", &mut fields);
+    paths(ScenarioFile::lines(), "", &mut fields);
     for (path, line) in &fields {
         let name = line.name;
         let words = [format!("`{name}`"), format!("`[{path}]`"), format!("`[[{path}]]`")];
@@ -66,6 +66,19 @@ fn the_ranges_in_the_readme_are_those_of_the_parameters() {
         let parameter = parameters().find(|row| row.name == name).expect("a parameter");
         let [least, greatest] = parameter.range;
         assert!(row_of(field).contains(&format!("{least} to {greatest}")), "{field}");
+    }
+}
+
+#[test]
+fn the_range_of_bodies_is_that_of_the_parameter() {
+    let mut fields = Vec::new();
+    paths(ScenarioFile::lines(), "", &mut fields);
+    let parameter = parameters().find(|row| row.name == "radius_m").expect("a parameter");
+    for field in ["plane.radius_m", "plane.group.radius_m", "plane.intruder.radius_m"] {
+        let (_, line) = fields.iter().find(|(path, _)| path == field).unwrap_or_else(|| panic!("no {field}"));
+        let (range, unit) = line.range.as_ref().expect("a range");
+        assert_eq!([range.start(), range.end()].map(f64::to_string), parameter.range.map(|end| end.to_string()));
+        assert_eq!(*unit, "metres");
     }
 }
 
