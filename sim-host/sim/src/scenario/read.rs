@@ -511,17 +511,17 @@ macro_rules! table {
             }
 
             fn lines() -> Vec<$crate::scenario::Line> {
-                let mut lines = Vec::new();
-                $(lines.extend(<$part_type as $crate::scenario::Read>::lines());)*
-                $(lines.push($crate::scenario::Line {
+                let parts: Vec<Vec<$crate::scenario::Line>> =
+                    vec![$(<$part_type as $crate::scenario::Read>::lines()),*];
+                let own = [$($crate::scenario::Line {
                     name: stringify!($field),
                     doc: concat!($($doc),*),
                     kind: <$type as $crate::scenario::Read>::KIND,
                     range: $crate::table!(@range $($range, $unit)?),
                     default: concat!($(stringify!($default))?),
                     inner: <$type as $crate::scenario::Read>::lines(),
-                });)*
-                lines
+                }),*];
+                parts.into_iter().flatten().chain(own).collect()
             }
         }
     };
