@@ -1,8 +1,9 @@
 """Discs that negotiate in the mazes and forests of DLSC-GC, read from a clone of github.com/qwerty35/dlsc_gc_planner.
 
-    STAYA=target/release/staya python tests/python/dlsc.py CLONE dense|sparse|forest [--loss 0.3] [--seeds 11,12,13]
+    STAYA=target/release/staya python tests/python/dlsc.py CLONE dense|sparse|forest [--loss 0.3] [--seeds 11,12] [--restarts 3]
 
-Ten discs of 0.15 m at 1 m/s and 2 m/s^2 in cells of 0.5 m, radio range 3 m, at most 120 s. Prints each run that is not complete,
+Ten discs of 0.15 m at 1 m/s and 2 m/s^2 in cells of 0.5 m, radio range 3 m, at most 120 s. With --restarts, three of them at
+random are down for that many seconds, from a second between the second and the twelfth. Prints each run that is not complete,
 and for all of them how many are complete, the mean and greatest time of the last arrival, and the least gap of two discs.
 """
 
@@ -11,6 +12,7 @@ import csv
 import json
 import math
 import os
+import random
 import subprocess
 import tempfile
 from pathlib import Path
@@ -89,6 +91,7 @@ def main() -> None:
     parser.add_argument("clone", type=Path)
     parser.add_argument("kind", choices=MISSIONS)
     parser.add_argument("--loss", type=float, default=0)
+    parser.add_argument("--restarts", type=float, help="seconds")
     parser.add_argument("--seeds", default="11,12,13")
     given = parser.parse_args()
     staya = os.environ.get("STAYA", "target/release/staya")
@@ -100,7 +103,13 @@ def main() -> None:
             mission = given.clone / f"missions/{mission}_{number}.json"
             world = given.clone / f"world/{world}{number}.csv"
             scenario = write(folder, mission, world, given.loss, given.kind == "forest")
+            text = scenario.read_text()
             for seed in given.seeds.split(","):
+                if given.restarts is not None:
+                    chance = random.Random(f"{number} {seed}")
+                    faults = [(chance.randint(1, 10), chance.randint(2, 12)) for _ in range(3)]
+                    table = "[[fault]]\nrobot = {}\nat_s = {}\ndown_s = {}\n"
+                    scenario.write_text(text + "\n" + "".join(table.format(*fault, given.restarts) for fault in faults))
                 command = [staya, "run", scenario, "--seed", seed, "--json", "-q", "--out", folder / "out"]
                 said = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
                 runs += 1

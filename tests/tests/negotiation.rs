@@ -83,13 +83,16 @@ fn four_discs_cross_a_maze_at_any_loss() {
     }
 }
 
-/// A robot that restarts has another clock, and no memory. After a restart at 1 s two robots block
-/// each other for ever.
+/// A robot that restarts has another clock, and no memory; it stands between cells.
 #[test]
 fn a_robot_that_restarts_in_the_maze_joins_the_steps_of_the_others() {
-    for at_s in [2.3, 3.6] {
-        let fault = format!("[[fault]]\nrobot = 2\nat_s = {at_s}\ndown_s = 1.33\n");
-        all_arrive(&in_plane(MAZE, &CROSSING, 0.0, &fault), &format!("restarts after {at_s} s"));
+    for tenths in (5..65).step_by(5) {
+        for down_s in [0.0, 1.33] {
+            let (robot, at_s) = (tenths / 5 % 4 + 1, f64::from(tenths) / 10.0);
+            let fault = format!("[[fault]]\nrobot = {robot}\nat_s = {at_s}\ndown_s = {down_s}\n");
+            let what = format!("robot {robot} restarts after {at_s} s, down for {down_s} s");
+            all_arrive(&in_plane(MAZE, &CROSSING, 0.0, &fault), &what);
+        }
     }
 }
 

@@ -64,7 +64,9 @@ fn make_is_there(repo: &Repo) -> Result<(), String> {
 
 /// The folder of a project that was just made.
 fn make(repo: &Repo, kind: &str, options: &[&str]) -> Result<PathBuf, String> {
-    let folder = repo.target.join("new").join(format!("pack-{kind}"));
+    let parent = repo.target.join("new");
+    let folder = parent.join(format!("pack-{kind}"));
+    files::make(&parent)?;
     // `staya new` makes the folder itself.
     files::remove(&folder)?;
     let mut new = repo.command(repo.program("debug", MAIN));

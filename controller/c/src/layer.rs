@@ -71,6 +71,10 @@ impl Safety<Number> for Layer {
         each!(self, layer => Safety::<Number>::inflation(layer))
     }
 
+    fn downwash(&self) -> Number {
+        each!(self, layer => Safety::<Number>::downwash(layer))
+    }
+
     fn waits_for_turn(&self) -> bool {
         each!(self, layer => Safety::<Number>::waits_for_turn(layer))
     }

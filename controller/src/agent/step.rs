@@ -347,6 +347,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 may_be_alone,
                 stands_after,
                 is_agreed,
+                downwash: safety.downwash(),
             };
             let within = room.limit(table, plane.obstacles, safe);
             is_hidden = within.is_none();

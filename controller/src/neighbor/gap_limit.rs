@@ -49,6 +49,9 @@ const TOLERANCE_UM: i32 = 200;
 /// line. That much of a gap is taken already, by the own body and by a neighbour that comes nearer.
 /// So it is of the distance to an obstacle, before which the body has to stop.
 ///
+/// *Downwash:* all distances and closing speeds between robots are those of a space with heights
+/// divided by [`downwash`](Self::downwash). Ellipsoids are balls there, and braking stays straight.
+///
 /// *Lost robots:* their balls stop growing at `max_m` only while at least half of all robots are
 /// fresh (of the lost ones, those count that have not [stood](Self::stands_after) for
 /// long), or if the robot [may be alone](Self::may_be_alone).
@@ -76,10 +79,13 @@ pub struct GapLimit<'a, S> {
     /// Whether the robot may follow a robot that recedes: the way on which that one can brake at
     /// most adds to the gap.
     pub is_agreed: bool,
+    /// Ratio of vertical to horizontal distance between robots, the same for all; at least 1.
+    pub downwash: S,
 }
 
 #[derive(Clone, Copy)]
 struct Limit<S> {
+    /// Direction of the neighbour, in the space with lowered heights, as all that follows.
     ahead: Vec3<S>,
     /// Sine of the angle by which `ahead` may be wrong.
     slant: S,
@@ -154,11 +160,11 @@ impl<S: Scalar> GapLimit<'_, S> {
         for _ in 0..ROUNDS {
             let mut is_turned = false;
             for limit in &limits {
-                let (closing, side) = limit.closing(v);
+                let (closing, side) = limit.closing(self.lowered(v));
                 let left_m = limit.left_m - limit.growth_mps * brake_s;
                 let most = left_m.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO) - side;
                 if closing > most && closing > S::ZERO {
-                    v -= limit.ahead * (closing - most.max(S::ZERO));
+                    v -= self.along(limit.ahead) * (closing - most.max(S::ZERO));
                     brake_s = self.brake_s(v);
                     is_turned = true;
                 }
@@ -172,7 +178,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             v = self.before(obstacles, v);
         }
         let allowed = |v: Vec3<S>| {
-            let brake_s = self.brake_s(v);
+            let (brake_s, v) = (self.brake_s(v), self.lowered(v));
             let shares = limits.iter().map(|limit| limit.share(v, step_s, brake_s));
             shares.fold(S::ONE, Scalar::min)
         };
@@ -188,10 +194,10 @@ impl<S: Scalar> GapLimit<'_, S> {
             }
         }
         for (other, limit) in table.entries.iter_mut().zip(&limits) {
-            let mut taken_m = limit.taken(reached, step_s);
+            let mut taken_m = limit.taken(self.lowered(reached), step_s);
             if self.lag_s > S::ZERO {
                 // The body moves at a velocity between the present one and the commanded one.
-                taken_m = taken_m.max(limit.taken(self.own_mps, step_s));
+                taken_m = taken_m.max(limit.taken(self.lowered(self.own_mps), step_s));
             }
             other.gap_m = other.gap_m * S::HALF - taken_m;
         }
@@ -213,10 +219,10 @@ impl<S: Scalar> GapLimit<'_, S> {
         let most = body.max_acceleration_mps2;
         let swerve_mps = most * (silent_s + body.step_s);
         let swerves = !is_parked && swerve_mps * S::HALF < inflation.growth_mps;
-        let offset_m = other.offset_at(self.own, self.now, if swerves { age } else { self.news });
+        let offset_m = self.lowered(other.offset_at(self.own, self.now, if swerves { age } else { self.news }));
         let distance = offset_m.norm();
         let ahead = offset_m.normalized().unwrap_or(Vec3::ZERO);
-        let told_mps = -other.velocity_mps.dot(ahead);
+        let told_mps = -self.lowered(other.velocity_mps).dot(ahead);
         if swerves {
             grown = swerve_mps * S::HALF * silent_s;
         }
@@ -237,7 +243,8 @@ impl<S: Scalar> GapLimit<'_, S> {
         } else if silent > 0 {
             (gap * S::HALF, comes_mps.max(S::ZERO) * S::HALF)
         } else {
-            let other_m = body.braking_m(comes_mps) + comes_mps.max(S::ZERO) * self.lag_s;
+            let other_s = self.brake_s(other.velocity_mps) * S::HALF + self.lag_s;
+            let other_m = comes_mps.max(S::ZERO) * other_s;
             ((gap * S::HALF).min(gap - other_m), S::ZERO)
         };
         let left_m = if self.is_agreed { left_m + body.braking_m(-comes_mps) } else { left_m };
@@ -245,7 +252,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         let mut limit = Limit { ahead, slant, left_m, growth_mps };
         if self.lag_s > S::ZERO {
             // Distance that the body still covers, if it is commanded to stand.
-            limit.left_m -= limit.taken(self.own_mps, self.lag_s);
+            limit.left_m -= limit.taken(self.lowered(self.own_mps), self.lag_s);
         }
         limit.left_m = limit.left_m.max(-S::from_micro(TOLERANCE_UM));
         (limit, silent > 0 && grown >= distance)
@@ -272,6 +279,17 @@ impl<S: Scalar> GapLimit<'_, S> {
     /// Whether the body must be able to brake before obstacles after this step.
     fn brakes_for_walls(&self) -> bool {
         self.lag_s > S::ZERO || self.is_agreed || self.body.has_inertia()
+    }
+
+    /// The vector with its height divided by the downwash.
+    fn lowered(&self, v: Vec3<S>) -> Vec3<S> {
+        if self.downwash <= S::ONE { v } else { Vec3::new(v.x, v.y, v.z.checked_div(self.downwash).unwrap_or(v.z)) }
+    }
+
+    /// The shortest change of velocity by which the closing speed along `ahead` changes by 1 m/s.
+    fn along(&self, ahead: Vec3<S>) -> Vec3<S> {
+        let along = self.lowered(ahead);
+        if self.downwash <= S::ONE { ahead } else { along * S::ONE.checked_div(along.dot(along)).unwrap_or(S::ZERO) }
     }
 
     /// Time to brake to rest, seconds; 0 without inertia.

@@ -38,6 +38,11 @@ pub trait HalfSpaces<S: Scalar> {
         ball: &MovingBall<Self::Velocity>,
         params: &Params<S>,
     ) -> Option<HalfSpace<Self::Velocity>>;
+
+    /// Returns the ratio of vertical to horizontal distance between robots, at least 1.
+    fn downwash(&self) -> S {
+        S::ONE
+    }
 }
 
 /// The plane, with exact half-planes ([`half_plane`]).
@@ -101,6 +106,10 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
         let normal = lowered(normal)?.normalized()?;
         point.is_finite().then_some(HalfSpace { point, normal })
     }
+
+    fn downwash(&self) -> S {
+        self.downwash
+    }
 }
 
 /// Collision avoidance of one robot, with at most `K` constraints.
@@ -150,6 +159,12 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
     /// Mutable access to the parameters, which may change between two steps.
     pub const fn params_mut(&mut self) -> &mut AvoidParams<S> {
         &mut self.params
+    }
+
+    /// The source of the constraints of moving neighbours.
+    #[must_use]
+    pub const fn source(&self) -> &P {
+        &self.source
     }
 
     /// Whether the robot had to wait in the last step for robots that go first through a gap.

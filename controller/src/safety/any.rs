@@ -67,6 +67,13 @@ impl<S: Scalar, const K: usize> Safety<S> for AnySafety<S, K> {
         }
     }
 
+    fn downwash(&self) -> S {
+        match self {
+            Self::Fly(safety) => safety.downwash(),
+            Self::Unguarded(_) | Self::Orca(_) | Self::PushOut(_) => S::ONE,
+        }
+    }
+
     fn waits_for_turn(&self) -> bool {
         match self {
             Self::Orca(safety) => safety.waits_for_turn(),

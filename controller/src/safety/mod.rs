@@ -43,6 +43,11 @@ pub trait Safety<S: Scalar> {
         None
     }
 
+    /// Returns the ratio of vertical to horizontal distance between robots, at least 1.
+    fn downwash(&self) -> S {
+        S::ONE
+    }
+
     /// Returns whether the robot waits for other robots to pass a door first.
     fn waits_for_turn(&self) -> bool {
         false

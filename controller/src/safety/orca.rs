@@ -70,6 +70,10 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Safety<S> for OrcaSafety<S, K,
         Some(self.inflation)
     }
 
+    fn downwash(&self) -> S {
+        self.avoider.source().downwash()
+    }
+
     fn waits_for_turn(&self) -> bool {
         self.avoider.waits_for_turn()
     }

@@ -8,7 +8,7 @@ use staya_controller::scalar::Q16;
 use staya_link::own::{LinkedLaw, OwnLarge, OwnSmall};
 use staya_link::robot::Controller;
 use staya_runner::Shadows;
-use staya_sim::engine::{ExternalController, Outcome, OwnLaw, Watch, simulate_own_with};
+use staya_sim::engine::{Engine, ExternalController, Outcome, OwnLaw, StartError, Watch, own_agents};
 use staya_sim::scenario::Scenario;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -125,7 +125,13 @@ impl<G: OwnLaw + LinkedLaw<f32>> Swarm for Own<G> {
         watch: &mut Watch<'_>,
     ) -> Result<Outcome> {
         let law = Arc::clone(&self.law);
-        simulate_own_with(scenario, move |index| law(index), external, watch)
-            .context("this law cannot run the scenario")
+        let agents = own_agents(scenario, move |index| law(index)).map_err(StartError::from);
+        let engine = agents.and_then(|agents| Ok(Engine::new(scenario, agents)?));
+        let engine = engine.context("this law cannot run the scenario")?;
+        let engine = match external {
+            Some(controllers) => engine.with_external(scenario, controllers),
+            None => engine,
+        };
+        Ok(engine.run(scenario.ticks, watch))
     }
 }

@@ -5,12 +5,10 @@ use anyhow::{Result, anyhow};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
-use staya_mpi::ranks::{
-    Ended as RunEnded, Exchange as _, RankError, Sharing, Traffic, check, remark, simulate_on, simulate_on_from,
-};
+use staya_mpi::ranks::{Ended as RunEnded, Exchange as _, RankError, Sharing, Traffic, check, remark, simulate_on};
 use staya_plot::{motion_pictures, run_pictures};
 use staya_sim::checkpoint::{Checkpoint, CheckpointInterval, Place};
-use staya_sim::engine::{Moment, Watch};
+use staya_sim::engine::{Moment, Watch, agents};
 use staya_sim::record::{History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario, Setting};
 use staya_sim::summary::Summary;
@@ -142,12 +140,10 @@ impl RunArgs {
         watch: &mut Watch<'_>,
     ) -> Result<RunEnded> {
         let sharing = Sharing { records: !self.no_trace, checkpoints: self.checkpoint, ..Sharing::default() };
-        let Some(from) = from else {
-            return Ok(simulate_on(scenario, link, &sharing, watch)?);
-        };
-        simulate_on_from(scenario, from.state(), link, &sharing, watch).map_err(|error| match error {
-            RankError::Restore(error) => from.refused(error).into(),
-            error => error.into(),
+        let state = from.map(Checkpoint::state);
+        simulate_on(scenario, agents(scenario), state, link, &sharing, watch).map_err(|error| match (error, from) {
+            (RankError::Restore(error), Some(from)) => from.refused(error).into(),
+            (error, _) => error.into(),
         })
     }
 

@@ -13,7 +13,7 @@ use staya_controller::geom::Vec3;
 use staya_controller::time::Duration as Valid;
 use staya_record::page;
 use staya_record::recording::RunRecorder;
-use staya_sim::engine::{Moment, Operated, operated};
+use staya_sim::engine::{Engine, Moment, operated};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Intervention, Overrides, Scenario, Setting, with_interventions, with_settings};
 use staya_sim::summary::Summary;
@@ -44,7 +44,7 @@ pub struct Run {
 struct Inner {
     scenario: Scenario,
     text: String,
-    engine: Box<dyn Operated>,
+    engine: Engine,
     tick: u32,
     done: Vec<(u32, Intervention)>,
     /// Commanded velocities, m/s; `None` for robots with their own law, empty before a command.
@@ -73,11 +73,11 @@ impl Inner {
     fn advance(&mut self) -> PyResult<()> {
         let began = Instant::now();
         self.command()?;
-        self.engine.advance();
+        self.engine.step();
         self.tick += 1;
         self.wall_seconds += began.elapsed().as_secs_f64();
         if let Some(trace) = &mut self.trace {
-            trace.take(&*self.engine);
+            trace.take(&self.engine);
         }
         self.record()
     }
@@ -183,7 +183,7 @@ impl Run {
     fn begin_trace(&self, py: Python<'_>, every: u32) {
         let mut inner = self.lock(py);
         let mut trace = Trace::new(every, inner.scenario.robots.len());
-        trace.take(&*inner.engine);
+        trace.take(&inner.engine);
         inner.trace = Some(trace);
     }
 
@@ -191,7 +191,7 @@ impl Run {
     fn end_trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut inner = self.lock(py);
         let mut trace = inner.trace.take().ok_or_else(|| PyRuntimeError::new_err("no trace was started"))?;
-        trace.finish(&*inner.engine);
+        trace.finish(&inner.engine);
         drop(inner);
         trace.columns(py)
     }

@@ -1,7 +1,7 @@
 use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use staya_sim::engine::{Moment, Operated};
+use staya_sim::engine::{Engine, Moment};
 use staya_sim::record::RobotRow;
 
 const NO_WAIT: u8 = u8::MAX;
@@ -52,7 +52,7 @@ impl Trace {
         Self { every: if every == 0 { usual } else { every }, ..Self::default() }
     }
 
-    pub fn take(&mut self, engine: &dyn Operated) {
+    pub fn take(&mut self, engine: &Engine) {
         engine.show(&mut |moment, rows| {
             self.swarm.take(moment);
             if moment.row.tick.is_multiple_of(self.every) {
@@ -61,7 +61,7 @@ impl Trace {
         });
     }
 
-    pub fn finish(&mut self, engine: &dyn Operated) {
+    pub fn finish(&mut self, engine: &Engine) {
         engine.show(&mut |moment, rows| {
             if self.last != Some(moment.row.tick) {
                 self.take_robots(moment, rows);

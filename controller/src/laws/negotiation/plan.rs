@@ -111,6 +111,9 @@ pub struct Member {
     pub wish: Option<Wish>,
     /// It does not move in this step.
     pub holds: bool,
+    /// If another robot is in its cell too, nearer to the centre: the moves that it can make, as
+    /// bits of [`Dir::index`]; otherwise 0.
+    pub ways: u8,
 }
 
 /// A robot's place in the chain of those that ask each other to move.
@@ -196,7 +199,12 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     pub fn new(members: &'a [Member], area: &'a Area, fields: &'a mut Fields<F>, moves: Moves) -> Self {
         let members = members.get(..N).unwrap_or(members);
         let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves };
-        let mut order: Vec<(u16, u32, u8), N> = Vec::new();
+        // Where two robots share a cell, one has to leave it, whoever else has to make way.
+        let shares = |member: &Member| {
+            let is_guest_here = |other: &Member| other.ways != 0 && other.cell == member.cell;
+            (member.ways != 0, members.iter().any(is_guest_here))
+        };
+        let mut order: Vec<((bool, bool), u16, u32, u8), N> = Vec::new();
         for (index, member) in members.iter().enumerate() {
             if member.holds {
                 plan.go(index as u8, member.cell);
@@ -204,7 +212,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             }
             let tie = Rng::keyed(0, PURPOSE, member.id.0, 0).next_u32();
             let rank = if member.manners.is_last { 0 } else { member.waiting };
-            let _ = order.push((rank, tie, index as u8));
+            let _ = order.push((shares(member), rank, tie, index as u8));
         }
         list::sort_by_key(&mut order, |&key| Reverse(key));
         for &(.., index) in &order {
@@ -231,6 +239,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             manners: Manners::default(),
             wish: None,
             holds: false,
+            ways: 0,
         };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
     }
@@ -245,8 +254,16 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
     }
 
+    /// The robot in a cell; of two, the one nearer to the centre.
     fn occupant(&self, cell: Cell) -> Option<u8> {
-        self.members.iter().position(|member| member.cell == cell).map(|index| index as u8)
+        let mut there = None;
+        for (member, index) in self.members.iter().zip(0_u8..).filter(|(member, _)| member.cell == cell) {
+            there = Some(index);
+            if member.ways == 0 {
+                break;
+            }
+        }
+        there
     }
 
     /// Whether another member goes to this cell, or crosses the way of `member` to it.
@@ -331,7 +348,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let member = self.member(index);
         let Member { id, cell, .. } = member;
         let mut order: Vec<(u8, u32, Dir), 9> = Vec::new();
-        for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]) {
+        let can = |dir: &&Dir| member.ways == 0 || (**dir != Dir::Stay && member.ways >> dir.index() & 1 == 1);
+        for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]).filter(can) {
             if let Some(rank) = self.rank(&member, dir) {
                 let to = cell + dir.offset();
                 let place = u64::from(to.x as u16) << 16 | u64::from(to.y as u16);
@@ -341,8 +359,11 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
         list::sort_by_key(&mut order, |&(rank, tie, dir)| (rank, tie, dir.index()));
         let best = order.first().map_or(Dir::Stay, |&(_, _, dir)| dir);
-        let swaps =
-            if best == Dir::Stay || member.manners.keeps_on { None } else { self.swap(index, cell + best.offset()) };
+        let swaps = if best == Dir::Stay || member.manners.keeps_on || member.ways != 0 {
+            None
+        } else {
+            self.swap(index, cell + best.offset())
+        };
         if swaps.is_some() {
             order.reverse();
         }

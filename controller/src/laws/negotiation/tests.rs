@@ -170,6 +170,7 @@ fn plans_never_collide() {
                     manners,
                     wish: None,
                     holds: false,
+                    ways: 0,
                 });
             }
         }
@@ -193,6 +194,36 @@ fn plans_never_collide() {
         }
     }
     assert!(moved > 1000);
+}
+
+/// In a corridor, robot 2 is in the cell of robot 1, to the west of its centre, and robot 3 is west
+/// of both. Robot 3, who wants to go east, makes way.
+#[test]
+fn a_robot_in_the_cell_of_another_leaves_it_and_others_make_way() {
+    let mut area = Area::new(Cell::new(4, 1));
+    (0..9).flat_map(|x| [(x, 0), (x, 2)]).for_each(|(x, y)| area.close(Cell::new(x, y)));
+    let member = |id: u32, x: i16, ways: u8| Member {
+        id: RobotId(id),
+        cell: Cell::new(x, 1),
+        goal: Cell::new(8, 1),
+        waiting: id as u16,
+        step: 0,
+        manners: Manners::default(),
+        wish: None,
+        holds: false,
+        ways,
+    };
+    let west = 1 << Dir::West.index();
+    let next = |members: &[Member]| -> Vec<i16> {
+        let mut fields: Fields<4> = Fields::new();
+        let plan: Plan<'_, 8, 4> = Plan::new(members, &area, &mut fields, Moves::FOUR);
+        (0..members.len()).map(|index| plan.next(index as u8).unwrap().x).collect()
+    };
+    let moves = next(&[member(1, 4, 0), member(2, 4, west), member(3, 3, 0)]);
+    assert_eq!(moves[1..], [3, 2], "{moves:?}");
+    // Where it cannot leave, the other one does.
+    let blocked = Member { holds: true, ..member(3, 3, 0) };
+    assert_eq!(next(&[member(1, 4, 0), member(2, 4, west), blocked]), [5, 4, 3]);
 }
 
 const CORRIDOR: &str = "

@@ -30,6 +30,7 @@ fn still<S: Scalar>(body: &Body<S>, own: Position, now: Instant) -> GapLimit<'_,
         may_be_alone: false,
         stands_after: STANDS_AFTER,
         is_agreed: false,
+        downwash: S::ONE,
     }
 }
 
@@ -37,6 +38,7 @@ struct Mover<S> {
     table: NeighborTable<S, 4>,
     body: Body<S>,
     at_m: Vec3<f64>,
+    downwash: f64,
 }
 
 impl<S: Scalar> Mover<S> {
@@ -50,7 +52,7 @@ impl<S: Scalar> Mover<S> {
             max_acceleration_mps2: S::from_f64(max_acceleration_mps2).unwrap_or(S::MAX),
             step_s: S::from_micro(STEP.as_micros()),
         };
-        Self { table: NeighborTable::new(ages), body, at_m: Vec3::new(at_m[0], at_m[1], at_m[2]) }
+        Self { table: NeighborTable::new(ages), body, at_m: Vec3::new(at_m[0], at_m[1], at_m[2]), downwash: 1.0 }
     }
 
     fn position(&self) -> Position {
@@ -64,7 +66,7 @@ impl<S: Scalar> Mover<S> {
     }
 
     fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
-        let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
+        let Self { mut table, mut body, at_m, downwash } = Self { table: self.table.clone(), ..*self };
         let (own, now) = (self.position(), moment(step));
         table.expire((&self.body, self.body.step_s), now, (Duration::MAX, true), |_| {});
         for &neighbor in heard {
@@ -72,11 +74,12 @@ impl<S: Scalar> Mover<S> {
         }
         let inflation = StalenessInflation { growth_mps: S::ONE, max_m: body.radius_m };
         // With robots of both kinds.
-        let room = GapLimit { inflation, is_agreed: body.id.0 % 2 == 0, ..still(&body, own, now) };
+        let (is_agreed, high) = (body.id.0 % 2 == 0, S::from_f64(downwash).unwrap());
+        let room = GapLimit { inflation, is_agreed, downwash: high, ..still(&body, own, now) };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
         body.velocity_mps = velocity_mps;
-        Self { table, body, at_m }
+        Self { table, body, at_m, downwash }
     }
 }
 
@@ -102,7 +105,9 @@ fn least_gap<S: Scalar>(
         }
         for (i, one) in movers.iter().enumerate() {
             for other in &movers[..i] {
-                least = least.min((one.at_m - other.at_m).norm() - 2.0 * RADIUS_M);
+                let offset_m = one.at_m - other.at_m;
+                let lowered_m = Vec3::new(offset_m.x, offset_m.y, offset_m.z / one.downwash);
+                least = least.min(lowered_m.norm() - 2.0 * RADIUS_M);
             }
         }
     }
@@ -149,6 +154,22 @@ proptest! {
         seed in any::<u32>(), most in 0.3..4.0_f64, movers in 3..5_usize, radius_m in 0.6..4.0_f64,
     ) {
         let gap = least_gap(circle::<f64>(movers, radius_m, most), 150, wishes(seed, 0.0, movers), |_, _, _| false);
+        prop_assert!(gap > -5e-3, "{}", gap);
+    }
+
+    /// Bodies fly into the columns below and above others, not only towards the others.
+    #[test]
+    fn flyers_with_inertia_keep_out_of_ellipsoids(
+        seed in any::<u32>(), most in 0.3..6.0_f64, movers in 2..5_usize, radius_m in 0.4..3.0_f64, downwash in 1.0..6.0_f64,
+        percent in 0..61_u32, rises_m in 0.0..2.0_f64,
+    ) {
+        let mut flyers = circle::<f64>(movers, radius_m, most);
+        for (index, flyer) in flyers.iter_mut().enumerate() {
+            flyer.downwash = downwash;
+            flyer.at_m.z = rises_m * index as f64;
+        }
+        let loss = lossy(seed, if most < 1.0 { 0 } else { percent });
+        let gap = least_gap(flyers, 150, wishes(seed, 1.0, movers), loss);
         prop_assert!(gap > -5e-3, "{}", gap);
     }
 

@@ -17,7 +17,7 @@ use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::{Signing, Verdict};
-use staya_sim::engine::{Moment, Operated, operated};
+use staya_sim::engine::{Engine, Moment, operated};
 use staya_sim::key::timestamp;
 use staya_sim::record::{self, Files, RobotRow};
 use staya_sim::scenario::Scenario;
@@ -81,7 +81,7 @@ pub type Onlooker<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow
 
 /// A running bridge.
 pub struct Swarm {
-    engine: Box<dyn Operated>,
+    engine: Engine,
     vehicles: Vec<Vehicle>,
     boots: Vec<u8>,
     senders: Vec<Sender>,
@@ -322,7 +322,7 @@ impl Swarm {
     }
 
     fn tick(&mut self) -> Result<(), BridgeError> {
-        self.engine.advance();
+        self.engine.step();
         self.ticks += 1;
         let time_us = u64::from(self.ticks) * u64::from(self.tick_us);
         let now_us = self.now_us();

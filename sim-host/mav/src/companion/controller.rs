@@ -7,9 +7,9 @@ use staya_controller::agent::{
 use staya_controller::agent::{GuidanceKind, SafetyKind, SafetySetup};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::parameters::RADIUS;
-use staya_controller::time::{self, Instant};
+use staya_controller::time::Instant;
 use staya_controller::wire::Wire;
-use staya_sim::engine::{self, Ground, Known, PlaneGround, Sensor, WIDE};
+use staya_sim::engine::{self, Ground as _, Known, PlaneGround, Senses, WIDE};
 use staya_sim::scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
@@ -36,7 +36,7 @@ pub struct Controller<W> {
     ground: Arc<PlaneGround>,
     agent: Box<ControllerAgent<W>>,
     workspace: GridWorkspace<WIDE>,
-    senses: Sensor,
+    senses: Senses,
     out: Outputs<f32>,
     is_in_space: bool,
     goal_m: Option<[f64; 3]>,
@@ -50,18 +50,13 @@ impl<W: Wire> Controller<W> {
     /// companion died keeps moving for a while.
     #[must_use]
     pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, error_m: f64, wire: W) -> Self {
-        let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
-        let config = AgentConfig {
-            boot,
-            seed: scenario.seed,
-            plausibility: scenario.plausibility,
-            ..ground.config(index, tick)
-        };
+        let (config, task) = ground.setup(index, 0);
+        let config = AgentConfig { boot, seed: scenario.seed, plausibility: scenario.plausibility, ..config };
         // No operator sends goals here, so speed and tolerance are unused.
         let law = Guided::new(scenario.guidance(index).law(()), 0.0, 0.0);
         let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).safety(), wire));
         // A law that takes no task refuses it; the scenario was validated for that.
-        let _ = agent.assign(&ground.task(index, 0));
+        let _ = agent.assign(&task);
         let plane = scenario.plane.as_ref();
         let group = plane.map(|plane| plane.group(index));
         let places = plane.and_then(|plane| plane.starts.get(index)).map(|start| &start.places);
@@ -76,7 +71,7 @@ impl<W: Wire> Controller<W> {
             ground: Arc::clone(ground),
             agent,
             workspace: GridWorkspace::default(),
-            senses: Sensor::default(),
+            senses: Senses::default(),
             out: Outputs::default(),
             is_in_space: safety == Some(SafetyKind::Fly),
             goal_m: goal.map(|goal| goal.position_m),

@@ -46,9 +46,6 @@ pub enum RankError {
     /// The checkpoint does not fit this run.
     #[error(transparent)]
     Restore(#[from] staya_sim::engine::StateError),
-    /// A law of the caller needs other surroundings.
-    #[error(transparent)]
-    World(#[from] staya_sim::engine::WrongWorld),
     /// There are more ranks than robots.
     #[error("{ranks} ranks cannot share {robots} robots; start at most {robots} ranks")]
     TooMany {

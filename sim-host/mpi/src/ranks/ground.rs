@@ -5,8 +5,7 @@ use super::region::Region;
 use staya_controller::agent::Command;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
-use staya_sim::engine::{Grid, Ground, PlaneGround};
-use staya_sim::metrics::{FormationMeters, FormationQuality, Member, in_cells};
+use staya_sim::engine::{AnyGround, Grid, Ground as _, PlaneGround};
 use staya_sim::world::border::{Beside, DEPTH, Settled};
 use staya_sim::world::plane::{self, Clearance};
 use staya_sim::world::scouts::Scouts;
@@ -18,7 +17,7 @@ pub trait Talk {
 }
 
 /// A world of which this rank has some bodies. Everything except bodies is identical on all ranks.
-pub trait Part: Ground {
+pub trait Part {
     fn keep(&mut self, here: &[u32]);
 
     /// Appends a body of another rank; restoring the world's state moves it to its position.
@@ -31,6 +30,7 @@ pub trait Part: Ground {
     /// Data that a neighbour needs about bodies near `region` before they move.
     fn wishes(&self, tick: u32, region: &Region, commands: &[Command<f32>]) -> Vec<u8>;
 
+    /// Moves the bodies. Returns the number of collisions of bodies of this rank with each other.
     fn advance_beside(
         &mut self,
         tick: u32,
@@ -38,7 +38,7 @@ pub trait Part: Ground {
         own: &Region,
         wishes: &[(usize, Vec<u8>)],
         talk: &mut dyn Talk,
-    ) -> Result<(), RankError>;
+    ) -> Result<u64, RankError>;
 
     fn touches(&self, one: &Region, other: &Region) -> bool;
 
@@ -49,16 +49,21 @@ pub trait Part: Ground {
     fn replace_clearance(&mut self, clearance: Clearance) -> Clearance;
 
     fn is_taken(&self, cell: Cell) -> bool;
-
-    /// Position of a body for [`Part::keeping_of`], cells; `None` if there is no formation.
-    fn place(&self, index: usize) -> Option<[f64; 2]>;
-
-    fn keeping_of(&mut self, members: &[Member], counts: bool) -> Option<FormationQuality>;
 }
 
-fn measure(meter: Option<&mut FormationMeters>, members: &[Member], counts: bool) -> Option<FormationQuality> {
-    let meter = meter.filter(|_| !members.is_empty())?;
-    Some(if counts { meter.measure(members) } else { meter.look(members) })
+/// The rank's part of the world.
+pub fn part(ground: &AnyGround) -> &dyn Part {
+    match ground {
+        AnyGround::Cells(grid) => &**grid,
+        AnyGround::Plane(plane) => &**plane,
+    }
+}
+
+pub fn part_mut(ground: &mut AnyGround) -> &mut dyn Part {
+    match ground {
+        AnyGround::Cells(grid) => &mut **grid,
+        AnyGround::Plane(plane) => &mut **plane,
+    }
 }
 
 impl Part for Grid {
@@ -96,7 +101,7 @@ impl Part for Grid {
         own: &Region,
         wishes: &[(usize, Vec<u8>)],
         talk: &mut dyn Talk,
-    ) -> Result<(), RankError> {
+    ) -> Result<u64, RankError> {
         self.look();
         let mut beside = Vec::<Beside>::new();
         for (rank, bytes) in wishes {
@@ -112,7 +117,7 @@ impl Part for Grid {
                 let ranks = talk.sum(u64::from(moved) | u64::from(refused) << 32)?;
                 if ranks as u32 == 0 || ranks >> 32 == 0 {
                     contest.finish(&mut self.world);
-                    return Ok(());
+                    return Ok(self.world.count_collisions(tick));
                 }
             }
             let settled =
@@ -151,14 +156,6 @@ impl Part for Grid {
     fn is_taken(&self, cell: Cell) -> bool {
         self.world.body_at(cell).is_some()
     }
-
-    fn place(&self, index: usize) -> Option<[f64; 2]> {
-        self.meter.as_ref().map(|_| in_cells(self.world.bodies()[index].cell))
-    }
-
-    fn keeping_of(&mut self, members: &[Member], counts: bool) -> Option<FormationQuality> {
-        measure(self.meter.as_mut(), members, counts)
-    }
 }
 
 impl Part for PlaneGround {
@@ -195,9 +192,8 @@ impl Part for PlaneGround {
         _: &Region,
         _: &[(usize, Vec<u8>)],
         _: &mut dyn Talk,
-    ) -> Result<(), RankError> {
-        self.advance(tick, commands);
-        Ok(())
+    ) -> Result<u64, RankError> {
+        Ok(self.advance(tick, commands))
     }
 
     fn touches(&self, one: &Region, other: &Region) -> bool {
@@ -234,16 +230,5 @@ impl Part for PlaneGround {
 
     fn is_taken(&self, cell: Cell) -> bool {
         self.plane.discs().iter().any(|disc| self.plane.cell(disc.position_m) == Some(cell))
-    }
-
-    fn place(&self, index: usize) -> Option<[f64; 2]> {
-        let (_, land) = self.meter.as_ref().zip(self.plane.terrain())?;
-        let [x, y, _] = self.plane.discs()[index].position_m;
-        Some([x / land.cell_m, y / land.cell_m])
-    }
-
-    fn keeping_of(&mut self, members: &[Member], counts: bool) -> Option<FormationQuality> {
-        self.plane.terrain()?;
-        measure(self.meter.as_mut(), members, counts)
     }
 }

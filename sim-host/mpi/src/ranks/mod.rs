@@ -23,5 +23,5 @@ mod threads;
 mod wire;
 
 pub use exchange::{Exchange, Lost, RankError, Traffic};
-pub use run::{Ended, Sharing, check, remark, simulate_on, simulate_on_from, simulate_own_on};
+pub use run::{Ended, Sharing, check, remark, simulate_on};
 pub use threads::Threads;

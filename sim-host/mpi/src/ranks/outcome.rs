@@ -1,11 +1,11 @@
 //! Results of ranks, and their sum.
 
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Safety, Wait};
+use staya_controller::agent::Wait;
 use staya_controller::grid::Cell;
 use staya_controller::names::Named;
 use staya_controller::robot::Mode;
-use staya_sim::engine::{Engine, Ground, HostLaw, Outcome, hash};
+use staya_sim::engine::{Engine, Outcome, hash};
 use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::{Motion, PacketCounts, RobotRow};
 use staya_sim::world::plane::Clearance;
@@ -52,7 +52,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    pub(super) fn of<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>) -> Self {
+    pub(super) fn of(engine: &Engine) -> Self {
         let waits = engine.waits.all().iter().map(|count| {
             let WaitCount { wait, robots, now, robot_ticks, longest_ticks } = *count;
             (number_of(wait), robots as u64, now as u64, robot_ticks, longest_ticks)
@@ -62,7 +62,7 @@ impl Part {
             packets: engine.packets,
             throttled: engine.throttled,
             waits: waits.collect(),
-            clearance: engine.ground.clearance().map(|c| {
+            clearance: engine.view().clearance.map(|c| {
                 let gaps = [c.bodies_m, c.solids_m, c.intruders_m];
                 (gaps, [c.overlaps, c.intrusions, c.intruder_overlaps, c.washed])
             }),

@@ -2,19 +2,17 @@
 
 use super::cut::{Cut, Sample};
 use super::exchange::{Exchange, RankError, Traffic, decode, encode};
-use super::ground::Part as Ground;
+use super::ground::{part, part_mut};
 use super::outcome::{Part, Row, Sums, nothing};
 use super::region::Region;
 use super::wire::Wire;
-use staya_controller::agent::{Law, Safety, Wait};
+use staya_controller::agent::Wait;
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::wire::Ring;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::hash;
-use staya_sim::engine::{
-    Engine, Grid, HostLaw, Moment, Outcome, OwnLaw, PlaneGround, Saves, State, Watch, agents, own_agents,
-};
+use staya_sim::engine::{Agents, AnyGround, Engine, Moment, Outcome, Saves, Watch};
 use staya_sim::metrics::{FormationQuality, Member};
 use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
@@ -93,72 +91,29 @@ pub fn remark(scenario: &Scenario) -> Option<String> {
     })
 }
 
-/// As [`simulate`](staya_sim::engine::simulate), on all ranks together. Rank 0 calls `watch`; when
-/// it breaks, one more tick is done, because other ranks have already started it.
+/// As [`simulate`](staya_sim::engine::simulate), on all ranks together, with the laws of `agents`;
+/// from the state of a checkpoint of any number of ranks, if there is one. Rank 0 calls `watch`;
+/// when it breaks, one more tick is done, because other ranks have already started it.
 ///
 /// # Errors
-/// Robots that cannot be placed, more ranks than robots, or a rank that does not answer.
+/// Robots that cannot be placed, more ranks than robots, a rank that does not answer, or the state
+/// of another scenario or program.
 pub fn simulate_on(
     scenario: &Scenario,
-    exchange: &mut dyn Exchange,
-    sharing: &Sharing,
-    watch: &mut Watch<'_>,
-) -> Result<Ended, RankError> {
-    go(scenario, None, exchange, sharing, agents(scenario), watch)
-}
-
-/// As [`simulate_own`](staya_sim::engine::simulate_own), on all ranks together; from the state of a
-/// checkpoint, if there is one.
-///
-/// # Errors
-/// As [`simulate_on_from`]; or the law needs another world.
-pub fn simulate_own_on<L: OwnLaw>(
-    scenario: &Scenario,
-    law: impl Fn(usize) -> L + Send + Sync + 'static,
+    agents: Agents,
     state: Option<&[u8]>,
     exchange: &mut dyn Exchange,
     sharing: &Sharing,
-    watch: &mut Watch<'_>,
-) -> Result<Ended, RankError> {
-    go(scenario, state, exchange, sharing, own_agents(scenario, law)?, watch)
-}
-
-/// Continues from a checkpoint's state, written by any number of ranks; `watch` sees later ticks.
-///
-/// # Errors
-/// As [`simulate_on`]; or the state belongs to another scenario or program.
-pub fn simulate_on_from(
-    scenario: &Scenario,
-    state: &[u8],
-    exchange: &mut dyn Exchange,
-    sharing: &Sharing,
-    watch: &mut Watch<'_>,
-) -> Result<Ended, RankError> {
-    go(scenario, Some(state), exchange, sharing, agents(scenario), watch)
-}
-
-fn go<G: HostLaw + State, A: Safety<f32> + Send + State>(
-    scenario: &Scenario,
-    state: Option<&[u8]>,
-    exchange: &mut dyn Exchange,
-    sharing: &Sharing,
-    agents: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
     watch: &mut Watch<'_>,
 ) -> Result<Ended, RankError> {
     check(scenario, exchange.ranks())?;
-    match &scenario.plane {
-        Some(setup) => {
-            let ground = PlaneGround::new(scenario, setup);
-            Rank::new(scenario, exchange, sharing, ground, agents)?.run(state, watch)
-        }
-        None => Rank::new(scenario, exchange, sharing, Grid::new(scenario)?, agents)?.run(state, watch),
-    }
+    Rank::new(scenario, exchange, sharing, agents)?.run(state, watch)
 }
 
-pub(super) struct Rank<'a, W, G: Law<f32>, A> {
+pub(super) struct Rank<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) sharing: &'a Sharing,
-    pub(super) engine: Engine<W, G, A>,
+    pub(super) engine: Engine,
     pub(super) cut: Cut,
     pub(super) wire: Wire<'a>,
     pub(super) age: u32,
@@ -177,18 +132,12 @@ fn starts(scenario: &Scenario) -> impl Iterator<Item = [f64; 2]> + '_ {
     })
 }
 
-impl<'a, W, G, A> Rank<'a, W, G, A>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
+impl<'a> Rank<'a> {
     fn new(
         scenario: &'a Scenario,
         exchange: &'a mut dyn Exchange,
         sharing: &'a Sharing,
-        mut ground: W,
-        factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
+        agents: Agents,
     ) -> Result<Self, RankError> {
         let (rank, ranks) = (exchange.rank(), exchange.ranks());
         let stride = scenario.robots.len().div_ceil(SAMPLES).max(1);
@@ -196,8 +145,9 @@ where
         let cut = Cut::new(&mut samples.collect::<Vec<_>>(), ranks);
         let here = (0..).zip(starts(scenario)).filter(|(_, place_m)| cut.rank(*place_m) == rank);
         let here: Vec<u32> = here.map(|(number, _)| number).collect();
-        ground.keep(&here);
-        let engine = Engine::part(scenario, ground, factory, here, rank == 0);
+        let mut ground = AnyGround::new(scenario)?;
+        part_mut(&mut ground).keep(&here);
+        let engine = Engine::part(scenario, ground, agents, here, rank == 0);
         let wire = Wire::new(exchange);
         let mut rank = Self {
             scenario,
@@ -245,9 +195,7 @@ where
         let refused = engine.decide();
         self.hand_out_keys()?;
         let engine = &mut self.engine;
-        engine.attack();
-        engine.intrude();
-        engine.keep_keys();
+        engine.transmit();
 
         let tick = engine.tick;
         let sent = engine.send();
@@ -265,14 +213,11 @@ where
         let carried = engine.radio.receive(tick, &engine.positions_m, &elsewhere, sent);
         let packets = engine.count(refused, carried);
 
-        let ground = &self.engine.ground;
+        let (ground, commands) = (part(&engine.ground), &engine.commands);
         self.wire.choose(|one, other| ground.hinders(one, other));
-        let commands = &self.engine.commands;
         let wishes = self.wire.halo(|region| ground.wishes(tick, region, commands))?;
-        let (own, ground) = (self.wire.regions[self.wire.rank()].clone(), &mut self.engine.ground);
-        ground.advance_beside(tick, commands, &own, &wishes, &mut self.wire)?;
-        let engine = &mut self.engine;
-        engine.collisions += engine.ground.count_collisions(tick);
+        let (own, ground) = (self.wire.regions[self.wire.rank()].clone(), part_mut(&mut engine.ground));
+        engine.collisions += ground.advance_beside(tick, &engine.commands, &own, &wishes, &mut self.wire)?;
         engine.observe();
         let keeping = self.keeping(true)?;
         self.engine.tick += 1;
@@ -290,7 +235,7 @@ where
         let engine = &self.engine;
         let due = engine.interventions.iter().take_while(|(tick, _)| *tick <= engine.tick);
         let cells = due.filter_map(|(_, what)| match what {
-            Intervention::Cell { cell: [x, y], .. } => Some(engine.ground.is_taken(Cell::new(*x, *y))),
+            Intervention::Cell { cell: [x, y], .. } => Some(part(&engine.ground).is_taken(Cell::new(*x, *y))),
             _ => None,
         });
         let own: Vec<bool> = cells.collect();
@@ -334,10 +279,7 @@ where
         if self.scenario.formations.is_empty() {
             return Ok(None);
         }
-        let engine = &self.engine;
-        let own = engine.here.iter().enumerate();
-        let member = |index| Some(Member { at: engine.ground.place(index)?, is_down: engine.is_down(index) });
-        let own = own.filter_map(|(index, &number)| Some((number, member(index)?)));
+        let own = self.engine.here.iter().copied().zip(self.engine.members());
         let heard = self.wire.gather_first(encode(&own.collect::<Vec<_>>()))?;
         let mut members = Vec::<(u32, Member)>::new();
         for (rank, bytes) in heard.iter().enumerate() {
@@ -345,7 +287,7 @@ where
         }
         members.sort_unstable_by_key(|&(number, _)| number);
         let members: Vec<_> = members.into_iter().map(|(_, member)| member).collect();
-        Ok(self.engine.ground.keeping_of(&members, counts))
+        Ok(self.engine.formation_quality(&members, counts))
     }
 
     pub(super) fn places(&self) -> impl Iterator<Item = ([f64; 2], Cell)> + Clone + '_ {
@@ -359,11 +301,8 @@ where
 
     pub(super) fn tell_region(&mut self) -> Result<(), RankError> {
         let engine = &self.engine;
-        let attackers = engine.attackers.iter().map(|attacker| attacker.place_m());
-        let keeper = engine.keeper.iter().map(|keeper| keeper.place_m());
-        let heard = engine.ground.heard().map(|disc| [disc.position_m[0], disc.position_m[1]]);
-        let intruders = heard.take(engine.intruders.len());
-        let own = Region::new(self.places(), attackers.chain(keeper).chain(intruders));
+        let intruders = engine.view().intruders;
+        let own = Region::new(self.places(), engine.others.iter().map(|other| other.place_m(intruders)));
         let all = self.wire.gather(encode(&own))?;
         let all = all.iter().enumerate().map(|(rank, bytes)| decode(rank, "a region", bytes));
         self.wire.regions = all.collect::<Result<_, _>>()?;
@@ -372,10 +311,10 @@ where
 
     fn collide(&mut self) -> Result<(), RankError> {
         // The tick of the last moves.
-        let (ground, tick) = (&self.engine.ground, self.engine.tick.saturating_sub(1));
+        let (ground, tick) = (part(&self.engine.ground), self.engine.tick.saturating_sub(1));
         self.wire.choose(|one, other| ground.touches(one, other));
         let bodies = self.wire.halo(|region| ground.bodies(tick, region))?;
-        self.engine.collisions += self.engine.ground.count_collisions_beside(tick, &bodies)?;
+        self.engine.collisions += part_mut(&mut self.engine.ground).count_collisions_beside(tick, &bodies)?;
         Ok(())
     }
 
@@ -388,7 +327,7 @@ where
             collisions: engine.collisions,
             packets,
             hash: hash::sum(&engine.chains),
-            gap_m: engine.ground.gap_m(),
+            gap_m: engine.view().gap_m,
             load,
             stops: self.stops,
             saves,
@@ -441,9 +380,8 @@ where
             rows.extend(decode::<Vec<Row>>(rank, "robots", bytes)?);
         }
         rows.sort_unstable_by_key(Row::id);
-        let ground = &self.engine.ground;
         let rows = rows.into_iter().enumerate();
-        Ok(rows.map(|(number, row)| row.with_error(ground.formation_error(number) as f32)).collect())
+        Ok(rows.map(|(number, row)| row.with_error(self.engine.formation_error(number) as f32)).collect())
     }
 
     fn end(mut self) -> Result<Ended, RankError> {
@@ -459,7 +397,7 @@ where
         }
         times.sort_unstable_by_key(|&(number, ..)| number);
         let engine = &self.engine;
-        let (formation, place_error, formations) = engine.ground.kept();
+        let Outcome { formation, place_error, formations, clearance, .. } = engine.outcome();
         let mut outcome = Outcome {
             ticks: engine.tick,
             seconds: engine.seconds(),
@@ -468,7 +406,7 @@ where
             formation,
             place_error,
             formations,
-            ..nothing(engine.ground.clearance().is_some())
+            ..nothing(clearance.is_some())
         };
         let mut all = Vec::new();
         for (rank, bytes) in self.wire.gather(encode(&(part, traffic)))?.iter().enumerate() {

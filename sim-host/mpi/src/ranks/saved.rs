@@ -2,13 +2,13 @@
 //! continue the other's, on any number of ranks.
 
 use super::exchange::{RankError, decode, encode};
-use super::ground::Part as Ground;
+use super::ground::part_mut;
 use super::outcome::{Part, nothing};
 use super::run::Rank;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Safety, Wait};
+use staya_controller::agent::Wait;
 use staya_controller::names::Named;
-use staya_sim::engine::{Engine, HostLaw, Saves, State, StateError};
+use staya_sim::engine::{Engine, Saves, StateError};
 use staya_sim::metrics::waits::WaitCount;
 use staya_sim::radio::Counts;
 use staya_sim::record::PacketCounts;
@@ -53,7 +53,7 @@ impl Totals {
         }
     }
 
-    fn exchange<W: Ground, G: HostLaw, A: Safety<f32> + Send>(self, engine: &mut Engine<W, G, A>) -> Self {
+    fn exchange(self, engine: &mut Engine) -> Self {
         let waited = engine.waits.ticks();
         engine.waits.set_ticks(&self.waited);
         Self {
@@ -62,17 +62,12 @@ impl Totals {
             throttled: std::mem::replace(&mut engine.throttled, self.throttled),
             waited,
             radio: engine.radio.replace_total(self.radio),
-            clearance: engine.ground.replace_clearance(self.clearance),
+            clearance: part_mut(&mut engine.ground).replace_clearance(self.clearance),
         }
     }
 }
 
-impl<W, G, A> Rank<'_, W, G, A>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
+impl Rank<'_> {
     pub(super) fn save(&mut self) -> Result<Option<Saved>, RankError> {
         let engine = &self.engine;
         let robots = engine.here.iter().enumerate().map(|(index, &number)| {
@@ -87,7 +82,7 @@ where
             return Ok(None);
         }
         let (mut robots, mut digest, mut radio) = (Vec::new(), 0_u64, Counts::default());
-        let mut whole = nothing(self.engine.ground.clearance().is_some());
+        let mut whole = nothing(self.engine.view().clearance.is_some());
         for (rank, bytes) in heard.iter().enumerate() {
             let share = decode::<Share>(rank, "its part of a checkpoint", bytes)?;
             share.part.add_to(&mut whole);
@@ -122,9 +117,7 @@ where
 
     /// Each rank takes its own robots, rank 0 the statistics.
     pub(super) fn restore(&mut self, bytes: &[u8]) -> Result<(), RankError> {
-        let heard = self.engine.ground.heard().count();
-        let others = [self.scenario.attacks.len(), heard, usize::from(self.scenario.keeping.is_some())];
-        let restored = self.engine.restore_part(bytes, others);
+        let restored = self.engine.restore_part(bytes);
         if self.wire.rank() > 0 {
             Totals::none().exchange(&mut self.engine);
         }
@@ -136,6 +129,6 @@ where
             digest = digest.zip(theirs).map(|(sum, one)| sum.wrapping_add(one));
         }
         let (at, saved) = restored?;
-        if digest == Some(saved) { self.tell_region() } else { Err(Engine::<W, G, A>::differs(at).into()) }
+        if digest == Some(saved) { self.tell_region() } else { Err(Engine::differs(at).into()) }
     }
 }

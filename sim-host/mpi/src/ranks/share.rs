@@ -2,11 +2,11 @@
 
 use super::cut::{Cut, Sample};
 use super::exchange::{RankError, decode, encode};
-use super::ground::Part as Ground;
+use super::ground::part_mut;
 use super::run::Rank;
-use staya_controller::agent::{Command, Safety};
+use staya_controller::agent::Command;
 use staya_sim::engine::hash::StateHash;
-use staya_sim::engine::{HostLaw, State, StateError, Status};
+use staya_sim::engine::{StateError, Status};
 use std::collections::{BTreeMap, HashMap};
 
 /// Positions per rank for a new division of the world.
@@ -14,12 +14,7 @@ const SAMPLES_A_RANK: usize = 512;
 /// Least interval of divisions, unit [`Sharing::every_ticks`](super::Sharing::every_ticks).
 const REST: u32 = 8;
 
-impl<W, G, A> Rank<'_, W, G, A>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
+impl Rank<'_> {
     pub(super) fn share(&mut self) -> Result<(), RankError> {
         self.age += 1;
         if self.wire.exchange.ranks() == 1 || !self.engine.tick.is_multiple_of(self.sharing.every_ticks.max(1)) {
@@ -104,7 +99,7 @@ where
         let engine = &mut self.engine;
         let (index, robot) = (engine.here.len(), engine.robots[number as usize]);
         engine.here.push(number);
-        engine.ground.admit(number, robot.id);
+        part_mut(&mut engine.ground).admit(number, robot.id);
         engine.commands.push(Command::Hold);
         engine.statuses.push(Status::before(&robot));
         engine.chains.push(StateHash::new(robot.id));
@@ -121,7 +116,7 @@ where
         let engine = &mut self.engine;
         let robots = engine.here.len();
         engine.here.swap_remove(index);
-        engine.ground.dismiss(index);
+        part_mut(&mut engine.ground).dismiss(index);
         engine.commands.swap_remove(index);
         engine.statuses.swap_remove(index);
         engine.chains.swap_remove(index);

@@ -1,6 +1,6 @@
 use super::*;
 use staya_sim::engine::CheckpointInterval;
-use staya_sim::engine::{Moment, Outcome, simulate, simulate_from};
+use staya_sim::engine::{Moment, Outcome, agents, simulate, simulate_from};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Overrides, Scenario};
 use std::ops::ControlFlow;
@@ -33,10 +33,7 @@ fn resume_on(
                         }
                         ControlFlow::Continue(())
                     };
-                    match state {
-                        None => simulate_on(scenario, &mut exchange, sharing, &mut watch),
-                        Some(state) => simulate_on_from(scenario, state, &mut exchange, sharing, &mut watch),
-                    }
+                    simulate_on(scenario, agents(scenario), state, &mut exchange, sharing, &mut watch)
                 };
                 threads.spawn(run)
             })
@@ -181,7 +178,8 @@ fn too_many_ranks_and_a_missing_rank_are_errors() {
     drop(ranks.pop());
     let mut first = ranks.pop().expect("rank 0");
     let mut watch = |_: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| ControlFlow::Continue(());
-    let error = simulate_on(&scenario, &mut first, &Sharing::default(), &mut watch).expect_err("rank 1 is gone");
+    let error = simulate_on(&scenario, agents(&scenario), None, &mut first, &Sharing::default(), &mut watch)
+        .expect_err("rank 1 is gone");
     assert_eq!(error.to_string(), "rank 1 is gone");
 }
 
@@ -194,7 +192,8 @@ fn an_invalid_message_is_an_error_with_its_sender() {
     let error = std::thread::scope(|threads| {
         threads.spawn(move || other.gather(vec![0xff; 9]).map(drop));
         let mut watch = |_: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| ControlFlow::Continue(());
-        simulate_on(&scenario, &mut first, &Sharing::default(), &mut watch).expect_err("garbage")
+        simulate_on(&scenario, agents(&scenario), None, &mut first, &Sharing::default(), &mut watch)
+            .expect_err("garbage")
     });
     assert!(error.to_string().starts_with("rank 1 sent a region that cannot be decoded"), "{error}");
 }

@@ -4,7 +4,7 @@ use crate::frame::tests::frames;
 use crate::scene::{Mode, Scene};
 use proptest::prelude::*;
 use serde_json::json;
-use staya_sim::engine::{Operated, operated, simulate};
+use staya_sim::engine::{Engine, operated, simulate};
 use staya_sim::scenario::{Intervention, Overrides, Scenario};
 use std::cell::Cell;
 use std::io::{Cursor, Read, Seek, SeekFrom};
@@ -119,22 +119,22 @@ fn interventions_are_recorded_and_a_copy_is_valid_at_any_time() {
     let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).unwrap();
     let mut engine = operated(&scenario).unwrap();
     let mut recorder = RunRecorder::new(Vec::new(), Path::new("a.rec"), &scenario, 1).unwrap();
-    let take = |engine: &dyn Operated, recorder: &mut RunRecorder<Vec<u8>>| {
+    let take = |engine: &Engine, recorder: &mut RunRecorder<Vec<u8>>| {
         engine.show(&mut |moment, robots| recorder.tick(moment, robots).unwrap());
     };
-    take(&*engine, &mut recorder);
+    take(&engine, &mut recorder);
     let closed = Intervention::Cell { cell: [3, 0], class: 0 };
     for tick in 0..5 {
         if tick == 2 {
             engine.intervene(&closed).unwrap();
             recorder.note(&closed);
         }
-        engine.advance();
-        take(&*engine, &mut recorder);
+        engine.step();
+        take(&engine, &mut recorder);
     }
     let early = recorder.clone().finish(&json!({})).unwrap();
-    engine.advance();
-    take(&*engine, &mut recorder);
+    engine.step();
+    take(&engine, &mut recorder);
     for (bytes, last) in [(early, 5), (recorder.finish(&json!({})).unwrap(), 6)] {
         let mut reader = read(&bytes).unwrap();
         assert_eq!(reader.ticks(), Some((0, last)));

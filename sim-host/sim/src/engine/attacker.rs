@@ -1,9 +1,11 @@
 //! Attackers with a radio: outsiders without the key, and insiders that control a robot.
 
+use super::state::{Reader, StateError, write};
+use super::transmitter::Transmitter;
 use crate::radio::{self, HostWire};
 use crate::scenario::{Attack, AttackKind, Lie, Scenario};
+use crate::world::plane::Disc;
 use heapless::Vec as Bounded;
-use serde::Serialize;
 use staya_controller::agent::{Grid, GridOrder, GridPayload, Protocol, Waypoint, WaypointOrder, Waypoints};
 use staya_controller::auth::Key;
 use staya_controller::geom::Position;
@@ -19,7 +21,9 @@ const STARTS: u8 = u8::MAX;
 const TAKEN: u8 = 1;
 const RING_M: f64 = 1.5;
 
-pub struct Attacker {
+pub(super) struct Attacker {
+    /// Id at the radio; it never appears in a frame.
+    id: RobotId,
     attack: Attack,
     cell_m: f64,
     /// Ids of invented robots start after this one.
@@ -33,10 +37,8 @@ pub struct Attacker {
     outbox: Vec<u8>,
 }
 
-pub(super) type AttackerState = (HostWire, u16, u8, VecDeque<(u32, Vec<u8>)>);
-
 impl Attacker {
-    pub(super) fn new(attack: &Attack, scenario: &Scenario) -> Self {
+    pub(super) fn new(attack: &Attack, number: usize, scenario: &Scenario) -> Self {
         let guess = Key::of_passphrase(b"guessed");
         let (key, starts) = match attack.kind {
             AttackKind::Forge => (Some(&guess), STARTS),
@@ -46,6 +48,7 @@ impl Attacker {
         let index = scenario.robots.binary_search_by_key(&attack.claims, |robot| robot.id);
         let radius_m = index.ok().zip(scenario.plane.as_ref()).map_or(0.0, |(at, plane)| plane.group(at).radius_m);
         Self {
+            id: RobotId(u32::MAX - 1 - u32::try_from(number).unwrap_or(u32::MAX / 2)),
             attack: attack.clone(),
             cell_m: scenario.terrain.cell_m,
             last: scenario.usual_claims().last.0,
@@ -59,37 +62,6 @@ impl Attacker {
         }
     }
 
-    pub(super) fn state(&self) -> impl Serialize {
-        (&self.wire, self.sequence, self.version, &self.heard)
-    }
-
-    pub(super) fn restore(&mut self, (wire, sequence, version, heard): AttackerState) {
-        (self.wire, self.sequence, self.version, self.heard) = (wire, sequence, version, heard);
-    }
-
-    /// Id at the radio of attacker `index`; it never appears in a frame.
-    pub(super) fn id(index: usize) -> RobotId {
-        RobotId(u32::MAX - 1 - u32::try_from(index).unwrap_or(u32::MAX / 2))
-    }
-
-    #[doc(hidden)]
-    pub fn place_m(&self) -> [f64; 2] {
-        self.attack.place_m
-    }
-
-    pub(super) fn outbox(&self) -> &[u8] {
-        &self.outbox
-    }
-
-    pub(super) fn takes(&self, tick: u32) -> Option<RobotId> {
-        let is_now = self.attack.kind == AttackKind::Insider && tick == self.attack.from_tick;
-        is_now.then_some(self.attack.claims)
-    }
-
-    pub(super) fn take(&mut self, ring: &Ring) {
-        self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
-    }
-
     /// Answers new keys as the robot would, until the robot is revoked.
     fn keep_up(&mut self, inbox: &[u8]) {
         let mut rest = inbox;
@@ -100,32 +72,6 @@ impl Attacker {
                 let held = KeyHeld { to: header.sender, generation, phase };
                 self.tell(self.attack.claims, &Message::KeyHeld(held));
             }
-        }
-    }
-
-    pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
-        self.outbox.clear();
-        let is_active = (self.attack.from_tick..self.attack.to_tick).contains(&tick);
-        match self.attack.kind {
-            AttackKind::Replay => {
-                self.heard.push_back((tick, inbox.to_vec()));
-                while let Some((at, frames)) = self.heard.front()
-                    && tick - at >= self.attack.delay_ticks
-                {
-                    if is_active {
-                        self.outbox.extend_from_slice(frames);
-                    }
-                    self.heard.pop_front();
-                }
-            }
-            AttackKind::Forge | AttackKind::Unsigned if is_active => self.lure(),
-            AttackKind::Insider if is_active => {
-                self.keep_up(inbox);
-                for lie in self.attack.lies.clone() {
-                    self.lie(lie, tick);
-                }
-            }
-            AttackKind::Forge | AttackKind::Unsigned | AttackKind::Insider => {}
         }
     }
 
@@ -195,6 +141,64 @@ impl Attacker {
         let mut frame = Bounded::<u8, { 2 * MAX_FRAME_LEN }>::new();
         self.wire.encode(header, message, &mut frame).expect("the scenario was checked for its numbers");
         self.outbox.extend_from_slice(&frame);
+    }
+}
+
+impl Transmitter for Attacker {
+    fn id(&self) -> RobotId {
+        self.id
+    }
+
+    fn place_m(&self, _: &[Disc]) -> [f64; 2] {
+        self.attack.place_m
+    }
+
+    fn act(&mut self, tick: u32, inbox: &[u8], _: &[Disc]) {
+        self.outbox.clear();
+        let is_active = (self.attack.from_tick..self.attack.to_tick).contains(&tick);
+        match self.attack.kind {
+            AttackKind::Replay => {
+                self.heard.push_back((tick, inbox.to_vec()));
+                while let Some((at, frames)) = self.heard.front()
+                    && tick - at >= self.attack.delay_ticks
+                {
+                    if is_active {
+                        self.outbox.extend_from_slice(frames);
+                    }
+                    self.heard.pop_front();
+                }
+            }
+            AttackKind::Forge | AttackKind::Unsigned if is_active => self.lure(),
+            AttackKind::Insider if is_active => {
+                self.keep_up(inbox);
+                for lie in self.attack.lies.clone() {
+                    self.lie(lie, tick);
+                }
+            }
+            AttackKind::Forge | AttackKind::Unsigned | AttackKind::Insider => {}
+        }
+    }
+
+    fn outbox(&self) -> &[u8] {
+        &self.outbox
+    }
+
+    fn captures(&self, tick: u32) -> Option<RobotId> {
+        let is_now = self.attack.kind == AttackKind::Insider && tick == self.attack.from_tick;
+        is_now.then_some(self.attack.claims)
+    }
+
+    fn take(&mut self, ring: &Ring) {
+        self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
+    }
+
+    fn save(&self, bytes: &mut Vec<u8>) {
+        write(&(&self.wire, self.sequence, self.version, &self.heard), bytes);
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        (self.wire, self.sequence, self.version, self.heard) = from.read("an attacker")?;
+        Ok(())
     }
 }
 

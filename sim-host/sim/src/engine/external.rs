@@ -1,8 +1,8 @@
 //! Robots whose controllers run outside the simulator: on emulated or real microcontrollers.
 
-use super::{Engine, Ground, HostLaw, Status, Tick};
+use super::{Engine, Senses, Status, Tick};
 use crate::scenario::Scenario;
-use staya_controller::agent::{AnyInputs, Command, GuidanceSetup, OUTBOX, Safety, SafetySetup, Setup, Task};
+use staya_controller::agent::{AnyInputs, Command, GuidanceSetup, OUTBOX, SafetySetup, Setup, Task};
 use staya_controller::time::Instant;
 
 /// Controllers outside this process. Robots are numbered as in the scenario.
@@ -46,12 +46,7 @@ pub(super) struct External {
     pub(super) robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
 }
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
+impl Engine {
     /// Moves the controllers of some robots out of this process. Call it before the first tick.
     #[must_use]
     pub fn with_external(mut self, scenario: &Scenario, controllers: Box<dyn ExternalController>) -> Self {
@@ -71,13 +66,14 @@ where
         let Some(external) = &mut self.external else {
             return;
         };
-        let (tick, mut senses, mut heard) = (self.tick, W::Scratch::default(), Vec::new());
+        let (tick, mut senses, mut heard) = (self.tick, Senses::default(), Vec::new());
+        let orders = self.ground.view(tick).orders;
         for &(index, ..) in &external.robots {
             let computer = &self.computers[index];
             if tick < computer.down_until {
                 continue;
             }
-            let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
+            let moment = Tick { tick, ground: &*self.ground, radio: &self.radio, orders };
             let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
             let now = computer.now(tick, self.tick_us);
             external.controllers.send(index, tick, now, &inputs);

@@ -1,14 +1,8 @@
 //! Failures and restarts of robots' computers.
 
-use super::{Engine, Ground, HostLaw};
-use staya_controller::agent::Safety;
+use super::Engine;
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
+impl Engine {
     /// Takes down computers whose fault begins; they restart with only id, parameters and task.
     pub fn apply_faults(&mut self) {
         for at in 0..self.faults.len() {

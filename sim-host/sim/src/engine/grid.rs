@@ -2,13 +2,11 @@
 
 use super::Status;
 use super::body::Kinematics;
-use super::ground::{Ground, StateWords};
+use super::ground::{Ground, Senses, StateWords, View};
 use super::hash::grid_words;
-use super::intervene::Change;
-use crate::metrics::{FormationMeters, FormationQuality, Member, in_cells};
+use super::state::{Reader, StateError, write};
 use crate::record::Motion;
-use crate::scenario::{Robot, Scenario};
-use crate::terrain::Terrain;
+use crate::scenario::{Intervention, Robot, Scenario};
 use crate::world::scouts::{Memory, Scouts};
 use crate::world::{Body, Misplaced, Refusal, World};
 use serde::{Deserialize, Serialize};
@@ -24,8 +22,6 @@ pub struct Grid {
     pub world: World,
     kinematics: Kinematics,
     robots: Vec<Robot>,
-    #[doc(hidden)]
-    pub meter: Option<FormationMeters>,
     changed: Changed,
     /// Robots' knowledge of terrain outside their sight.
     pub scouts: Option<Scouts>,
@@ -43,12 +39,10 @@ impl Grid {
     pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
         let starts = scenario.robots.iter().map(|robot| (robot.id, robot.start));
         let world = World::new(scenario.terrain.clone(), scenario.rules, scenario.seed, starts)?;
-        let meter = FormationMeters::new(scenario);
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.numbered(),
             numbers: (0..scenario.robots.len() as u32).collect(),
-            meter,
             changed: Changed::new(),
             scouts: scenario.scouts(),
             radius: scenario.route.params.radius,
@@ -81,7 +75,7 @@ impl Grid {
 pub(super) type Changed = BTreeMap<(i16, i16), u8>;
 
 #[derive(Debug, Serialize, Deserialize)]
-pub struct GridBody {
+struct GridBody {
     cell: Cell,
     entered_by: Dir,
     free_at: u64,
@@ -91,24 +85,12 @@ pub struct GridBody {
     seen: Option<Memory>,
 }
 
-pub(super) fn restore_meter(
-    meter: &mut Option<FormationMeters>,
-    measured: Option<FormationMeters>,
-) -> Result<(), &'static str> {
-    let is_same = match (&*meter, &measured) {
-        (Some(meter), Some(measured)) => meter.is_of(measured),
-        (None, None) => true,
-        _ => false,
-    };
-    if !is_same {
-        return Err("it is of another formation");
-    }
-    *meter = measured;
-    Ok(())
-}
-
 fn units(tick: u32) -> u64 {
     u64::from(tick) * u64::from(UNIT)
+}
+
+pub(super) fn duration(tick_us: u32) -> Duration {
+    Duration::from_micros(i32::try_from(tick_us).unwrap_or(i32::MAX))
 }
 
 /// Time until a body may leave its cell; rounded up, so that it is not 0 too early.
@@ -119,41 +101,33 @@ pub(super) fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
 }
 
 impl Ground for Grid {
-    type Scratch = Vec<u8>;
-    type Body = GridBody;
-    type Shared = (Option<FormationMeters>, Changed);
-
-    fn body(&self, index: usize) -> GridBody {
+    fn save_body(&self, index: usize, bytes: &mut Vec<u8>) {
         let Body { id: _, cell, entered_by, free_at, crossing, is_shut_in } = self.world.bodies()[index];
         let goal = self.robots[self.number(index)].goal;
         let seen = self.scouts.as_ref().map(|scouts| scouts.memory(index).clone());
-        GridBody { cell, entered_by, free_at, crossing, is_shut_in, goal, seen }
+        write(&GridBody { cell, entered_by, free_at, crossing, is_shut_in, goal, seen }, bytes);
     }
 
-    fn set_body(&mut self, index: usize, body: GridBody) -> Result<(), &'static str> {
-        let GridBody { cell, entered_by, free_at, crossing, is_shut_in, goal, seen } = body;
+    fn load_body(&mut self, number: usize, index: Option<usize>, from: &mut Reader<'_>) -> Result<(), StateError> {
+        let GridBody { cell, entered_by, free_at, crossing, is_shut_in, goal, seen } = from.read("a body")?;
+        self.robots[number].goal = goal;
+        let Some(index) = index else { return Ok(()) };
         let id = self.world.bodies()[index].id;
         if !self.world.put(index, Body { id, cell, entered_by, free_at, crossing, is_shut_in }) {
-            return Err("its body is in a wall or off the map");
+            return Err(from.unfit("its body is in a wall or off the map"));
         }
         if let (Some(scouts), Some(seen)) = (&mut self.scouts, seen) {
             scouts.put(index, seen);
         }
-        let number = self.number(index);
-        self.robots[number].goal = goal;
         Ok(())
     }
 
-    fn note(&mut self, number: usize, body: GridBody) {
-        self.robots[number].goal = body.goal;
+    fn save_shared(&self, bytes: &mut Vec<u8>) {
+        write(&self.changed, bytes);
     }
 
-    fn shared(&self) -> Self::Shared {
-        (self.meter.clone(), self.changed.clone())
-    }
-
-    fn set_shared(&mut self, (meter, changed): Self::Shared) -> Result<(), &'static str> {
-        restore_meter(&mut self.meter, meter)?;
+    fn load_shared(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        let changed: Changed = from.read("the changes of the land")?;
         for (&(x, y), &class) in &changed {
             self.world.put_cell(Cell::new(x, y), class);
         }
@@ -165,15 +139,15 @@ impl Ground for Grid {
         self.world.is_sound()
     }
 
-    fn sense<'a>(&'a self, index: usize, tick: u32, cells: &'a mut Self::Scratch) -> AnyInputs<'a, f32> {
+    fn sense<'a>(&'a self, index: usize, tick: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
         let body = &self.world.bodies()[index];
         Inputs {
             state: self.kinematics.pose(body, units(tick)).into(),
             surroundings: AnySurroundings::OnGrid(OnGrid {
                 cell: CellState { cell: body.cell, busy: busy(body.free_at, units(tick), self.tick_us) },
                 window: match &self.scouts {
-                    None => self.world.window(body.cell, self.radius, cells),
-                    Some(scouts) => scouts.window(self.world.terrain(), index, body.cell, cells),
+                    None => self.world.window(body.cell, self.radius, &mut senses.cells),
+                    Some(scouts) => scouts.window(self.world.terrain(), index, body.cell, &mut senses.cells),
                 },
             }),
             inbox: &[],
@@ -194,12 +168,9 @@ impl Ground for Grid {
         }
     }
 
-    fn advance(&mut self, tick: u32, commands: &[Command<f32>]) {
+    fn advance(&mut self, tick: u32, commands: &[Command<f32>]) -> u64 {
         self.look();
         self.world.advance(tick, commands);
-    }
-
-    fn count_collisions(&mut self, tick: u32) -> u64 {
         self.world.count_collisions(tick)
     }
 
@@ -214,21 +185,13 @@ impl Ground for Grid {
         is_there.then_some(body.free_at)
     }
 
-    fn config(&self, number: usize, tick: Duration) -> AgentConfig<f32> {
-        AgentConfig::new(self.robots[number].id, 0.0, tick)
+    fn setup(&self, number: usize, _: u32) -> (AgentConfig<f32>, Task) {
+        let robot = &self.robots[number];
+        (AgentConfig::new(robot.id, 0.0, duration(self.tick_us)), Task::Cell(robot.goal))
     }
 
-    fn task(&self, number: usize, _: u32) -> Task {
-        Task::Cell(self.robots[number].goal)
-    }
-
-    fn terrain(&self) -> Option<&Terrain> {
-        Some(self.world.terrain())
-    }
-
-    fn is_open(&self, [x, y, _]: [f64; 3]) -> bool {
-        let terrain = self.world.terrain();
-        terrain.cell_at([x, y]).is_some_and(|cell| terrain.is_passable(cell))
+    fn view(&self, _: u32) -> View<'_> {
+        View { terrain: Some(self.world.terrain()), ..View::default() }
     }
 
     fn goal_m(&self, number: usize) -> Option<[f64; 3]> {
@@ -241,20 +204,19 @@ impl Ground for Grid {
         self.robots[number].goal = self.world.terrain().nearest_cell([x, y]);
     }
 
-    fn change(&mut self, _: u32, change: Change<'_>) -> Result<(), Refusal> {
-        match change {
-            Change::Cell([x, y], class) => {
-                self.world.set_cell(Cell::new(x, y), class)?;
-                self.changed.insert((x, y), class);
-                Ok(())
-            }
-            Change::Land(cells) => {
-                self.world.change(cells);
-                self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
-                Ok(())
-            }
-            _ => Err(Refusal::new("kind", "these robots go from cell to cell", "change cells of the land instead")),
-        }
+    fn change(&mut self, _: u32, what: &Intervention) -> Result<(), Refusal> {
+        let Intervention::Cell { cell: [x, y], class } = *what else {
+            let what = "these robots go from cell to cell";
+            return Err(Refusal::new("kind", what, "change cells of the land instead"));
+        };
+        self.world.set_cell(Cell::new(x, y), class)?;
+        self.changed.insert((x, y), class);
+        Ok(())
+    }
+
+    fn change_land(&mut self, cells: &[(Cell, u8)]) {
+        self.world.change(cells);
+        self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
     }
 
     fn target_m(&self, _: usize, _: u32, status: &Status) -> Option<[f64; 3]> {
@@ -262,20 +224,5 @@ impl Ground for Grid {
         land.index(status.target)?;
         let [x, y] = land.center_m(status.target);
         Some([x, y, 0.0])
-    }
-
-    fn keeping(&mut self, counts: bool, is_down: &dyn Fn(usize) -> bool) -> Option<FormationQuality> {
-        let meter = self.meter.as_mut()?;
-        let member = |(index, body): (_, &Body)| Member { at: in_cells(body.cell), is_down: is_down(index) };
-        let members: Vec<_> = self.world.bodies().iter().enumerate().map(member).collect();
-        Some(if counts { meter.measure(&members) } else { meter.look(&members) })
-    }
-
-    fn formations(&self) -> Option<&FormationMeters> {
-        self.meter.as_ref()
-    }
-
-    fn formation_error(&self, number: usize) -> f64 {
-        self.meter.as_ref().map_or(f64::NAN, |meter| meter.error_of(number))
     }
 }

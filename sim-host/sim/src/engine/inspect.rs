@@ -1,11 +1,10 @@
 //! Read-only inspection of a robot's knowledge and its next decision. The run is not affected.
 
-use super::simulate::SafetyOf;
 use super::witness::Asked;
-use super::{Engine, Ground, HostLaw, Tick};
-use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Guided, Inputs, Law};
+use super::{Engine, Senses, Tick, WIDE};
+use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Law as _};
 use staya_controller::cost::TICK;
-use staya_controller::geom::Position;
+use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::{Parameter, Parameters};
@@ -103,48 +102,27 @@ pub struct Inspection {
     pub heard_bytes: u64,
 }
 
-/// Access to a law's scratch memory after a step.
-pub trait Scratchpad: Default {
-    /// Ticks from a cell to the exit of the last search.
-    fn cost(&self, _cell: Cell) -> Option<f32> {
-        None
-    }
-}
-
-impl Scratchpad for () {}
-
-impl<const CELLS: usize> Scratchpad for GridWorkspace<CELLS> {
-    fn cost(&self, cell: Cell) -> Option<f32> {
-        Some(self.field().cost(cell)? as f32 / TICK as f32)
-    }
-}
-
-impl<W, G> Engine<W, Guided<f32, G>, SafetyOf>
-where
-    W: Ground,
-    G: HostLaw + Clone,
-{
-    /// Inspects robot `index` by stepping a copy of its agent; empty if it is down or external.
-    pub(super) fn inspect(&self, index: usize) -> Inspection {
+impl Engine {
+    /// Knowledge and next decision of robot `index`, by a step of a copy of its agent; empty if it
+    /// is down or external.
+    #[must_use]
+    pub fn inspect(&self, index: usize) -> Inspection {
         let computer = &self.computers[index];
         let Some(agent) = computer.agent.as_ref().filter(|_| self.is_up(index)) else {
             return Inspection::default();
         };
         let mut agent = agent.clone();
         agent.safety_mut().listen();
-        let (mut senses, mut heard) = (W::Scratch::default(), Vec::new());
-        let moment = Tick { tick: self.tick, ground: &self.ground, radio: &self.radio };
+        let (mut senses, mut heard) = (Senses::default(), Vec::new());
+        let orders = self.ground.view(self.tick).orders;
+        let moment = Tick { tick: self.tick, ground: &*self.ground, radio: &self.radio, orders };
         let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
         let now = computer.now(self.tick, self.tick_us);
-        let mut workspace = <Guided<f32, G> as Law<f32>>::Workspace::default();
+        let mut workspace = GridWorkspace::<WIDE>::default();
         let mut seen = Vec::new();
         self.ground.sightings(index, self.tick, &mut seen);
         let _ = agent.see(&seen, &inputs.state, now);
-        let Ok(surroundings) = inputs.surroundings.try_into() else {
-            return Inspection::default();
-        };
-        let own = Inputs { state: inputs.state, surroundings, inbox: inputs.inbox };
-        let out = agent.step(&own, now, &mut workspace);
+        let out = agent.step(&inputs, now, &mut workspace);
         let own = inputs.state.position;
         let own_m = self.ground.motion(index, self.tick).position_m;
         let window = match &inputs.surroundings {
@@ -156,7 +134,7 @@ where
             let columns = (0..window.height()).flat_map(|y| (0..window.width()).map(move |x| (x, y)));
             let cost = |(x, y): (u16, u16)| {
                 let cell = window.origin() + Cell::new(x.cast_signed(), y.cast_signed());
-                workspace.cost(cell).unwrap_or(f32::NAN)
+                workspace.field().cost(cell).map_or(f32::NAN, |cost| cost as f32 / TICK as f32)
             };
             SeenLand {
                 corner: window.origin(),
@@ -204,28 +182,24 @@ pub(super) fn listed(each: impl FnOnce(&mut dyn FnMut(&mut dyn Parameters))) -> 
 
 fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Permitted> {
     let Asked { body, nearby, obstacles, .. } = asked;
+    let space = |(index, hard): (usize, usize), point_mps: [f32; 3], normal: [f32; 3]| Permitted {
+        point_mps,
+        normal,
+        is_of_obstacle: index < hard,
+    };
     match layer {
         AnySafety::Orca(layer) => {
             let (hard, planes) = layer.avoider().half_spaces(body, nearby, obstacles);
             let planes = planes.iter().enumerate();
             planes
-                .map(|(index, plane)| Permitted {
-                    point_mps: [plane.point.x, plane.point.y, 0.0],
-                    normal: [plane.normal.x, plane.normal.y, 0.0],
-                    is_of_obstacle: index < hard,
-                })
+                .map(|(at, p)| space((at, hard), [p.point.x, p.point.y, 0.0], [p.normal.x, p.normal.y, 0.0]))
                 .collect()
         }
         AnySafety::Fly(layer) => {
             let (hard, spaces) = layer.avoider().half_spaces(body, nearby, obstacles);
             let spaces = spaces.iter().enumerate();
-            spaces
-                .map(|(index, space)| Permitted {
-                    point_mps: [space.point.x, space.point.y, space.point.z],
-                    normal: [space.normal.x, space.normal.y, space.normal.z],
-                    is_of_obstacle: index < hard,
-                })
-                .collect()
+            let all = |v: &Vec3<f32>| [v.x, v.y, v.z];
+            spaces.map(|(at, s)| space((at, hard), all(&s.point), all(&s.normal))).collect()
         }
         AnySafety::Unguarded(_) | AnySafety::PushOut(_) => Vec::new(),
     }

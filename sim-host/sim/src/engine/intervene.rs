@@ -1,58 +1,19 @@
 //! Applies [`Intervention`]s to a running simulation.
 
-use super::{Engine, Ground, HostLaw};
+use super::Engine;
+use super::roster::Tuned;
 use crate::scenario::{Fault, Intervention};
 use crate::world::Refusal;
-use crate::world::plane::Shape;
-use serde::{Deserialize, Serialize};
-use staya_controller::agent::Safety;
-use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 
-/// A change of the world itself.
-#[derive(Clone, Copy, Debug)]
-pub enum Change<'a> {
-    /// See [`Intervention::Waypoint`].
-    Waypoint {
-        /// Index of the goal.
-        goal: u8,
-        /// New position, metres.
-        place_m: [f64; 3],
-    },
-    /// See [`Intervention::Solid`].
-    Solid(&'a Shape),
-    /// See [`Intervention::Move`].
-    Move(usize, [f64; 2]),
-    /// See [`Intervention::Remove`].
-    Remove(usize),
-    /// See [`Intervention::Cell`].
-    Cell([i16; 2], u8),
-    /// Cells with their new class, by a rule of the scenario
-    /// ([`LandChange`](crate::terrain::change::LandChange)). A robot inside a closing cell may
-    /// leave; no robot may enter.
-    Land(&'a [(Cell, u8)]),
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Tuned {
-    robot: Option<usize>,
-    name: String,
-    value: f32,
-}
-
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
+impl Engine {
     /// Applies the scenario's terrain changes of this tick.
     pub fn change_land(&mut self) {
         for (number, rule) in self.changes.iter().enumerate().filter(|(_, rule)| rule.is_due(self.tick)) {
-            let due = self.ground.terrain().map(|land| rule.due(number, self.seed, self.tick, land));
+            let land = self.ground.view(self.tick).terrain;
+            let due = land.map(|land| rule.due(number, self.roster.seed, self.tick, land));
             if let Some(cells) = due.filter(|cells| !cells.is_empty()) {
-                // Cannot fail: the terrain exists.
-                let _ = self.ground.change(self.tick, Change::Land(&cells));
+                self.ground.change_land(&cells);
             }
         }
     }
@@ -87,18 +48,12 @@ where
                 self.radio.change(*loss, *range_m);
                 Ok(())
             }
-            Intervention::Waypoint { goal, place_m } => {
-                self.change(Change::Waypoint { goal: *goal, place_m: *place_m })
-            }
-            Intervention::Solid { solid } => self.change(Change::Solid(solid)),
-            Intervention::Move { index, by_m } => self.change(Change::Move(*index, *by_m)),
-            Intervention::Remove { index } => self.change(Change::Remove(*index)),
-            Intervention::Cell { cell, class } => self.change(Change::Cell(*cell, *class)),
+            Intervention::Waypoint { .. }
+            | Intervention::Solid { .. }
+            | Intervention::Move { .. }
+            | Intervention::Remove { .. }
+            | Intervention::Cell { .. } => self.ground.change(self.tick, what),
         }
-    }
-
-    fn change(&mut self, change: Change<'_>) -> Result<(), Refusal> {
-        self.ground.change(self.tick, change)
     }
 
     fn number_of(&self, id: RobotId) -> Option<usize> {
@@ -117,7 +72,7 @@ where
         if self.external.is_some() {
             return Err(Refusal::new("kind", "some of these robots run elsewhere", "run them here"));
         }
-        if !self.ground.is_open(place_m) {
+        if !self.ground.view(self.tick).is_open(place_m) {
             return Err(Refusal::new(
                 "place_m",
                 "no robot can stand there",
@@ -138,7 +93,7 @@ where
             if !robots.contains(&self.number(index)) {
                 continue;
             }
-            let (task, is_up) = (self.ground.task(self.number(index), self.tick), self.is_up(index));
+            let ((_, task), is_up) = (self.ground.setup(self.number(index), self.tick), self.is_up(index));
             let agent = self.computers[index].agent.as_mut();
             // A robot that is down receives the goal at its restart.
             is_of_use |= agent.filter(|_| is_up).is_none_or(|agent| agent.assign(&task).is_ok());
@@ -164,7 +119,7 @@ where
             let what = format!("none of these robots has the parameter {name}");
             return Err(Refusal::new("name", what, "give one that its guidance law or its safety layer has"));
         }
-        self.tuned.push(tuned);
+        self.roster.tuned.push(tuned);
         Ok(())
     }
 
@@ -175,11 +130,5 @@ where
     /// Whether the computer of robot `index` is down.
     pub fn is_down(&self, index: usize) -> bool {
         self.tick < self.computers[index].down_until
-    }
-}
-
-pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(&str, f32)) {
-    for Tuned { name, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
-        set(name, *value);
     }
 }

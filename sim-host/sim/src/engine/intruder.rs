@@ -1,47 +1,45 @@
 //! A foreign body that sends beacons, such as a vehicle with a transponder.
 
+use super::state::{Reader, StateError, write};
+use super::transmitter::Transmitter;
 use crate::radio::{self, HostWire};
 use crate::world::plane::Disc;
 use heapless::Vec as Bounded;
-use serde::Serialize;
 use staya_controller::agent::OUTBOX;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::wire::{Beacon, Format, Header, Message, Wire as _};
 
-pub struct Intruder {
-    pub id: RobotId,
-    pub position_m: [f64; 2],
+pub(super) struct Intruder {
+    id: RobotId,
     wire: HostWire,
     sequence: u16,
     outbox: Vec<u8>,
 }
 
-pub(super) type IntruderState = (HostWire, u16);
-
 impl Intruder {
-    pub fn new(disc: &Disc, format: Format) -> Self {
-        let [x, y, _] = disc.position_m;
-        let wire = radio::wire(format, None, 0);
-        Self { id: disc.id, position_m: [x, y], wire, sequence: 0, outbox: Vec::new() }
+    pub(super) fn new(id: RobotId, format: Format) -> Self {
+        Self { id, wire: radio::wire(format, None, 0), sequence: 0, outbox: Vec::new() }
     }
 
-    pub fn state(&self) -> impl Serialize {
-        (&self.wire, self.sequence)
+    fn disc<'a>(&self, intruders: &'a [Disc]) -> Option<&'a Disc> {
+        intruders.iter().find(|disc| disc.id == self.id)
+    }
+}
+
+impl Transmitter for Intruder {
+    fn id(&self) -> RobotId {
+        self.id
     }
 
-    pub fn restore(&mut self, (wire, sequence): IntruderState) {
-        (self.wire, self.sequence) = (wire, sequence);
-    }
-
-    pub fn outbox(&self) -> &[u8] {
-        &self.outbox
+    fn place_m(&self, intruders: &[Disc]) -> [f64; 2] {
+        self.disc(intruders).map_or([0.0; 2], |disc| [disc.position_m[0], disc.position_m[1]])
     }
 
     /// Prepares a beacon with position and velocity, of a robot that does not give way.
-    pub fn speak(&mut self, disc: &Disc) {
+    fn act(&mut self, _: u32, _: &[u8], intruders: &[Disc]) {
+        self.outbox.clear();
+        let Some(disc) = self.disc(intruders) else { return };
         let milli = |x: f64| libm::round(x * 1000.0);
-        let [x, y, _] = disc.position_m;
-        self.position_m = [x, y];
         let beacon = Beacon {
             position_mm: disc.position_m.map(|x| milli(x) as i32),
             velocity_mmps: disc.velocity_mps.map(|v| milli(v) as i16),
@@ -54,7 +52,19 @@ impl Intruder {
         let mut frame = Bounded::<u8, OUTBOX>::new();
         let said = self.wire.encode(header, &Message::Beacon(beacon), &mut frame);
         said.expect("the scenario was checked for its number");
-        self.outbox.clear();
         self.outbox.extend_from_slice(&frame);
+    }
+
+    fn outbox(&self) -> &[u8] {
+        &self.outbox
+    }
+
+    fn save(&self, bytes: &mut Vec<u8>) {
+        write(&(&self.wire, self.sequence), bytes);
+    }
+
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        (self.wire, self.sequence) = from.read("an intruder")?;
+        Ok(())
     }
 }

@@ -1,9 +1,11 @@
 //! The operator's key server: sends the swarm's next key to each robot, encrypted with the robot's
 //! own key, and collects confirmations.
 
+use super::state::{Reader, StateError, write};
+use super::transmitter::Transmitter;
 use crate::radio;
 use crate::scenario::{Roll, Scenario};
-use serde::{Deserialize, Serialize};
+use crate::world::plane::Disc;
 use staya_controller::auth::Master;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{KeyPhase, OperatorWire, Postcard, Wire as _};
@@ -14,7 +16,7 @@ const AGAIN_TICKS: u32 = 5;
 /// Attempts after which all robots are contacted again, since one of them may have restarted.
 const ROUNDS: u32 = 20;
 
-pub struct KeyServer {
+pub(super) struct KeyServer {
     wire: OperatorWire<{ radio::PEERS }>,
     place_m: [f64; 2],
     robots: Vec<RobotId>,
@@ -27,18 +29,6 @@ pub struct KeyServer {
     overlap_ticks: u32,
     held: BTreeMap<RobotId, (u16, KeyPhase)>,
     outbox: Vec<u8>,
-}
-
-/// Deserialized form of [`KeyServer::state`].
-#[derive(Deserialize)]
-pub struct KeeperState {
-    wire: Box<OperatorWire<{ radio::PEERS }>>,
-    rolls_left: usize,
-    revoked: BTreeSet<RobotId>,
-    generation: u16,
-    phase: KeyPhase,
-    until: u32,
-    held: BTreeMap<RobotId, (u16, KeyPhase)>,
 }
 
 impl KeyServer {
@@ -61,35 +51,36 @@ impl KeyServer {
             outbox: Vec::new(),
         })
     }
+}
 
-    /// Id at the radio; it never appears in a frame.
-    pub(super) const fn id() -> RobotId {
+impl Transmitter for KeyServer {
+    /// It never appears in a frame.
+    fn id(&self) -> RobotId {
         RobotId(u32::MAX - 1_000_000)
     }
 
-    #[doc(hidden)]
-    pub const fn place_m(&self) -> [f64; 2] {
+    fn place_m(&self, _: &[Disc]) -> [f64; 2] {
         self.place_m
     }
 
-    pub(super) fn outbox(&self) -> &[u8] {
+    fn outbox(&self) -> &[u8] {
         &self.outbox
     }
 
-    pub(super) fn state(&self) -> impl Serialize {
+    fn save(&self, bytes: &mut Vec<u8>) {
         let Self { wire, rolls, revoked, generation, phase, until, held, .. } = self;
-        (wire, rolls.len(), revoked, generation, phase, until, held)
+        write(&(wire, rolls.len(), (revoked, generation, phase, until, held)), bytes);
     }
 
-    pub(super) fn restore(&mut self, state: KeeperState) {
-        let left = self.rolls.len().saturating_sub(state.rolls_left);
-        self.rolls.drain(..left);
-        let KeeperState { wire, revoked, generation, phase, until, held, .. } = state;
+    fn load(&mut self, from: &mut Reader<'_>) -> Result<(), StateError> {
+        let (wire, rolls_left, rest): (Box<_>, usize, _) = from.read("the key server")?;
         self.wire = *wire;
-        (self.revoked, self.generation, self.phase, self.until, self.held) = (revoked, generation, phase, until, held);
+        self.rolls.drain(..self.rolls.len().saturating_sub(rolls_left));
+        (self.revoked, self.generation, self.phase, self.until, self.held) = rest;
+        Ok(())
     }
 
-    pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
+    fn act(&mut self, tick: u32, inbox: &[u8], _: &[Disc]) {
         self.outbox.clear();
         let mut rest = inbox;
         while let Some(frame) = Postcard.next_frame(&mut rest) {

@@ -1,14 +1,26 @@
 //! The laws of robots in a scenario: Staya's, those of papers, and one of the caller.
 
-use crate::own_law::Own;
-use crate::scenario::Scenario;
+use super::witness::Witness;
+use crate::own_law::{Own, OwnLaw};
+use crate::scenario::{NamedLaw, Scenario};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, FormationGuidance, GridWorkspace, GuidanceSetup, LEARNED, MAP_TILES, SharedMap, TEMPLATE, VISITS,
+    AnyLaw, AnySafety, AnySurroundings, CellState, FormationGuidance, GridWorkspace, GuidanceSetup, Guided,
+    HALF_PLANES, InCell, InCells, InPlane, LEARNED, MAP_TILES, OnGrid, SharedMap, TEMPLATE, VISITS,
 };
+use staya_controller::geom::Vec2;
 use staya_controller::laws;
 use staya_papers::criteria::PublishedParams;
 use staya_papers::{Course, PublishedFormation};
+use std::collections::HashMap;
+use thiserror::Error;
+
+/// Law of an agent: any law of scenario files or of a caller, which an operator may override.
+pub type HostLaw = Guided<f32, ScenarioLaw>;
+/// Safety layer of an agent: any layer of scenario files.
+pub type HostSafety = Witness<AnySafety<f32, HALF_PLANES>>;
+/// Creates the law and the safety layer of a robot, at each of its starts.
+pub type Agents = Box<dyn Fn(usize) -> (HostLaw, HostSafety) + Send + Sync>;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
 pub const WIDE: usize = 1225;
@@ -27,29 +39,100 @@ laws! {
     }
 }
 
-/// Which law of a paper replaces Staya's formation.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Papers {
-    published: Option<PublishedParams>,
-    looks_ahead: bool,
+/// Staya's law for a robot, or that of a paper instead of Staya's formation.
+fn law_of(setup: &GuidanceSetup, published: Option<PublishedParams>, looks_ahead: bool, map: Map) -> ScenarioLaw {
+    match (setup, published) {
+        (GuidanceSetup::Formation { route, template, .. }, Some(params)) => {
+            let law = PublishedFormation::new(route.params, params, template.clone());
+            ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
+        }
+        (GuidanceSetup::Formation { route, formation, template, .. }, None) if looks_ahead => {
+            let law = FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
+            ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
+        }
+        _ => ScenarioLaw::BuiltIn(setup.law(map)),
+    }
 }
 
-impl Papers {
-    pub(super) const fn of(scenario: &Scenario) -> Self {
-        Self { published: scenario.published, looks_ahead: scenario.looks_ahead }
-    }
+/// Returns a function that creates the law and the safety layer of a robot.
+#[must_use]
+pub fn agents(scenario: &Scenario) -> Agents {
+    let kind = |index| (scenario.guidance(index), scenario.safety(index), limits(scenario, index));
+    // Members of formations differ individually, others only by group; each kind is created once.
+    let groups = scenario.plane.as_ref().map_or(0, |plane| plane.groups.len());
+    let group_of = |index: usize| match (scenario.formation_of(index), &scenario.plane) {
+        (Some(_), _) => groups + 1 + index,
+        (None, Some(plane)) => plane.starts[index].group.map_or(0, |group| group + 1),
+        (None, None) => 0,
+    };
+    let (mut kinds, mut known) = (Vec::new(), HashMap::new());
+    let of_robots = (0..scenario.robots.len()).map(|index| {
+        *known.entry(group_of(index)).or_insert_with(|| {
+            kinds.push(kind(index));
+            kinds.len() - 1
+        })
+    });
+    let of_robots: Vec<usize> = of_robots.collect();
+    let (maps, published, looks_ahead) = (scenario.maps, scenario.published, scenario.looks_ahead);
+    let own = scenario.law.as_ref().map(NamedLaw::law);
+    Box::new(move |index| {
+        let (guidance, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
+        // Robots that do not plan on terrain have no map to share.
+        let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
+        let law = own
+            .as_ref()
+            .map_or_else(|| law_of(guidance, published, looks_ahead, map), |own| ScenarioLaw::Own(own.clone()));
+        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+    })
+}
 
-    pub(super) fn law(&self, setup: &GuidanceSetup, map: Map) -> ScenarioLaw {
-        match (setup, self.published) {
-            (GuidanceSetup::Formation { route, template, .. }, Some(params)) => {
-                let law = PublishedFormation::new(route.params, params, template.clone());
-                ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
-            }
-            (GuidanceSetup::Formation { route, formation, template, .. }, None) if self.looks_ahead => {
-                let law = FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
-                ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
-            }
-            _ => ScenarioLaw::BuiltIn(setup.law(map)),
-        }
-    }
+/// Speed and arrival distance of a robot that an operator sends to a waypoint, m/s and metres.
+fn limits(scenario: &Scenario, index: usize) -> [f32; 2] {
+    let group = scenario.plane.as_ref().map(|setup| setup.group(index));
+    group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32))
+}
+
+/// As [`agents`], with `law(i)` as the law of robot `i`. The scenario determines the bodies, safety
+/// layers, radio, faults and goals (given by orders).
+///
+/// # Errors
+/// [`WrongWorld`].
+pub fn own_agents<L: OwnLaw>(
+    scenario: &Scenario,
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
+) -> Result<Agents, WrongWorld> {
+    fits::<L>(scenario)?;
+    let robots = (0..scenario.robots.len()).map(|index| (scenario.safety(index), limits(scenario, index)));
+    let robots: Vec<_> = robots.collect();
+    Ok(Box::new(move |index| {
+        let (safety, [speed_mps, tolerance_m]) = &robots[index];
+        let law = ScenarioLaw::Own(Own::new(law(index)));
+        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+    }))
+}
+
+fn fits<L: OwnLaw>(scenario: &Scenario) -> Result<(), WrongWorld> {
+    let grid = OnGrid { cell: CellState::default(), window: None };
+    let plane = InPlane { max_speed_mps: 0.0, obstacles: &[] };
+    let in_cell = InCell { offset_m: Vec2::ZERO, cell_m: 1.0 };
+    let (surroundings, wrong) = match &scenario.plane {
+        None => (AnySurroundings::OnGrid(grid), WrongWorld::Grid),
+        Some(setup) if !setup.has_terrain => (AnySurroundings::InPlane(plane), WrongWorld::Plane),
+        Some(_) => (AnySurroundings::InCells(InCells { grid, plane, in_cell }), WrongWorld::Land),
+    };
+    L::Surroundings::try_from(surroundings).map(|_| ()).map_err(|_| wrong)
+}
+
+/// The law needs other surroundings than the scenario's robots have.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum WrongWorld {
+    /// The scenario has no `[plane]`.
+    #[error("the scenario has no table [plane], and the law goes by velocities; give it one")]
+    Grid,
+    /// The scenario has `[plane]` and no land.
+    #[error("the scenario has no [terrain], and the law plans on land; give it one")]
+    Plane,
+    /// The scenario has `[plane]` on land.
+    #[error("the scenario has a table [plane], and the law moves from cell to cell; leave it out")]
+    Land,
 }

@@ -21,12 +21,13 @@ mod intruder;
 mod key_server;
 mod laws;
 mod operator;
-mod own;
 mod plane;
 mod report;
+mod roster;
 mod simulate;
 mod state;
 mod status;
+mod transmitter;
 mod transmitters;
 mod witness;
 
@@ -35,57 +36,54 @@ pub use checkpoint_interval::CheckpointInterval;
 use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
-pub use ground::{Ground, HostLaw, StateWords, WrongWorld};
-pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, known};
-pub use intervene::Change;
-pub use laws::{ScenarioLaw, WIDE};
-pub use operator::{Observation, Operated, operated};
-pub use own::{operated_own, own_agents, simulate_own, simulate_own_from, simulate_own_with};
-pub use plane::{PlaneGround, Sensor};
-#[doc(hidden)]
-pub use simulate::{LawOf, SafetyOf, agents};
-pub use simulate::{Moment, Outcome, StartError, Watch, simulate, simulate_from, simulate_with};
-pub use state::{Saves, State, StateError};
+pub use ground::{AnyGround, Ground, Senses, StateWords, View};
+pub use inspect::{Choice, Inspection, Known, Permitted, SeenLand, known};
+pub use laws::{Agents, HostLaw, HostSafety, ScenarioLaw, WIDE, WrongWorld, agents, own_agents};
+pub use operator::{Observation, operated};
+pub use plane::PlaneGround;
+pub use simulate::{Moment, Outcome, StartError, Watch, simulate, simulate_from, simulate_own, simulate_with};
+pub use state::{Reader, Saves, StateError};
 pub use status::Status;
 
 use crate::metrics::waits::Waits;
-use crate::metrics::{Arrivals, FormationQuality};
+use crate::metrics::{Arrivals, FormationMeters, FormationQuality, Member, in_cells};
 use crate::radio::{self, HostWire, Radio};
-use crate::record::{PacketCounts, TickRow};
+use crate::record::{Motion, PacketCounts, TickRow};
 use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
-use attacker::Attacker;
+use crate::world::Misplaced;
 use hash::StateHash;
-use intervene::Tuned;
-use intruder::Intruder;
-use key_server::KeyServer;
+use operator::Operator;
 use rayon::prelude::*;
+use roster::Roster;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, Inputs, Law, NEIGHBORS, Outputs, Safety, Setup,
+    Agent, AgentConfig, AnyInputs, Command, Event, GridWorkspace, Inputs, NEIGHBORS, Outputs, Setup, Task,
 };
-use staya_controller::auth::Key;
-use staya_controller::geom::Torus;
-use staya_controller::neighbor::{PlausibilityLimits, TrackParams, Tracker};
+use staya_controller::neighbor::Tracker;
 use staya_controller::robot::RobotId;
-use staya_controller::time::{Duration, Instant};
-use staya_controller::wire::{Format, Ring};
+use staya_controller::time::Instant;
+use staya_controller::wire::Ring;
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
-use transmitters::ring;
+pub use transmitter::Transmitter;
+use transmitters::transmitters;
 
 /// Smallest number of robots per parallel task; smaller tasks cost more to schedule than to run.
 const BATCH: usize = 64;
 
 /// An agent of this process; it has a tracker if the scenario's robots have sensors.
-pub type HostAgent<L, A> = Agent<f32, L, NEIGHBORS, A, HostWire, Option<Box<Tracker<f32>>>>;
+pub type HostAgent = Agent<f32, HostLaw, NEIGHBORS, HostSafety, HostWire, Option<Box<Tracker<f32>>>>;
 
 /// A robot's computer.
-#[derive(Debug)]
-pub struct OnboardComputer<G: Law<f32>, A> {
+#[derive(Debug, Serialize, Deserialize)]
+pub struct OnboardComputer {
     /// `None`: the controller is external.
-    agent: Option<HostAgent<G, A>>,
+    agent: Option<HostAgent>,
     /// Frames of the last step, without spare capacity.
+    #[serde(skip)]
     outbox: Vec<u8>,
+    #[serde(skip)]
     events: Vec<Event>,
     mail: Vec<u8>,
     boot: u8,
@@ -96,24 +94,26 @@ pub struct OnboardComputer<G: Law<f32>, A> {
     heard_bytes: u64,
 }
 
-impl<G: Law<f32>, A> OnboardComputer<G, A> {
+impl OnboardComputer {
     const fn now(&self, tick: u32, tick_us: u32) -> Instant {
         Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
     }
 }
 
-struct Tick<'a, W> {
+struct Tick<'a> {
     tick: u32,
-    ground: &'a W,
+    ground: &'a dyn Ground,
     radio: &'a Radio,
+    /// Frames of the operator to all robots.
+    orders: &'a [u8],
 }
 
-impl<W: Ground> Tick<'_, W> {
-    fn inputs<'b, G: Law<f32>, A>(
+impl Tick<'_> {
+    fn inputs<'b>(
         &'b self,
         index: usize,
-        computer: &OnboardComputer<G, A>,
-        senses: &'b mut W::Scratch,
+        computer: &OnboardComputer,
+        senses: &'b mut Senses,
         heard: &'b mut Vec<u8>,
     ) -> AnyInputs<'b, f32> {
         // Frames that arrived while it was down are lost.
@@ -122,12 +122,11 @@ impl<W: Ground> Tick<'_, W> {
             true => &[],
             false => self.radio.inbox(index),
         };
-        let orders = self.ground.orders(self.tick).unwrap_or_default();
-        let inbox = if orders.is_empty() && computer.mail.is_empty() {
+        let inbox = if self.orders.is_empty() && computer.mail.is_empty() {
             delivered
         } else {
             heard.clear();
-            for bytes in [delivered, orders, &computer.mail] {
+            for bytes in [delivered, self.orders, &computer.mail] {
                 heard.extend_from_slice(bytes);
             }
             heard
@@ -136,17 +135,12 @@ impl<W: Ground> Tick<'_, W> {
     }
 }
 
-/// Takes the robot's index in [`Scenario::robots`].
-type AgentFactory<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
-
-/// A running scenario in world `W`, with guidance laws `G` and safety layers `A`.
+/// A running scenario. An operator may observe it and command its robots between ticks.
 ///
-/// Fields are public for `staya-mpi`, which steps a part of a world in each process.
-pub struct Engine<W, G: Law<f32>, A> {
-    seed: u64,
-    format: Format,
-    key: Option<Key>,
-    plausibility: PlausibilityLimits<f32>,
+/// Robots have the numbers of [`Scenario::robots`]. Fields are public for `staya-mpi`, which steps
+/// a part of a world in each process.
+pub struct Engine {
+    roster: Roster,
     tick_us: u32,
     #[doc(hidden)]
     pub tick: u32,
@@ -159,37 +153,33 @@ pub struct Engine<W, G: Law<f32>, A> {
     changes: Vec<LandChange>,
     /// Pending interventions, sorted by tick.
     pub interventions: VecDeque<(u32, Intervention)>,
-    tuned: Vec<Tuned>,
     /// Robot ranges of the formations, whose goals move together.
     shapes: Vec<Range<usize>>,
-    factory: AgentFactory<G, A>,
     #[doc(hidden)]
-    pub ground: W,
-    torus: Option<Torus<f32>>,
-    tracking: Option<TrackParams<f32>>,
+    pub ground: AnyGround,
+    /// Robots have no transmitter.
+    is_mute: bool,
+    meter: Option<FormationMeters>,
     #[doc(hidden)]
     pub radio: Radio,
     #[doc(hidden)]
-    pub computers: Vec<OnboardComputer<G, A>>,
+    pub computers: Vec<OnboardComputer>,
     #[doc(hidden)]
     pub commands: Vec<Command<f32>>,
     #[doc(hidden)]
     pub statuses: Vec<Status>,
     #[doc(hidden)]
     pub chains: Vec<StateHash>,
-    /// Positions of the robots, the attackers, the intruders and the key server, in this order.
+    /// Positions of the robots and the other transmitters, in this order.
     pub positions_m: Vec<[f64; 2]>,
-    #[doc(hidden)]
-    pub attackers: Vec<Attacker>,
-    #[doc(hidden)]
-    pub intruders: Vec<Intruder>,
-    #[doc(hidden)]
-    pub keeper: Option<KeyServer>,
+    /// Transmitters outside the swarm.
+    pub others: Vec<Box<dyn Transmitter>>,
     /// Keys of robots on other ranks that attackers take over in this tick.
     pub taken: HashMap<RobotId, Ring>,
-    master: Option<Key>,
     external: Option<External>,
-    keeps_events: bool,
+    operator: Option<Operator>,
+    /// Record row of the last tick.
+    row: TickRow,
     #[doc(hidden)]
     pub arrivals: Arrivals,
     #[doc(hidden)]
@@ -202,74 +192,50 @@ pub struct Engine<W, G: Law<f32>, A> {
     pub throttled: u64,
 }
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
-    /// Creates the engine before the first tick of `scenario`, with the bodies of `ground`. Each
-    /// start of robot `i` in [`Scenario::robots`] calls `factory(i)` for its law and safety layer.
-    pub fn new(scenario: &Scenario, ground: W, factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
+impl Engine {
+    /// Creates the engine before the first tick of `scenario`. Each start of robot `i` calls
+    /// `agents(i)` for its law and safety layer.
+    ///
+    /// # Errors
+    /// Two robots start in one cell, or one starts in a wall.
+    pub fn new(scenario: &Scenario, agents: Agents) -> Result<Self, Misplaced> {
         let here = (0..scenario.robots.len() as u32).collect();
-        Self::part(scenario, ground, factory, here, true)
+        Ok(Self::part(scenario, AnyGround::new(scenario)?, agents, here, true))
     }
 
     /// Creates the engine for the robots with the indices `here` in [`Scenario::robots`], whose
     /// bodies `ground` has in this order. With `has_others`, this process also simulates the
-    /// attackers, the intruders and the key server.
-    pub fn part(
-        scenario: &Scenario,
-        ground: W,
-        factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
-        here: Vec<u32>,
-        has_others: bool,
-    ) -> Self {
+    /// transmitters outside the swarm.
+    pub fn part(scenario: &Scenario, ground: AnyGround, agents: Agents, here: Vec<u32>, has_others: bool) -> Self {
         let robots = scenario.robots.clone();
-        let format = scenario.radio.format;
-        let attackers = scenario.attacks.iter().filter(|_| has_others);
-        let attackers = attackers.map(|attack| Attacker::new(attack, scenario));
-        let attackers: Vec<_> = attackers.collect();
+        let intruders = ground.view(0).intruders;
+        let others = if has_others { transmitters(scenario, intruders) } else { Vec::new() };
         let ids = here.iter().map(|&number| robots[number as usize].id);
-        let intruders = ground.heard().filter(|_| has_others);
-        let intruders: Vec<_> = intruders.map(|disc| Intruder::new(disc, format)).collect();
-        let ids = ids.chain((0..attackers.len()).map(Attacker::id));
-        let ids = ids.chain(intruders.iter().map(|intruder| intruder.id));
-        let keeper = KeyServer::new(scenario).filter(|_| has_others);
-        let ids = ids.chain(keeper.iter().map(|_| KeyServer::id()));
+        let ids = ids.chain(others.iter().map(|other| other.id()));
         let mut positions_m = vec![[0.0; 2]; here.len()];
-        positions_m.extend(attackers.iter().map(Attacker::place_m));
-        positions_m.extend(intruders.iter().map(|intruder| intruder.position_m));
-        positions_m.extend(keeper.iter().map(KeyServer::place_m));
+        positions_m.extend(others.iter().map(|other| other.place_m(intruders)));
         let mut engine = Self {
-            seed: scenario.seed,
-            format,
-            key: scenario.key.clone(),
-            plausibility: scenario.plausibility,
+            roster: Roster::new(scenario, agents),
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
             changes: scenario.changes.clone(),
             interventions: scenario.interventions.iter().cloned().collect(),
-            tuned: Vec::new(),
             shapes: scenario.formations.iter().map(Formation::members).collect(),
-            factory: Box::new(factory),
+            is_mute: scenario.sensing.is_some_and(|sensing| !sensing.has_beacons),
+            meter: FormationMeters::new(scenario),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
             ground,
-            torus: scenario.torus_m().map(|sides_m| Torus { size_m: sides_m.map(|side_m| side_m as f32) }),
-            tracking: scenario.sensing.map(|sensing| sensing.tracking),
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],
             statuses: Vec::new(),
             chains: here.iter().map(|&number| StateHash::new(robots[number as usize].id)).collect(),
             positions_m,
-            attackers,
-            intruders,
-            keeper,
+            others,
             taken: HashMap::new(),
-            master: scenario.keeping.as_ref().map(|keeping| keeping.master.clone()),
             external: None,
-            keeps_events: false,
+            operator: None,
+            row: TickRow::default(),
             arrivals: Arrivals::new(here.len()),
             waits: Waits::new(here.len()),
             collisions: 0,
@@ -291,44 +257,20 @@ where
         self.here[index] as usize
     }
 
-    fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
-        let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        AgentConfig {
-            boot,
-            seed: self.seed,
-            plausibility: self.plausibility,
-            ..self.ground.config(self.number(index), tick)
-        }
+    fn setup(&self, index: usize, boot: u8) -> (AgentConfig<f32>, Task) {
+        let (config, task) = self.ground.setup(self.number(index), self.tick);
+        (self.roster.config(config, boot), task)
     }
 
-    fn start(&self, index: usize, boot: u8) -> OnboardComputer<G, A> {
-        let number = self.number(index);
-        let (law, safety) = (self.factory)(number);
-        let wire = match &self.master {
-            None => radio::wire(self.format, self.key.as_ref(), boot),
-            // The last key survives a restart in persistent memory.
-            Some(master) => {
-                let ring = self.computers.get(index).and_then(|computer| ring(computer.agent.as_ref()?.wire()));
-                let stored = ring.and_then(|ring| ring.seeds()[0].map(|(generation, seed)| (generation, seed.clone())));
-                radio::own_wire(master, self.config(index, boot).id, stored, boot)
-            }
-        };
-        let tracker = self.tracking.map(|params| Box::new(Tracker::new(params)));
-        let mut agent = Agent::with_perception(&self.config(index, boot), law, safety, wire, tracker);
-        if let Some(torus) = self.torus {
-            agent.set_torus(torus);
-        }
-        // Only laws without a task refuse it; the scenario was checked for that.
-        let _ = agent.assign(&self.ground.task(number, self.tick));
-        intervene::retune(&self.tuned, number, |name, value| {
-            // A value that was refused once is refused again.
-            let _ = agent.set_parameter(name, value);
-        });
+    fn start(&self, index: usize, boot: u8) -> OnboardComputer {
+        let (config, task) = self.setup(index, boot);
+        let previous = self.computers.get(index).and_then(|computer| computer.agent.as_ref());
+        let agent = self.roster.agent(self.number(index), &config, &task, previous);
         self.computer(Some(agent), boot)
     }
 
     #[doc(hidden)]
-    pub fn computer(&self, agent: Option<HostAgent<G, A>>, boot: u8) -> OnboardComputer<G, A> {
+    pub fn computer(&self, agent: Option<HostAgent>, boot: u8) -> OnboardComputer {
         OnboardComputer {
             agent,
             outbox: Vec::new(),
@@ -344,11 +286,12 @@ where
 
     fn restart(&mut self, index: usize, boot: u8) {
         self.ground.forget(index);
-        let (config, task) = (self.config(index, boot), self.ground.task(self.number(index), self.tick));
+        let (config, task) = self.setup(index, boot);
         let robots = self.external.as_mut().and_then(|external| {
             let found = external.robots.iter().find(|(robot, ..)| *robot == index);
             let (_, guidance, safety) = found?;
-            let setup = Setup { agent: config, guidance: guidance.clone(), safety: *safety, format: self.format };
+            let setup =
+                Setup { agent: config, guidance: guidance.clone(), safety: *safety, format: self.roster.format };
             external.controllers.start(index, setup, task);
             Some(())
         });
@@ -364,38 +307,46 @@ where
         self.apply_interventions();
         self.apply_faults();
         let refused = self.decide();
-        self.attack();
-        self.intrude();
-
-        self.keep_keys();
+        self.transmit();
         let sent = self.send();
         let carried = self.radio.receive(self.tick, &self.positions_m, &[], sent);
         let packets = self.count(refused, carried);
 
-        self.ground.advance(self.tick, &self.commands);
-        self.collisions += self.ground.count_collisions(self.tick);
+        self.collisions += self.ground.advance(self.tick, &self.commands);
         self.observe();
-        let keeping = self.keeping(true);
+        let members: Vec<_> = self.members().collect();
+        let quality = self.formation_quality(&members, true);
         self.tick += 1;
-        self.row(keeping, packets)
+        self.row = self.row(quality, packets);
+        self.row
     }
 
-    /// Quality of the formations, if any; `counts` adds it to the run's statistics.
-    fn keeping(&mut self, counts: bool) -> Option<FormationQuality> {
-        let (computers, tick) = (&self.computers, self.tick);
-        self.ground.keeping(counts, &|index| tick < computers[index].down_until)
+    /// Members of formations in this process; none if there is no formation.
+    pub fn members(&self) -> impl Iterator<Item = Member> {
+        let view = self.ground.view(self.tick);
+        let cell_m = view.terrain.map(|land| land.cell_m).filter(|_| self.meter.is_some());
+        let has_bodies = view.clearance.is_some();
+        let indices = cell_m.into_iter().flat_map(|cell_m| (0..self.here.len()).map(move |index| (index, cell_m)));
+        indices.map(move |(index, cell_m)| {
+            let Motion { cell, position_m: [x, y, _], .. } = self.ground.motion(index, self.tick);
+            let at = if has_bodies { [x / cell_m, y / cell_m] } else { in_cells(cell) };
+            Member { at, is_down: self.is_down(index) }
+        })
+    }
+
+    /// Quality of the formations, if any; `members` are those of all processes, in the order of
+    /// robots. `counts` adds it to the run's statistics.
+    pub fn formation_quality(&mut self, members: &[Member], counts: bool) -> Option<FormationQuality> {
+        let meter = self.meter.as_mut().filter(|_| !members.is_empty())?;
+        Some(if counts { meter.measure(members) } else { meter.look(members) })
     }
 
     /// Transmits the frames of this process.
     pub fn send(&mut self) -> radio::Counts {
-        let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
-        let keeper = self.keeper.as_ref().map_or(&[][..], KeyServer::outbox);
+        let (computers, others) = (&self.computers, &self.others);
         let outbox = |index: usize| match computers.get(index) {
             Some(computer) => computer.outbox.as_slice(),
-            None => match attackers.get(index - computers.len()) {
-                Some(attacker) => attacker.outbox(),
-                None => intruders.get(index - computers.len() - attackers.len()).map_or(keeper, Intruder::outbox),
-            },
+            None => others[index - computers.len()].outbox(),
         };
         self.radio.send(self.tick, &self.positions_m, outbox)
     }
@@ -423,10 +374,11 @@ where
     }
 
     fn decide_here(&mut self) -> PacketCounts {
-        let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
-        let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
-        let scratch = || (G::Workspace::default(), W::Scratch::default(), Vec::new(), Vec::new(), Outputs::default());
-        let is_mute = self.ground.is_mute();
+        let (tick, tick_us, is_mute, keeps_events) = (self.tick, self.tick_us, self.is_mute, self.operator.is_some());
+        let orders = self.ground.view(tick).orders;
+        let moment = Tick { tick, ground: &*self.ground, radio: &self.radio, orders };
+        let scratch =
+            || (GridWorkspace::<WIDE>::default(), Senses::default(), Vec::new(), Vec::new(), Outputs::default());
         let work = (&mut self.computers, &mut self.commands, &mut self.statuses, &mut self.positions_m);
         work.into_par_iter()
             .enumerate()
@@ -455,12 +407,7 @@ where
                     if !seen.is_empty() {
                         let _ = agent.see(seen, &inputs.state, now);
                     }
-                    // A robot whose law needs other surroundings than its world has does nothing.
-                    let Ok(surroundings) = inputs.surroundings.try_into() else {
-                        return PacketCounts::default();
-                    };
-                    let own = Inputs { state: inputs.state, surroundings, inbox: inputs.inbox };
-                    agent.step_into(&own, now, workspace, out);
+                    agent.step_into(&inputs, now, workspace, out);
                     if is_mute {
                         out.outbox.clear();
                     }
@@ -489,7 +436,7 @@ where
 
     /// Records the state of all robots after the second phase.
     pub fn observe(&mut self) {
-        let (ground, tick, statuses) = (&self.ground, self.tick, &self.statuses);
+        let (ground, tick, statuses) = (&*self.ground, self.tick, &self.statuses);
         let chains = self.chains.par_iter_mut().enumerate().with_min_len(BATCH);
         chains.for_each(|(index, chain)| chain.extend(&ground.words(index, tick, &statuses[index])));
         self.arrivals.note(|index| ground.arrival(index, tick, &statuses[index]));

@@ -1,34 +1,26 @@
-//! The plane (or space) as seen by the engine.
+//! Bodies in the plane or in space, and the sensors of their robots.
 
+mod ground;
 mod orders;
-mod state;
 
 pub(super) use orders::frames;
 use orders::{course, waypoint};
-pub use state::{PlaneBody, PlaneShared};
 
-use super::Status;
-use super::grid::Changed;
-use super::ground::{Ground, StateWords};
-use super::intervene::Change;
-use crate::metrics::{FormationMeters, FormationQuality, Member};
-use crate::record::Motion;
-use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
-use crate::terrain::Terrain;
-use crate::world::Refusal;
+use super::grid::{Changed, duration};
+use super::ground::Senses;
+use crate::scenario::{Order, PlaneSetup, Robot, Scenario};
 use crate::world::plane::{Clearance, Disc, Plane, Sight, Solid, narrow};
-use crate::world::scouts::{Memory, Scouts};
+use crate::world::scouts::Scouts;
 use crate::world::window_but;
 use staya_controller::agent::{
-    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, ContactLossPolicy, GuidanceKind, InCell, InCells,
-    InPlane, Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, ContactLossPolicy, GuidanceKind, InCell, InCells, InPlane,
+    Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
-use staya_controller::grid::{Cell, GridFrame, UNIT};
-use staya_controller::neighbor::Sighting;
-use staya_controller::obstacle::{Obstacle, grid_walls};
-use staya_controller::robot::{Mode, RobotId};
+use staya_controller::grid::{Cell, GridFrame};
+use staya_controller::obstacle::grid_walls;
+use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
 use staya_controller::wire::Format;
 
@@ -46,11 +38,10 @@ pub struct PlaneGround {
     pub clearance: Clearance,
     /// Smallest gap between two bodies after the last tick, metres.
     pub gap_m: Option<f64>,
-    #[doc(hidden)]
-    pub meter: Option<FormationMeters>,
     changed: Changed,
     sight: Option<Sight>,
-    is_mute: bool,
+    /// Number of the first robot of a goal flock.
+    flock: Option<usize>,
     /// Robots' knowledge of terrain outside their sight.
     pub scouts: Option<Scouts>,
     robots: Vec<Robot>,
@@ -97,12 +88,11 @@ impl PlaneGround {
         });
         Self {
             sight,
-            is_mute: scenario.sensing.is_some_and(|sensing| !sensing.has_beacons),
+            flock: (0..setup.starts.len()).find(|&index| setup.group(index).guidance.kind() == GuidanceKind::GoalFlock),
             clearance: Clearance::FREE,
             gap_m: None,
             changed: Changed::new(),
             scouts: scenario.scouts(),
-            meter: FormationMeters::new(scenario),
             plane,
             robots: scenario.numbered(),
             numbers: (0..scenario.robots.len() as u32).collect(),
@@ -131,9 +121,9 @@ impl PlaneGround {
         index: usize,
         position_m: [f64; 3],
         velocity_mps: [f64; 3],
-        senses: &'a mut Sensor,
+        senses: &'a mut Senses,
     ) -> AnyInputs<'a, f32> {
-        let Sensor { cells, known, obstacles } = senses;
+        let Senses { cells, known, obstacles } = senses;
         let group = self.setup.group(self.number(index));
         let sight_m = group.sight_m + group.radius_m;
         obstacles.clear();
@@ -188,160 +178,8 @@ impl PlaneGround {
         orders.filter(move |order| order.index > 0 || order.tick >= self.since[number])
     }
 
-    /// Body of robot `number` at its start.
-    pub fn disc_of(&self, number: usize, id: RobotId) -> Disc {
-        disc(id, &self.setup, number)
-    }
-
-    fn number(&self, index: usize) -> usize {
-        self.numbers[index] as usize
-    }
-
-    /// Cell of a position, offset from its centre, and side of a cell; metres.
-    fn in_cell(&self, position_m: [f64; 3]) -> Option<(Cell, [f64; 2], f64)> {
-        let cell = self.plane.cell(position_m)?;
-        let land = self.plane.terrain()?;
-        let off = |cells: i16, axis: usize| {
-            let center = land.origin_m[axis] + (f64::from(cells) + 0.5) * land.cell_m;
-            position_m[axis] - center
-        };
-        Some((cell, [off(cell.x, 0), off(cell.y, 1)], land.cell_m))
-    }
-}
-
-fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
-    let (group, start) = (setup.group(number), &setup.starts[number]);
-    Disc {
-        id,
-        radius_m: group.radius_m,
-        position_m: start.position_m,
-        velocity_mps: start.velocity_mps,
-        abilities: group.abilities,
-        downwash: group.downwash(),
-    }
-}
-
-/// Buffers for a robot's sensor data.
-#[derive(Default)]
-pub struct Sensor {
-    cells: Vec<u8>,
-    known: Vec<u8>,
-    obstacles: Vec<Obstacle<f32>>,
-}
-
-impl Ground for PlaneGround {
-    type Scratch = Sensor;
-    type Body = PlaneBody;
-    type Shared = PlaneShared;
-
-    fn body(&self, index: usize) -> PlaneBody {
-        self.body_now(index)
-    }
-
-    fn set_body(&mut self, index: usize, body: PlaneBody) -> Result<(), &'static str> {
-        self.put_body(index, body)
-    }
-
-    fn note(&mut self, number: usize, body: PlaneBody) {
-        self.note_body(number, body);
-    }
-
-    fn shared(&self) -> PlaneShared {
-        self.shared_now()
-    }
-
-    fn set_shared(&mut self, shared: PlaneShared) -> Result<(), &'static str> {
-        self.put_shared(shared)
-    }
-
-    fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Sensor) -> AnyInputs<'a, f32> {
-        let Disc { position_m, velocity_mps, .. } = self.plane.discs()[index];
-        self.sense_at(index, position_m, velocity_mps, senses)
-    }
-
-    fn sightings(&self, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
-        match &self.sight {
-            Some(sight) => sight.sightings(&self.plane, index, tick, sightings),
-            None => sightings.clear(),
-        }
-    }
-
-    fn is_mute(&self) -> bool {
-        self.is_mute
-    }
-
-    fn motion(&self, index: usize, _: u32) -> Motion {
-        let disc = &self.plane.discs()[index];
-        Motion {
-            cell: self.plane.cell(disc.position_m).unwrap_or_default(),
-            position_m: disc.position_m,
-            velocity_mps: disc.velocity_mps,
-        }
-    }
-
-    fn forget(&mut self, index: usize) {
-        if let Some(scouts) = &mut self.scouts {
-            scouts.put(index, Memory::new());
-        }
-    }
-
-    fn advance(&mut self, _: u32, commands: &[Command<f32>]) {
-        if let (Some(scouts), Some(land)) = (&mut self.scouts, self.plane.terrain()) {
-            let (plane, discs) = (&self.plane, self.plane.discs());
-            scouts.observe(land, |index| plane.cell(discs[index].position_m));
-        }
-        self.plane.advance(commands);
-        if let Some(sight) = &mut self.sight {
-            sight.look(&self.plane);
-        }
-    }
-
-    fn count_collisions(&mut self, _: u32) -> u64 {
-        let now = self.plane.clearance();
-        self.clearance.add(&now);
-        self.gap_m = Some(now.bodies_m).filter(|gap_m| gap_m.is_finite());
-        now.overlaps + now.intrusions
-    }
-
-    fn keeping(&mut self, counts: bool, is_down: &dyn Fn(usize) -> bool) -> Option<FormationQuality> {
-        let (meter, cell_m) = (self.meter.as_mut()?, self.plane.terrain()?.cell_m);
-        let member = |(index, disc): (_, &Disc)| {
-            let [x, y, _] = disc.position_m;
-            Member { at: [x / cell_m, y / cell_m], is_down: is_down(index) }
-        };
-        let members: Vec<_> = self.plane.discs().iter().enumerate().map(member).collect();
-        Some(if counts { meter.measure(&members) } else { meter.look(&members) })
-    }
-
-    fn formations(&self) -> Option<&FormationMeters> {
-        self.meter.as_ref()
-    }
-
-    fn formation_error(&self, number: usize) -> f64 {
-        self.meter.as_ref().map_or(f64::NAN, |meter| meter.error_of(number))
-    }
-
-    fn clearance(&self) -> Option<Clearance> {
-        Some(self.clearance)
-    }
-
-    fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords {
-        let disc = &self.plane.discs()[index];
-        let head = (u64::from(tick) << 8) | status.mode as u64;
-        let numbers = disc.position_m.into_iter().chain(disc.velocity_mps);
-        // Makes negative zero equal to zero.
-        core::iter::once(head).chain(numbers.map(|x| (x + 0.0).to_bits())).collect()
-    }
-
-    fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64> {
-        let disc = &self.plane.discs()[index];
-        let has_places = !self.setup.starts[self.number(index)].places.is_empty();
-        let stands = disc.velocity_mps.iter().all(|v| v.abs() < 1e-3);
-        let is_there = status.mode == Mode::Arrived && (has_places || stands);
-        is_there.then(|| (u64::from(tick) + 1) * u64::from(UNIT))
-    }
-
-    fn config(&self, number: usize, tick: Duration) -> AgentConfig<f32> {
+    fn config(&self, number: usize) -> AgentConfig<f32> {
+        let tick = duration(self.tick_us);
         // Frames arrive in the next tick, or in the first tick that starts after the delay.
         let ticks = self.delay_us.div_ceil(self.tick_us.max(1)).max(1);
         let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
@@ -375,19 +213,9 @@ impl Ground for PlaneGround {
         Task::Waypoints(course(aged, guidance == GuidanceKind::Waypoint))
     }
 
-    fn terrain(&self) -> Option<&Terrain> {
-        self.plane.terrain()
-    }
-
-    fn solids(&self) -> &[Solid] {
-        self.plane.solids()
-    }
-
     fn goals_m(&self, tick: u32) -> [Option<[f64; 3]>; WAYPOINTS] {
         let mut goals_m = [None; WAYPOINTS];
-        let first = (0..self.setup.starts.len())
-            .find(|&index| self.setup.group(index).guidance.kind() == GuidanceKind::GoalFlock);
-        if let Some(first) = first {
+        if let Some(first) = self.flock {
             let places = self.setup.starts[first].places.iter();
             let later = self.ordered(first, tick + 1);
             let places = (0..).zip(places).chain(later.map(|order| (usize::from(order.index), &order.target)));
@@ -400,103 +228,35 @@ impl Ground for PlaneGround {
         goals_m
     }
 
-    fn gap_m(&self) -> Option<f64> {
-        self.gap_m
+    /// Body of robot `number` at its start.
+    pub fn disc_of(&self, number: usize, id: RobotId) -> Disc {
+        disc(id, &self.setup, number)
     }
 
-    fn radius_m(&self, index: usize) -> Option<f64> {
-        Some(self.plane.discs()[index].radius_m)
+    fn number(&self, index: usize) -> usize {
+        self.numbers[index] as usize
     }
 
-    fn target_m(&self, index: usize, tick: u32, status: &Status) -> Option<[f64; 3]> {
-        let number = self.number(index);
-        let guidance = self.setup.group(number).guidance.kind();
-        if guidance.is_on_grid() {
-            let land = self.plane.terrain().filter(|land| land.index(status.target).is_some())?;
-            let [x, y] = land.center_m(status.target);
-            return Some([x, y, 0.0]);
-        }
-        let (mut target, mut since) = match &self.setup.starts[number].places[..] {
-            [one] => (one, 0),
-            _ => return None,
+    /// Cell of a position, offset from its centre, and side of a cell; metres.
+    fn in_cell(&self, position_m: [f64; 3]) -> Option<(Cell, [f64; 2], f64)> {
+        let cell = self.plane.cell(position_m)?;
+        let land = self.plane.terrain()?;
+        let off = |cells: i16, axis: usize| {
+            let center = land.origin_m[axis] + (f64::from(cells) + 0.5) * land.cell_m;
+            position_m[axis] - center
         };
-        for order in self.ordered(number, tick) {
-            if order.index > 0 {
-                return None;
-            }
-            (target, since) = (&order.target, order.tick);
-        }
-        let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
-        Some([0, 1, 2].map(|axis| target.position_m[axis] + target.velocity_mps[axis] * age_s))
+        Some((cell, [off(cell.x, 0), off(cell.y, 1)], land.cell_m))
     }
+}
 
-    fn intruders(&self) -> &[Disc] {
-        self.plane.intruders()
-    }
-
-    fn is_open(&self, place_m: [f64; 3]) -> bool {
-        match self.plane.terrain() {
-            Some(land) => self.plane.cell(place_m).is_some_and(|cell| land.is_passable(cell)),
-            None => true,
-        }
-    }
-
-    fn goal_m(&self, number: usize) -> Option<[f64; 3]> {
-        self.setup.starts[number].places.first().map(|target| target.position_m)
-    }
-
-    fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]) {
-        let guidance = self.setup.group(number).guidance.kind();
-        let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
-        let places = &mut self.setup.starts[number].places;
-        match places.first_mut() {
-            Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
-            _ => *places = vec![target],
-        }
-        if let Some(land) = self.plane.terrain() {
-            self.robots[number].goal = land.nearest_cell([place_m[0], place_m[1]]);
-        }
-        self.since[number] = tick;
-    }
-
-    fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal> {
-        match change {
-            Change::Waypoint { goal, place_m } => {
-                if self.setup.kinds().all(|group| goal >= goals(group.guidance.kind())) {
-                    let what = format!("these robots have no goal {goal}");
-                    return Err(Refusal::new("goal", what, "give one that they have, from 0"));
-                }
-                let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
-                let at = self.setup.orders.partition_point(|order| order.tick <= tick);
-                self.setup.orders.insert(at, Order { tick, index: goal, target });
-                self.orders = frames(&self.setup.orders, self.format, self.key.as_ref());
-                Ok(())
-            }
-            Change::Solid(shape) => {
-                self.plane.add_solids(Solid::of(shape));
-                Ok(())
-            }
-            Change::Move(index, by_m) => self.plane.move_solid(index, by_m),
-            Change::Remove(index) => self.plane.remove_solid(index),
-            Change::Cell([x, y], class) => {
-                self.plane.set_cell(Cell::new(x, y), class)?;
-                self.changed.insert((x, y), class);
-                Ok(())
-            }
-            Change::Land(cells) => {
-                self.plane.change(cells);
-                self.changed.extend(cells.iter().map(|&(cell, class)| ((cell.x, cell.y), class)));
-                Ok(())
-            }
-        }
-    }
-
-    fn heard(&self) -> impl Iterator<Item = &Disc> {
-        self.plane.intruders().iter().filter(|intruder| intruder.id.is_some())
-    }
-
-    fn orders(&self, tick: u32) -> Option<&[u8]> {
-        let at = self.orders.binary_search_by_key(&tick, |(tick, _)| *tick).ok()?;
-        Some(&self.orders[at].1)
+fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
+    let (group, start) = (setup.group(number), &setup.starts[number]);
+    Disc {
+        id,
+        radius_m: group.radius_m,
+        position_m: start.position_m,
+        velocity_mps: start.velocity_mps,
+        abilities: group.abilities,
+        downwash: group.downwash(),
     }
 }

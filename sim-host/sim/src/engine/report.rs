@@ -1,36 +1,30 @@
 //! Reports of a running simulation: record rows, moments for watchers, and results.
 
-use super::{Engine, HostLaw, Moment, Outcome, hash};
-use crate::engine::Ground;
-use crate::metrics::FormationQuality;
+use super::{Engine, Moment, Outcome, Saves, hash};
+use crate::metrics::{FormationMeters, FormationQuality};
 use crate::record::{PacketCounts, RobotRow, TickRow};
-use staya_controller::agent::Safety;
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
+impl Engine {
     pub(super) fn first_row(&mut self) -> TickRow {
-        let keeping = self.keeping(false);
-        self.row(keeping, PacketCounts::default())
+        let members: Vec<_> = self.members().collect();
+        let quality = self.formation_quality(&members, false);
+        self.row(quality, PacketCounts::default())
     }
 
     /// The swarm's record row, with the `packets` of the last tick.
-    pub fn row(&self, keeping: Option<FormationQuality>, packets: PacketCounts) -> TickRow {
+    pub fn row(&self, quality: Option<FormationQuality>, packets: PacketCounts) -> TickRow {
         TickRow {
             tick: self.tick,
             time_s: self.seconds(),
-            formation_error_per_agent: keeping.map_or(f64::NAN, |k| k.error_per_agent),
-            graph_distance: keeping.map_or(f64::NAN, |k| k.graph_distance),
+            formation_error_per_agent: quality.map_or(f64::NAN, |quality| quality.error_per_agent),
+            graph_distance: quality.map_or(f64::NAN, |quality| quality.graph_distance),
             packets,
         }
     }
 
     /// The robots' record rows, sorted by id.
     pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
-        let has_cells = self.ground.terrain().is_some();
+        let view = self.ground.view(self.tick);
         self.statuses.iter().enumerate().map(move |(index, status)| RobotRow {
             id: self.id(index).0,
             motion: self.ground.motion(index, self.tick),
@@ -39,26 +33,32 @@ where
             target: status.target,
             target_m: self.ground.target_m(index, self.tick, status),
             wait: status.wait,
-            formation_error_cells: self.ground.formation_error(self.number(index)) as f32,
-            radius_m: self.ground.radius_m(index),
-            has_cells,
+            formation_error_cells: self.formation_error(self.number(index)) as f32,
+            radius_m: view.discs.get(index).map(|disc| disc.radius_m),
+            has_cells: view.terrain.is_some(),
         })
+    }
+
+    /// Distance of a robot from its place at the last measurement, cells; NaN without one.
+    pub fn formation_error(&self, number: usize) -> f64 {
+        self.meter.as_ref().map_or(f64::NAN, |meter| meter.error_of(number))
     }
 
     /// State of the swarm for watchers, with its record row.
     pub fn moment<'a>(&'a self, row: &'a TickRow) -> Moment<'a> {
+        let view = self.ground.view(self.tick);
         Moment {
             row,
             arrived: self.arrivals.count(),
             waiting: self.waits.now(),
             collisions: self.collisions,
-            gap_m: self.ground.gap_m(),
-            intruders: self.ground.intruders(),
-            goals_m: self.ground.goals_m(self.tick),
-            land: self.ground.terrain(),
-            solids: self.ground.solids(),
+            gap_m: view.gap_m,
+            intruders: view.intruders,
+            goals_m: view.goals_m,
+            land: view.terrain,
+            solids: view.solids,
             trace_hash: hash::sum(&self.chains),
-            run: None,
+            run: self.external.is_none().then_some(self as &dyn Saves),
         }
     }
 
@@ -80,16 +80,10 @@ where
         self.interventions.is_empty() && self.arrivals.is_complete()
     }
 
-    /// The world with its bodies.
-    #[must_use]
-    pub const fn ground(&self) -> &W {
-        &self.ground
-    }
-
     /// Results of the run so far.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
-        let (formation, place_error, formations) = self.ground.kept();
+        let (meter, clearance) = (self.meter.as_ref(), self.ground.view(self.tick).clearance);
         Outcome {
             ticks: self.tick,
             seconds: self.seconds(),
@@ -100,10 +94,10 @@ where
             packets: self.packets,
             throttled: self.throttled,
             waits: self.waits.counts(),
-            formation,
-            place_error,
-            formations,
-            clearance: self.ground.clearance(),
+            formation: meter.and_then(FormationMeters::mean),
+            place_error: meter.and_then(FormationMeters::place_error).filter(|_| clearance.is_some()),
+            formations: meter.map_or_else(Vec::new, |meter| meter.each(clearance.is_some())),
+            clearance,
             trace_hash: hash::sum(&self.chains),
         }
     }

@@ -1,19 +1,18 @@
 //! Runs a whole scenario with the guidance law that it names.
 
-use super::laws::{Papers, ScenarioLaw};
-use super::state::{Saves, State, StateError};
-use super::witness::Witness;
-use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround, WrongWorld};
+use super::laws::{WrongWorld, agents, own_agents};
+use super::state::{Saves, StateError};
+use super::{Engine, ExternalController};
 use crate::metrics::waits::WaitCount;
 use crate::metrics::{FormationKept, FormationQuality, PlaceError};
+use crate::own_law::OwnLaw;
 use crate::record::{PacketCounts, RobotRow, TickRow};
-use crate::scenario::{NamedLaw, Scenario};
+use crate::scenario::Scenario;
 use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
-use staya_controller::agent::{AnySafety, Guided, HALF_PLANES, Safety, SharedMap, WAYPOINTS, Wait};
+use staya_controller::agent::{WAYPOINTS, Wait};
 use staya_controller::robot::Mode;
-use std::collections::HashMap;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -86,7 +85,7 @@ pub type Watch<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) 
 /// sees the start as tick 0, then each tick, with the robots' record rows sorted by id.
 ///
 /// # Errors
-/// See [`Grid::new`].
+/// See [`Grid::new`](super::Grid::new).
 pub fn simulate(
     scenario: &Scenario,
     mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
@@ -97,13 +96,31 @@ pub fn simulate(
 /// Runs [`simulate`] with some controllers outside this process.
 ///
 /// # Errors
-/// See [`Grid::new`].
+/// See [`Grid::new`](super::Grid::new).
 pub fn simulate_with(
     scenario: &Scenario,
     external: Option<Box<dyn ExternalController>>,
     watch: &mut Watch<'_>,
 ) -> Result<Outcome, Misplaced> {
-    Ok(AnyEngine::new(scenario)?.go(scenario, external, watch))
+    let engine = Engine::new(scenario, agents(scenario))?;
+    let engine = match external {
+        Some(controllers) => engine.with_external(scenario, controllers),
+        None => engine,
+    };
+    Ok(engine.run(scenario.ticks, watch))
+}
+
+/// Runs [`simulate`] with `law(i)` as the law of robot `i` in [`Scenario::robots`]; see
+/// [`own_agents`]. With external controllers or from a checkpoint, run an [`Engine`].
+///
+/// # Errors
+/// [`StartError::World`], and those of [`Grid::new`](super::Grid::new).
+pub fn simulate_own<L: OwnLaw>(
+    scenario: &Scenario,
+    law: impl Fn(usize) -> L + Send + Sync + 'static,
+    mut watch: impl FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()>,
+) -> Result<Outcome, StartError> {
+    Ok(Engine::new(scenario, own_agents(scenario, law)?)?.run(scenario.ticks, &mut watch))
 }
 
 /// Why a run cannot begin.
@@ -124,150 +141,39 @@ pub enum StartError {
 /// uninterrupted [`simulate`]. `watch` sees the later ticks.
 ///
 /// # Errors
-/// See [`Grid::new`] and [`Engine::restore`].
+/// See [`Grid::new`](super::Grid::new) and [`Engine::restore`].
 pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -> Result<Outcome, StartError> {
-    Ok(AnyEngine::new(scenario)?.resume(scenario, state, watch)?)
+    Ok(Engine::new(scenario, agents(scenario))?.resume(state, scenario.ticks, watch)?)
 }
 
-/// Law of an agent: any law of scenario files, which an operator may override.
-pub type LawOf = Guided<f32, ScenarioLaw>;
-#[doc(hidden)]
-pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
-
-/// Engines of both worlds; instantiated only here, to compile the generic code once.
-pub(super) enum AnyEngine {
-    Plane(Box<Engine<PlaneGround, LawOf, SafetyOf>>),
-    Cells(Box<Engine<Grid, LawOf, SafetyOf>>),
-}
-
-impl AnyEngine {
-    pub(super) fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
-        Self::with(scenario, agents(scenario))
-    }
-
-    pub(super) fn with(
-        scenario: &Scenario,
-        agents: impl Fn(usize) -> (LawOf, SafetyOf) + Send + Sync + 'static,
-    ) -> Result<Self, Misplaced> {
-        Ok(if let Some(setup) = &scenario.plane {
-            let ground = PlaneGround::new(scenario, setup);
-            Self::Plane(Box::new(Engine::new(scenario, ground, agents)))
-        } else {
-            let ground = Grid::new(scenario)?;
-            Self::Cells(Box::new(Engine::new(scenario, ground, agents)))
-        })
-    }
-
-    pub(super) fn go(
-        self,
-        scenario: &Scenario,
-        external: Option<Box<dyn ExternalController>>,
-        watch: &mut Watch<'_>,
-    ) -> Outcome {
-        match self {
-            Self::Plane(engine) => go(scenario, *engine, external, watch),
-            Self::Cells(engine) => go(scenario, *engine, external, watch),
+impl Engine {
+    /// Runs until all robots have arrived, `ticks` are completed or `watch` breaks; see
+    /// [`simulate`].
+    pub fn run(mut self, ticks: u32, watch: &mut Watch<'_>) -> Outcome {
+        self.row = self.first_row();
+        if watch(&self.moment(&self.row), &mut self.rows()).is_break() {
+            return self.outcome();
         }
+        self.run_on(ticks, watch)
     }
 
-    pub(super) fn resume(
-        self,
-        scenario: &Scenario,
-        state: &[u8],
-        watch: &mut Watch<'_>,
-    ) -> Result<Outcome, StateError> {
-        match self {
-            Self::Plane(engine) => resume(scenario, *engine, state, watch),
-            Self::Cells(engine) => resume(scenario, *engine, state, watch),
+    /// As [`Engine::run`], from the bytes of [`Saves::save`]; see [`simulate_from`].
+    ///
+    /// # Errors
+    /// See [`Engine::restore`].
+    pub fn resume(mut self, state: &[u8], ticks: u32, watch: &mut Watch<'_>) -> Result<Outcome, StateError> {
+        self.restore(state)?;
+        Ok(self.run_on(ticks, watch))
+    }
+
+    /// `watch` has already seen the current state.
+    fn run_on(mut self, ticks: u32, watch: &mut Watch<'_>) -> Outcome {
+        while !self.is_over() && self.ticks() < ticks {
+            self.step();
+            if watch(&self.moment(&self.row), &mut self.rows()).is_break() {
+                break;
+            }
         }
+        self.outcome()
     }
-}
-
-/// Returns a function that creates the law and the safety layer of a robot.
-pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (LawOf, SafetyOf) + Send + Sync + 'static + use<> {
-    let kind = |index| {
-        let group = scenario.plane.as_ref().map(|setup| setup.group(index));
-        let [speed_mps, tolerance_m] =
-            group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32));
-        (scenario.guidance(index), scenario.safety(index), speed_mps, tolerance_m)
-    };
-    // Members of formations differ individually, others only by group; each kind is created once.
-    let groups = scenario.plane.as_ref().map_or(0, |plane| plane.groups.len());
-    let group_of = |index: usize| match (scenario.formation_of(index), &scenario.plane) {
-        (Some(_), _) => groups + 1 + index,
-        (None, Some(plane)) => plane.starts[index].group.map_or(0, |group| group + 1),
-        (None, None) => 0,
-    };
-    let (mut kinds, mut known) = (Vec::new(), HashMap::new());
-    let of_robots = (0..scenario.robots.len()).map(|index| {
-        *known.entry(group_of(index)).or_insert_with(|| {
-            kinds.push(kind(index));
-            kinds.len() - 1
-        })
-    });
-    let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, papers, own) = (scenario.maps, Papers::of(scenario), scenario.law.as_ref().map(NamedLaw::law));
-    move |index| {
-        let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
-        // Robots that do not plan on terrain have no map to share.
-        let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
-        let law = own.as_ref().map_or_else(|| papers.law(guidance, map), |own| ScenarioLaw::Own(own.clone()));
-        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
-    }
-}
-
-fn go<W, G, A>(
-    scenario: &Scenario,
-    mut engine: Engine<W, G, A>,
-    external: Option<Box<dyn ExternalController>>,
-    watch: &mut Watch<'_>,
-) -> Outcome
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
-    let is_here = external.is_none();
-    if let Some(controllers) = external {
-        engine = engine.with_external(scenario, controllers);
-    }
-    let row = engine.first_row();
-    let moment = Moment { run: is_here.then_some(&engine as &dyn Saves), ..engine.moment(&row) };
-    if watch(&moment, &mut engine.rows()).is_break() {
-        return engine.outcome();
-    }
-    ticks(scenario, engine, watch)
-}
-
-fn resume<W, G, A>(
-    scenario: &Scenario,
-    mut engine: Engine<W, G, A>,
-    state: &[u8],
-    watch: &mut Watch<'_>,
-) -> Result<Outcome, StateError>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
-    engine.restore(state)?;
-    Ok(ticks(scenario, engine, watch))
-}
-
-/// The current state was already passed to the watcher.
-fn ticks<W, G, A>(scenario: &Scenario, mut engine: Engine<W, G, A>, watch: &mut Watch<'_>) -> Outcome
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
-    let is_here = engine.external.is_none();
-    while !engine.is_over() && engine.ticks() < scenario.ticks {
-        let row = engine.step();
-        let moment = Moment { run: is_here.then_some(&engine as &dyn Saves), ..engine.moment(&row) };
-        if watch(&moment, &mut engine.rows()).is_break() {
-            break;
-        }
-    }
-    engine.outcome()
 }

@@ -1,29 +1,21 @@
 //! Saves and restores single robots and whole runs, in postcard format. The bytes contain keys.
 //! Constant data is not saved: restore into an engine of the same scenario and program version.
 
-use super::{Engine, Ground, HostAgent, HostLaw, OnboardComputer, Status};
-use crate::engine::attacker::AttackerState;
+use super::{Engine, OnboardComputer, Status};
 use crate::engine::hash::StateHash;
-use crate::engine::intervene::Tuned;
-use crate::engine::intruder::IntruderState;
-use crate::engine::key_server::KeeperState;
-use crate::metrics::waits;
+use crate::engine::roster::Tuned;
+use crate::metrics::{FormationMeters, waits};
 use crate::radio::{End, Weather};
 use crate::record::PacketCounts;
 use crate::scenario::Fault;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Agent, Command, Safety};
+use staya_controller::agent::{Agent, Command};
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 use std::fmt;
 use thiserror::Error;
-
-/// State that can be saved and restored.
-pub trait State: Serialize + DeserializeOwned + Sync {}
-
-impl<T: Serialize + DeserializeOwned + Sync> State for T {}
 
 /// A run that can be saved.
 pub trait Saves {
@@ -40,12 +32,7 @@ impl fmt::Debug for dyn Saves + '_ {
     }
 }
 
-impl<W, G, A> Saves for Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
+impl Saves for Engine {
     fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError> {
         Self::save(self, bytes)
     }
@@ -76,7 +63,8 @@ impl StateError {
     }
 }
 
-struct Reader<'a> {
+/// Reads values in postcard format, with the position of errors.
+pub struct Reader<'a> {
     all: &'a [u8],
     rest: &'a [u8],
 }
@@ -90,7 +78,7 @@ impl<'a> Reader<'a> {
         self.all.len() - self.rest.len()
     }
 
-    fn read<T: DeserializeOwned>(&mut self, what: &str) -> Result<T, StateError> {
+    pub(super) fn read<T: DeserializeOwned>(&mut self, what: &str) -> Result<T, StateError> {
         let mut from = postcard::Deserializer::from_bytes(self.rest);
         let value = T::deserialize(&mut from);
         // Position at which decoding stopped; the start if it is unknown.
@@ -108,32 +96,24 @@ impl<'a> Reader<'a> {
             Err(_) => Err(StateError::new(stopped_at, format!("{what} makes no sense"), REMEDY)),
         }
     }
+
+    /// The error for values that this engine cannot have.
+    pub(super) fn unfit(&self, what: &'static str) -> StateError {
+        StateError::new(self.at(), what, SAME)
+    }
 }
 
-fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
+pub(super) fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
     // Cannot fail: all sequences have a length, and a `Vec` accepts every byte.
     let done = postcard::to_extend(value, std::mem::take(bytes));
     *bytes = done.expect("states have a form");
 }
 
-#[derive(Serialize, Deserialize)]
-struct Robot<B> {
-    mail: Vec<u8>,
-    boot: u8,
-    epoch: u32,
-    down_until: u32,
-    sent_bytes: u64,
-    heard_bytes: u64,
-    status: Status,
-    chain: StateHash,
-    command: Command<f32>,
-    arrived: Option<u64>,
-    waits: waits::Robot,
-    body: B,
-}
+/// A robot apart from its number, its body and its radio; the last fields are those of its record.
+type RobotState = (OnboardComputer, Status, StateHash, Command<f32>, Option<u64>, waits::Robot);
 
 #[derive(Serialize, Deserialize)]
-struct Whole<S> {
+struct Whole {
     seed: u64,
     robots: usize,
     tick: u32,
@@ -145,38 +125,20 @@ struct Whole<S> {
     throttled: u64,
     waited: Vec<(u64, u32)>,
     weather: Weather,
-    ground: S,
+    meter: Option<FormationMeters>,
 }
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
+impl Engine {
     /// Appends the mutable state of robot `index`: body, computer with agent and mail, hash,
     /// statistics and radio. Call it between ticks. O(bytes).
     ///
     /// # Panics
     /// If `index` is out of range.
     pub fn pack(&self, index: usize, bytes: &mut Vec<u8>) {
-        let computer = &self.computers[index];
-        write(&(self.id(index), &computer.agent), bytes);
-        let robot = Robot {
-            mail: computer.mail.clone(),
-            boot: computer.boot,
-            epoch: computer.epoch,
-            down_until: computer.down_until,
-            sent_bytes: computer.sent_bytes,
-            heard_bytes: computer.heard_bytes,
-            status: self.statuses[index],
-            chain: self.chains[index],
-            command: self.commands[index].clone(),
-            arrived: self.arrivals.times()[index],
-            waits: self.waits.robot(index),
-            body: self.ground.body(index),
-        };
-        write(&robot, bytes);
+        let record = (self.arrivals.times()[index], self.waits.robot(index));
+        let decided = (self.statuses[index], self.chains[index], &self.commands[index]);
+        write(&(self.id(index), &self.computers[index], decided, record), bytes);
+        self.ground.save_body(index, bytes);
         write(&self.radio.end(index), bytes);
     }
 
@@ -196,31 +158,15 @@ where
             let what = format!("this is robot {}, not robot {}", id.0, own.0);
             return Err(StateError::new(0, what, SAME));
         }
-        let agent: Option<HostAgent<G, A>> = from.read("an agent")?;
-        let at = from.at();
-        let robot: Robot<W::Body> = from.read("a robot")?;
-        let unfit = |at: usize| move |what: &'static str| StateError::new(at, what, SAME);
-        self.ground.set_body(index, robot.body).map_err(unfit(at))?;
-        let at = from.at();
+        let (computer, status, chain, command, arrived, waits): RobotState = from.read("a robot")?;
+        let number = self.number(index);
+        self.ground.load_body(number, Some(index), &mut from)?;
         let end: End = from.read("an end of the radio")?;
-        self.radio.set_end(index, end).map_err(unfit(at))?;
-        let Robot { mail, boot, epoch, down_until, sent_bytes, heard_bytes, .. } = robot;
-        self.computers[index] = OnboardComputer {
-            agent,
-            outbox: Vec::new(),
-            events: Vec::new(),
-            mail,
-            boot,
-            epoch,
-            down_until,
-            sent_bytes,
-            heard_bytes,
-        };
-        self.statuses[index] = robot.status;
-        self.chains[index] = robot.chain;
-        self.commands[index] = robot.command;
-        self.arrivals.set(index, robot.arrived);
-        self.waits.set_robot(index, robot.waits);
+        self.radio.set_end(index, end).map_err(|what| from.unfit(what))?;
+        self.computers[index] = computer;
+        (self.statuses[index], self.chains[index], self.commands[index]) = (status, chain, command);
+        self.arrivals.set(index, arrived);
+        self.waits.set_robot(index, waits);
         Ok(from.at())
     }
 
@@ -243,32 +189,28 @@ where
     /// Writes the shared state and the transmitters outside the swarm; see [`Engine::save`].
     pub fn save_head(&self, bytes: &mut Vec<u8>) {
         let whole = Whole {
-            seed: self.seed,
+            seed: self.roster.seed,
             robots: self.robots.len(),
             tick: self.tick,
             interventions: self.interventions.len(),
             faults: self.faults.clone(),
-            tuned: self.tuned.clone(),
+            tuned: self.roster.tuned.clone(),
             collisions: self.collisions,
             packets: self.packets,
             throttled: self.throttled,
             waited: self.waits.ticks(),
             weather: self.radio.weather(),
-            ground: self.ground.shared(),
+            meter: self.meter.clone(),
         };
         write(&whole, bytes);
-        for attacker in &self.attackers {
-            write(&attacker.state(), bytes);
-        }
-        for intruder in &self.intruders {
-            write(&intruder.state(), bytes);
-        }
-        if let Some(keeper) = &self.keeper {
-            write(&keeper.state(), bytes);
-        }
-        for index in self.here.len()..self.positions_m.len() {
-            write(&self.radio.end(index), bytes);
-        }
+        self.ground.save_shared(bytes);
+        let others = (self.here.len()..).zip(&self.others).map(|(end, other)| {
+            let mut bytes = Vec::new();
+            other.save(&mut bytes);
+            write(&self.radio.end(end), &mut bytes);
+            bytes
+        });
+        write(&others.collect::<Vec<_>>(), bytes);
     }
 
     /// Restores [`Engine::save`] in an engine of the same scenario before its first tick.
@@ -276,57 +218,50 @@ where
     /// # Errors
     /// The bytes are damaged or from another scenario or program. Discard the engine then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
-        let others = [self.attackers.len(), self.intruders.len(), usize::from(self.keeper.is_some())];
-        let (at, digest) = self.restore_part(bytes, others)?;
+        let (at, digest) = self.restore_part(bytes)?;
         if digest == self.digest() { Ok(()) } else { Err(Self::differs(at)) }
     }
 
-    /// Restores the robots of this process, in a run with the given numbers of attackers, beaconing
-    /// intruders and key servers (`others`). Returns position and value of the saved digest.
-    pub fn restore_part(&mut self, bytes: &[u8], others: [usize; 3]) -> Result<(usize, u64), StateError> {
+    /// Restores the robots and transmitters of this process. Returns position and value of the
+    /// saved digest.
+    pub fn restore_part(&mut self, bytes: &[u8]) -> Result<(usize, u64), StateError> {
         let mut from = Reader::new(bytes);
         if self.tick > 0 || self.external.is_some() {
             return Err(StateError::new(0, "this run is under way", "restore into one before its first tick"));
         }
-        let whole: Whole<W::Shared> = from.read("the head of the run")?;
-        if (whole.seed, whole.robots) != (self.seed, self.robots.len()) {
+        let whole: Whole = from.read("the head of the run")?;
+        if (whole.seed, whole.robots) != (self.roster.seed, self.robots.len()) {
             let what = format!("it is of {} robots and seed {}", whole.robots, whole.seed);
             return Err(StateError::new(0, what, SAME));
         }
-        let unfit = |what: &'static str| StateError::new(0, what, SAME);
-        self.ground.set_shared(whole.ground).map_err(unfit)?;
+        let is_same = match (&self.meter, &whole.meter) {
+            (Some(meter), Some(measured)) => meter.is_of(measured),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_same {
+            return Err(StateError::new(0, "it is of another formation", SAME));
+        }
+        self.meter = whole.meter;
+        self.ground.load_shared(&mut from)?;
         self.tick = whole.tick;
         let done = self.interventions.len().saturating_sub(whole.interventions);
         self.interventions.drain(..done);
-        (self.faults, self.tuned) = (whole.faults, whole.tuned);
+        (self.faults, self.roster.tuned) = (whole.faults, whole.tuned);
         (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
         self.waits.set_ticks(&whole.waited);
         self.radio.set_weather(whole.weather);
-        let [attackers, intruders, keepers] = others;
-        for at in 0..attackers {
-            let state = from.read::<AttackerState>("an attacker")?;
-            if let Some(attacker) = self.attackers.get_mut(at) {
-                attacker.restore(state);
-            }
+        let others: Vec<Vec<u8>> = from.read("the transmitters")?;
+        // Other MPI ranks may have the transmitters.
+        if !self.others.is_empty() && self.others.len() != others.len() {
+            return Err(from.unfit("it has other transmitters"));
         }
-        for at in 0..intruders {
-            let state = from.read::<IntruderState>("an intruder")?;
-            if let Some(intruder) = self.intruders.get_mut(at) {
-                intruder.restore(state);
-            }
-        }
-        for _ in 0..keepers {
-            let state = from.read::<KeeperState>("the keeper of keys")?;
-            if let Some(keeper) = &mut self.keeper {
-                keeper.restore(state);
-            }
-        }
-        for index in (self.here.len()..).take(attackers + intruders + keepers) {
-            let at = from.at();
-            let end: End = from.read("an end of the radio")?;
-            if index < self.positions_m.len() {
-                self.radio.set_end(index, end).map_err(|what| StateError::new(at, what, SAME))?;
-            }
+        let at = from.at().saturating_sub(others.iter().map(Vec::len).sum());
+        for ((end, other), bytes) in (self.here.len()..).zip(&mut self.others).zip(&others) {
+            let mut from = Reader::new(bytes);
+            other.load(&mut from).map_err(|error| error.after(at))?;
+            let state: End = from.read("an end of the radio").map_err(|error| error.after(at))?;
+            self.radio.set_end(end, state).map_err(|what| from.unfit(what).after(at))?;
         }
         let here: HashMap<usize, usize> = (0..self.here.len()).map(|index| (self.number(index), index)).collect();
         for number in 0..self.robots.len() {
@@ -348,10 +283,8 @@ where
     /// Returns the number of bytes read.
     fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
-        let _: RobotId = from.read("the number of a robot")?;
-        let _: Option<HostAgent<G, A>> = from.read("an agent")?;
-        let robot: Robot<W::Body> = from.read("a robot")?;
-        self.ground.note(number, robot.body);
+        let _: (RobotId, RobotState) = from.read("a robot")?;
+        self.ground.load_body(number, None, &mut from)?;
         let _: End = from.read("an end of the radio")?;
         Ok(from.at())
     }

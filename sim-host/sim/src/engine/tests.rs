@@ -2,13 +2,15 @@ use super::*;
 use crate::record::RobotRow;
 use crate::scenario::Overrides;
 use proptest::prelude::*;
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, Grid as OnCells, GridOrder, GridPayload, Radio, Report,
-    Status as Standing, Surroundings as _, Tools, Unguarded, View,
+    Action, AnySurroundings, BadInput, Decision, Grid as OnCells, GridOrder, GridPayload, Law, Radio, Report,
+    Status as Standing, Surroundings as _, Tools, View,
 };
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::rand::Rng;
 use staya_controller::robot::Mode;
+use staya_controller::time::Duration;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -36,7 +38,8 @@ struct Known {
     others: Vec<(u32, Cell)>,
 }
 
-struct Scout(Notes, Option<Cell>);
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Scout(#[serde(skip)] Notes, Option<Cell>);
 
 impl Law<f32> for Scout {
     type Surroundings<'a> = AnySurroundings<'a, f32>;
@@ -85,12 +88,11 @@ impl Law<f32> for Scout {
 
 type Notes = Arc<Mutex<Vec<Known>>>;
 
-fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Notes) {
+fn scouts(scenario: &Scenario) -> (Engine, Notes) {
     let known = Arc::new(Mutex::new(Vec::new()));
     let shared = known.clone();
-    let ground = Grid::new(scenario).expect("free starts");
-    let engine = Engine::new(scenario, ground, move |_| (Scout(shared.clone(), None), Unguarded));
-    (engine, known)
+    let agents = own_agents(scenario, move |_| Scout(shared.clone(), None)).expect("a grid");
+    (Engine::new(scenario, agents).expect("free starts"), known)
 }
 
 fn watch_nothing(_: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()> {
@@ -350,6 +352,7 @@ mod intervene;
 mod intruder;
 mod land;
 mod operator;
+mod own;
 mod plane;
 mod safety_scenes;
 mod sensing;
@@ -360,8 +363,7 @@ mod waiting_scenes;
 /// A swarm may have a million robots, so the size of one is pinned; rare data is on the heap.
 #[test]
 fn a_robot_takes_no_more_memory_than_this() {
-    use super::simulate::{LawOf, SafetyOf};
-    let computer = size_of::<OnboardComputer<LawOf, SafetyOf>>();
-    let parts = [computer, size_of::<LawOf>(), size_of::<SafetyOf>(), size_of::<HostWire>()];
-    assert!(parts[0] <= 2600 && parts[1] <= 760 && parts[2] <= 100, "{parts:?}");
+    let computer = size_of::<OnboardComputer>();
+    let parts = [computer, size_of::<HostLaw>(), size_of::<HostSafety>(), size_of::<HostWire>()];
+    assert!(parts[0] <= 1280 && parts[1] <= 464 && parts[2] <= 80, "{parts:?}");
 }

@@ -1,27 +1,40 @@
 //! Transmitters outside the swarm: attackers, intruders and the key server.
 
-use super::{Engine, Ground, HostLaw};
-use crate::radio::HostWire;
-use staya_controller::agent::Safety;
+use super::Engine;
+use super::attacker::Attacker;
+use super::intruder::Intruder;
+use super::key_server::KeyServer;
+use super::roster::ring;
+use super::transmitter::Transmitter;
+use crate::scenario::Scenario;
+use crate::world::plane::Disc;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Ring;
 
-impl<W, G, A> Engine<W, G, A>
-where
-    W: Ground,
-    G: HostLaw,
-    A: Safety<f32> + Send,
-{
-    /// Lets attackers receive and prepare frames.
-    pub fn attack(&mut self) {
+/// The transmitters of a scenario: attackers, then the intruders that send beacons, then the key
+/// server.
+pub(super) fn transmitters(scenario: &Scenario, intruders: &[Disc]) -> Vec<Box<dyn Transmitter>> {
+    let attackers = scenario.attacks.iter().enumerate();
+    let attackers = attackers.map(|(index, attack)| Box::new(Attacker::new(attack, index, scenario)) as _);
+    let heard = intruders.iter().filter(|disc| disc.id.is_some());
+    let intruders = heard.map(|disc| Box::new(Intruder::new(disc.id, scenario.radio.format)) as _);
+    let server = KeyServer::new(scenario).map(|server| Box::new(server) as _);
+    attackers.chain(intruders).chain(server).collect()
+}
+
+impl Engine {
+    /// Lets the transmitters outside the swarm receive and prepare frames.
+    pub fn transmit(&mut self) {
         let robots = self.computers.len();
-        for at in 0..self.attackers.len() {
-            if let Some(taken) = self.attackers[at].takes(self.tick)
-                && let Some(ring) = self.ring_of(taken).or_else(|| self.taken.get(&taken).cloned())
+        for at in 0..self.others.len() {
+            if let Some(robot) = self.others[at].captures(self.tick)
+                && let Some(ring) = self.ring_of(robot).or_else(|| self.taken.get(&robot).cloned())
             {
-                self.attackers[at].take(&ring);
+                self.others[at].take(&ring);
             }
-            self.attackers[at].act(self.tick, self.radio.inbox(robots + at));
+            let (other, intruders) = (&mut self.others[at], self.ground.view(self.tick).intruders);
+            other.act(self.tick, self.radio.inbox(robots + at), intruders);
+            self.positions_m[robots + at] = other.place_m(intruders);
         }
     }
 
@@ -29,30 +42,5 @@ where
     pub fn ring_of(&self, robot: RobotId) -> Option<Ring> {
         let agent = self.computers[self.index_of(robot)?].agent.as_ref()?;
         ring(agent.wire()).cloned()
-    }
-
-    /// Lets the key server receive and prepare frames.
-    pub fn keep_keys(&mut self) {
-        let at = self.computers.len() + self.attackers.len() + self.intruders.len();
-        if let Some(keeper) = &mut self.keeper {
-            keeper.act(self.tick, self.radio.inbox(at));
-        }
-    }
-
-    /// Lets intruders prepare beacons.
-    pub fn intrude(&mut self) {
-        let first = self.computers.len() + self.attackers.len();
-        let positions_m = self.positions_m.iter_mut().skip(first);
-        for ((intruder, position_m), disc) in self.intruders.iter_mut().zip(positions_m).zip(self.ground.heard()) {
-            intruder.speak(disc);
-            *position_m = intruder.position_m;
-        }
-    }
-}
-
-pub(super) fn ring(wire: &HostWire) -> Option<&Ring> {
-    match wire {
-        HostWire::Sealed(sealed) => Some(sealed.ring()),
-        _ => None,
     }
 }

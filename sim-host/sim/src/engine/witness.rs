@@ -64,6 +64,10 @@ impl<A: Safety<f32>> Safety<f32> for Witness<A> {
         self.inside.inflation()
     }
 
+    fn downwash(&self) -> f32 {
+        self.inside.downwash()
+    }
+
     fn waits_for_turn(&self) -> bool {
         self.inside.waits_for_turn()
     }

@@ -148,7 +148,7 @@ fn an_operator_sees_and_tunes_a_named_law() {
     let scenario = scenario("[law]\nname = \"convoy\"").unwrap();
     let mut run = operated(&scenario).unwrap();
     for _ in 0..scenario.ticks {
-        run.advance();
+        run.step();
     }
     assert_eq!(run.outcome(), simulate(&scenario, on).unwrap());
     assert_eq!(run.parameter(0, "pace_mps"), Some(0.5));

@@ -62,7 +62,7 @@ pub struct RobotRow {
 }
 
 /// State of the swarm after a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TickRow {
     /// Number of the tick; increases from call to call.
     pub tick: u32,

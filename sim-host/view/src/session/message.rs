@@ -138,8 +138,8 @@ impl Session {
         }
         let is_in_space = scene::is_in_space(&self.scenario);
         let scene = Scene {
-            land: self.engine.terrain().map(|land| scene::land(land, origin_m)),
-            solids: scene::solids(self.engine.solids(), is_in_space, origin_m),
+            land: self.engine.view().terrain.map(|land| scene::land(land, origin_m)),
+            solids: scene::solids(self.engine.view().solids, is_in_space, origin_m),
             parameters,
             radio: self.radio(),
             ..Scene::new(&self.scenario, Mode::Live)

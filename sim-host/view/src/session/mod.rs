@@ -15,7 +15,7 @@ use crate::pace::{Pace, SLICE};
 use crate::server::{Client, FromPage, Server, WORDS};
 use memory::Memory;
 use message::Wanted;
-use staya_sim::engine::{Operated, operated};
+use staya_sim::engine::{Engine, operated};
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{Intervention, Overrides, Scenario, ScenarioError};
 use staya_sim::world::Misplaced;
@@ -53,7 +53,7 @@ pub struct Session {
     text: String,
     path: PathBuf,
     scenario: Scenario,
-    engine: Box<dyn Operated>,
+    engine: Engine,
     tick: u32,
     framer: Framer,
     frame: FrameData,
@@ -189,7 +189,7 @@ impl Session {
 
     fn step(&mut self) {
         self.has_new_land |= self.scenario.changes.iter().any(|rule| rule.is_due(self.tick));
-        self.engine.advance();
+        self.engine.step();
         self.tick += 1;
         self.has_work |= !self.engine.is_over();
         for index in 0..self.scenario.robots.len() {

@@ -3,15 +3,15 @@
 use super::super::{Manners, Moves, Negotiator, Report, Said, Sensed, Sight, Wish};
 use super::sight;
 use crate::geom::Vec2;
-use crate::grid::{BLOCKED, Cell, Dir};
+use crate::grid::{Cell, Dir};
 use crate::law::{self, Action, BadInput, Decision, InCells, Law, Protocol, Radio, Status, Tools, View};
 use crate::laws::cells::GridOrder;
-use crate::neighbor::Neighbor;
 use crate::parameters::{Parameters, SPEED};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{Content, ProtocolId};
+use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Time of a step, tenths of that for a cell at cruising speed; leaves speed to catch up.
@@ -20,8 +20,6 @@ const SLACK: i32 = 12;
 const PULL: i32 = 18;
 /// Steps in a row that a robot is late, after which it chooses its cell again.
 const GIVES_UP: u8 = 4;
-/// If two robots are in one cell, the nearer one leaves with a probability of 1 / `YIELDS` a step.
-const YIELDS: u32 = 4;
 
 /// The protocol of robots that negotiate in the plane, in steps that begin at the same time.
 #[derive(Clone, Copy, Debug)]
@@ -83,8 +81,9 @@ impl From<Beat> for u8 {
 ///
 /// *Claims:* a robot takes its move back if another one has said that it stays in that cell, or
 /// that it enters the cell and has waited longer. A robot half a cell from its path is late: it
-/// stays in the next step. A robot that is late for long, or shares its cell, moves to the nearest
-/// centre to which no other robot is nearer.
+/// stays in the next step. A robot that is late for long begins again in the cell that it is in.
+/// Where robots share a cell, those farther from the centre leave it first, to their side of it,
+/// and others make way for them.
 ///
 /// A decision takes O(N), and at the start of a step as much as a plan.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -131,7 +130,7 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
                 step: 0,
                 manners: Manners { is_last: false, keeps_on: false },
             },
-            shared: Report { cell: Cell { x: 0, y: 0 }, sight: Sight([0; 16]), heard: heapless::Vec::new() },
+            shared: Report { cell: Cell { x: 0, y: 0 }, sight: Sight([0; 16]), heard: Vec::new() },
             step: 0,
             began: Instant::from_micros(0),
             length: Duration::ZERO,
@@ -156,8 +155,8 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
         let length = self.length.as_micros().max(1);
         let mut passed = view.now.since(self.began).as_micros().max(0);
         for (other, InStepPayload { said, beat, .. }) in view.peers() {
-            // The clock of a robot that does not decide stands still.
-            if beat.is_late || other.heard.since(self.decided) <= Duration::ZERO {
+            // The clock of a robot that does not decide stands still, and a number of steps wraps.
+            if beat.is_late || view.now.since(other.heard) > self.length {
                 continue;
             }
             let steps = said.step.wrapping_sub(1).wrapping_sub(self.step) as i8;
@@ -169,11 +168,6 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
         self.began = view.now - Duration::from_micros(passed - length.saturating_mul(steps));
         self.step = self.step.wrapping_add(steps as u8);
         steps > 0
-    }
-
-    /// Whether another robot is in its cell too.
-    fn shares(&self, view: &View<'_, S, InStep>) -> bool {
-        view.peers().any(|(_, other)| other.said.step == self.step && other.said.cell == self.from)
     }
 
     /// Whether another robot has a better claim to the cell that it enters, or wants to exchange
@@ -189,6 +183,15 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
                         || (said.cell == self.from && start == own.cell))
             })
     }
+}
+
+/// The moves to the side of a cell on which a body is, as bits of [`Dir::index`].
+fn ways<S: Scalar>(off_m: Vec2<S>) -> u8 {
+    let leads = |dir: &&Dir| {
+        let Cell { x, y } = dir.offset();
+        off_m.x * S::from_i32(x.into()) + off_m.y * S::from_i32(y.into()) >= S::ZERO
+    };
+    Moves::FOUR.dirs().iter().filter(leads).fold(0, |ways, dir| ways | 1 << dir.index())
 }
 
 /// The time of a step: a body turns a corner in it. `None` if it is not a minute at most.
@@ -212,7 +215,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
         &mut self,
         view: &View<'_, S, InStep>,
         here: &InCells<'_, S>,
-        tools: Tools<'_, S, Self>,
+        _: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
         let Some(goal) = view.sent_to.or(self.goal) else { return Ok(Decision::idle()) };
         view.can_move()?;
@@ -230,26 +233,10 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
             self.before = self.from;
             self.from = self.from + self.by.offset();
             self.late = if self.is_late { self.late.saturating_add(1) } else { 0 };
-            // Whether no other robot is nearer to the centre of a cell.
-            let is_nearest = |cell: Cell| {
-                let way = to_center(cell);
-                let beside =
-                    |other: Neighbor<S, _>| other.offset_at(view.state.position, view.now, view.ages.expire_after);
-                view.peers().all(|(other, _)| (way - beside(other).xy()).norm() > way.norm())
-            };
-            let shares = self.shares(view);
-            let yields = shares && (!is_nearest(self.from) || tools.rng.below(YIELDS) == 0);
-            let was_late = self.is_late || yields;
-            if yields || self.late >= GIVES_UP {
-                let is_free = |cell: &Cell| {
-                    let is_open = window.get(*cell).is_some_and(|class| class != BLOCKED);
-                    is_open && !(shares && *cell == self.from) && is_nearest(*cell)
-                };
-                let around = Moves::FOUR.dirs().iter().chain(&[Dir::Stay]).map(|dir| under + dir.offset());
-                let nearest = around.filter(is_free).min_by(|a, b| to_center(*a).norm().order(to_center(*b).norm()));
-                self.from = nearest.unwrap_or(self.from);
-                (self.before, self.late) = (self.from, 0);
+            if self.late >= GIVES_UP {
+                (self.before, self.from, self.late) = (under, under, 0);
             }
+            let own = (view.id, self.from, -to_center(self.from));
             let Some(robot) = &mut self.robot else { return Ok(Decision::idle()) };
             if robot.goal() != goal {
                 robot.set_goal(goal);
@@ -270,6 +257,23 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
                     }
                 }
             }
+            // Each robot of this step with its cell, and where it is from the centre of that.
+            let mut bodies: Vec<(RobotId, Cell, Vec2<S>), N> = Vec::new();
+            let _ = bodies.push(own);
+            for (other, payload) in view.peers().filter(|(_, payload)| payload.said.step == self.step) {
+                let cell = payload.said.cell;
+                let body_m = other.offset_at(view.state.position, view.now, view.ages.expire_after).xy();
+                let _ = bodies.push((other.id, cell, body_m - to_center(cell)));
+            }
+            for &(id, cell, off_m) in &bodies {
+                let is_nearer = |&(other, its, its_m): &(RobotId, Cell, Vec2<S>)| {
+                    its == cell && (its_m.norm(), other.0) < (off_m.norm(), id.0)
+                };
+                if bodies.iter().any(is_nearer) {
+                    robot.share(id, ways(off_m));
+                }
+            }
+            let was_late = self.is_late;
             let dir = robot.decide(Sensed::Nothing);
             self.by = if was_late { Dir::Stay } else { dir };
             self.said = if was_late {

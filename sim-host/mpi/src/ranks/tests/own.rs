@@ -8,7 +8,7 @@ use staya_controller::agent::{
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Dir;
 use staya_controller::wire::{Never, ProtocolId};
-use staya_sim::engine::{simulate_own, simulate_own_from};
+use staya_sim::engine::{Engine, own_agents, simulate_own};
 
 /// Goes east, and stops when the sum of the payloads is large.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -57,7 +57,8 @@ fn on(scenario: &Scenario, ranks: usize, state: Option<&[u8]>) -> Outcome {
     let sharing = Sharing { every_ticks: 3, above: 1.01, ..Sharing::default() };
     let mut ended = std::thread::scope(|threads| {
         let run = |mut exchange: Threads| {
-            simulate_own_on(scenario, |_| Sums::default(), state, &mut exchange, &sharing, &mut continues)
+            let agents = own_agents(scenario, |_| Sums::default()).expect("any world");
+            simulate_on(scenario, agents, state, &mut exchange, &sharing, &mut continues)
         };
         let ranks: Vec<_> =
             Threads::connected(ranks).into_iter().map(|exchange| threads.spawn(move || run(exchange))).collect();
@@ -78,7 +79,9 @@ fn a_law_of_the_caller_has_one_hash_on_any_number_of_ranks_and_from_a_checkpoint
             ControlFlow::Continue(())
         };
         let alone = simulate_own(&scenario, |_| Sums::default(), watch).expect("room");
-        let resumed = simulate_own_from(&scenario, |_| Sums::default(), &saved, &mut continues).expect("its state");
+        let engine =
+            Engine::new(&scenario, own_agents(&scenario, |_| Sums::default()).expect("any world")).expect("room");
+        let resumed = engine.resume(&saved, scenario.ticks, &mut continues).expect("its state");
         assert_eq!(resumed, alone);
         for ranks in [1, 2, 3, 8] {
             assert_eq!(on(&scenario, ranks, None), alone, "{ranks} ranks");

@@ -1,7 +1,6 @@
 //! Diagonal moves of robots on the grid across each other.
 
 use super::*;
-use crate::engine::simulate::AnyEngine;
 use staya_controller::grid::BLOCKED;
 
 /// Robots 1 and 2 (or 2 and 1) on their way to the opposite corners of a square. The second one
@@ -32,15 +31,20 @@ fn swarm(seed: u64, [walls, hard]: [u32; 2], loss: f64) -> Scenario {
     scenario
 }
 
+fn world(engine: &Engine) -> &crate::world::World {
+    let AnyGround::Cells(grid) = &engine.ground else { panic!("a grid") };
+    grid.world()
+}
+
 /// Runs the scenario; fails at a shared cell or a swap. Returns the crossed diagonals per tick,
 /// summed, those that the world counted, and those of which one began in a later tick.
 fn crossings(scenario: &Scenario) -> [u64; 3] {
-    let AnyEngine::Cells(mut engine) = AnyEngine::new(scenario).expect("free starts") else { panic!("a grid") };
+    let mut engine = Engine::new(scenario, agents(scenario)).expect("free starts");
     let (mut crossed, mut late) = (0, 0);
     for tick in 0..scenario.ticks {
-        let before = engine.ground.world().bodies().to_vec();
+        let before = world(&engine).bodies().to_vec();
         engine.step();
-        let bodies = engine.ground.world().bodies();
+        let bodies = world(&engine).bodies();
         let now = u64::from(tick) * 70;
         let mut others = Vec::new();
         for (old, new) in before.iter().zip(bodies) {

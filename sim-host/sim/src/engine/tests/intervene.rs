@@ -35,7 +35,7 @@ fn by_hand_and_again(text: &str, done: &[(u32, Intervention)]) -> [Outcome; 2] {
         while let Some((_, what)) = left.next_if(|(tick, _)| *tick == swarm.outcome().ticks) {
             swarm.intervene(what).expect("it makes sense");
         }
-        swarm.advance();
+        swarm.step();
     }
     let saved = parse(&with_interventions(text, scenario.tick_us, done));
     assert_eq!(saved.interventions, done);
@@ -80,7 +80,7 @@ fn a_formation_with_a_new_goal_keeps_its_shape() {
     let mut swarm = operated(&scenario).expect("they can be placed");
     swarm.intervene(&goal(None, 11.0, 31.0)).expect("it makes sense");
     while !swarm.is_over() && swarm.outcome().ticks < scenario.ticks {
-        swarm.advance();
+        swarm.step();
     }
     let cells = [0, 1, 2, 3].map(|index| swarm.observation(index).motion.cell);
     assert_eq!(cells, [(5, 15), (8, 15), (5, 12), (8, 12)].map(|(x, y)| Cell::new(x, y)));
@@ -93,13 +93,13 @@ fn a_restarted_robot_keeps_its_changed_goal_and_parameters() {
     swarm.intervene(&Intervention::Down { robot: 3, for_s: Some(0.5) }).expect("known");
     swarm.intervene(&goal(Some(3), 4.0, -2.0)).expect("known");
     for _ in 0..20 {
-        swarm.advance();
+        swarm.step();
     }
     assert_eq!(swarm.observation(2).boot, 1);
     assert_eq!(swarm.parameter(2, "speed_mps"), Some(0.25));
     assert_eq!(swarm.goal_m(2), Some([4.0, -2.0, 0.0]));
     for _ in 0..800 {
-        swarm.advance();
+        swarm.step();
     }
     let [x, y, _] = swarm.observation(2).motion.position_m;
     assert!(libm::hypot(x - 4.0, y + 2.0) < 0.1, "{x} {y}");
@@ -126,7 +126,7 @@ fn interventions_without_effect_are_refused() {
         let refusal = swarm.intervene(&what).expect_err("it does not apply").to_string();
         assert!(refusal.contains("; "), "{refusal}");
         for _ in 0..8 {
-            swarm.advance();
+            swarm.step();
         }
         let hash = simulate(&Scenario { ticks: 8, ..scenario }, |_, _| ControlFlow::Continue(()));
         assert_eq!(swarm.outcome().trace_hash, hash.expect("they can be placed").trace_hash, "{what:?}");
@@ -149,7 +149,7 @@ fn inspection_does_not_change_the_run() {
                 assert_eq!(seen.land.is_some(), scenario.plane.is_none());
                 assert_eq!(seen.choice.is_some(), scenario.plane.is_some());
             }
-            swarm.advance();
+            swarm.step();
         }
         assert!(known > 20 && receptions > 20, "{known} {receptions}");
         let hash = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("they can be placed").trace_hash;
@@ -170,7 +170,7 @@ fn the_velocity_chosen_by_orca_is_permitted() {
                 assert!((x - px) * nx + (y - py) * ny >= -0.02, "tick {}", swarm.outcome().ticks);
             }
         }
-        swarm.advance();
+        swarm.step();
     }
     assert!(constrained > 100);
 }

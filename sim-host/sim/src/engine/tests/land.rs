@@ -83,7 +83,7 @@ fn a_closed_goal_is_replaced_by_the_nearest_cell_until_it_opens() {
     let mut swarm = operated(&scenario).expect("they can be placed");
     let mut cells = Vec::new();
     for _ in 0..220 {
-        swarm.advance();
+        swarm.step();
         cells.push(swarm.observation(0).motion.cell);
     }
     let at = |seconds: usize| cells[2 * seconds - 1];
@@ -107,7 +107,7 @@ fn an_enclosed_robot_stops_and_reports_it() {
         let mut swarm = operated(&scenario).expect("it can be placed");
         let mut said = 0;
         for _ in 0..100 {
-            swarm.advance();
+            swarm.step();
             said += swarm.events(0).iter().filter(|event| **event == Event::NoRoute).count();
         }
         assert_eq!(said, 1, "once, when it begins");
@@ -286,15 +286,13 @@ fn in_the_plane_a_map_leads_to_an_unseen_door_too() {
 #[test]
 fn a_restarted_robot_keeps_its_map_but_not_its_observations() {
     let scenario = scenario(TWO, "[scouting]\nunknown = 1\nassumed = 7\n");
-    let mut engine = match super::super::simulate::AnyEngine::new(&scenario).expect("they can be placed") {
-        super::super::simulate::AnyEngine::Cells(engine) => engine,
-        _ => panic!("they plan on wide windows"),
-    };
+    let mut engine = Engine::new(&scenario, agents(&scenario)).expect("they can be placed");
     for _ in 0..10 {
         engine.step();
     }
-    let known = |engine: &Engine<Grid, _, _>| {
-        engine.ground().scouts.as_ref().map_or(0, |scouts| scouts.memory(0).iter().count())
+    let known = |engine: &Engine| {
+        let AnyGround::Cells(grid) = &engine.ground else { panic!("a grid") };
+        grid.scouts.as_ref().map_or(0, |scouts| scouts.memory(0).iter().count())
     };
     assert!(known(&engine) > 121, "more than it sees at a time");
     engine.restart(0, 1);

@@ -12,9 +12,9 @@ fn discs() -> Scenario {
     Scenario::parse(DISCS, Path::new("t.toml"), &Overrides::default()).expect("a good scenario")
 }
 
-fn run(swarm: &mut dyn Operated, ticks: u32) {
+fn run(swarm: &mut Engine, ticks: u32) {
     for _ in 0..ticks {
-        swarm.advance();
+        swarm.step();
     }
 }
 
@@ -32,7 +32,7 @@ fn a_run_without_commands_is_the_run_without_an_operator() {
     let in_formation = Scenario { ticks: 8, ..scenario(formation, "") };
     for scenario in [on_grid, in_formation, discs()] {
         let mut swarm = operated(&scenario).expect("they can be placed");
-        run(&mut *swarm, scenario.ticks);
+        run(&mut swarm, scenario.ticks);
         let hash = swarm.outcome().trace_hash;
         assert_eq!(hash, hash_without_operator(&scenario));
     }
@@ -46,7 +46,7 @@ fn commanded_robots_go_to_the_new_goal_without_collisions() {
     for robot in 0..2 {
         assert!(swarm.command(robot, meeting));
     }
-    run(&mut *swarm, 400);
+    run(&mut swarm, 400);
     let off_m = [0, 1].map(|robot| {
         let observation = swarm.observation(robot);
         assert_eq!(observation.wish, meeting);
@@ -66,13 +66,13 @@ fn a_down_robot_ignores_commands_and_restarts_with_the_scenarios_task() {
     let east = Wish::Velocity { velocity_mps: Vec3::new(1.0, 0.0, 0.0), valid: Duration::from_millis(60_000) };
     assert!(swarm.command(2, east));
     assert_eq!(swarm.set_parameter(2, "speed_mps", 0.5), Ok(()));
-    run(&mut *swarm, 22);
+    run(&mut swarm, 22);
     let before = swarm.observation(2);
     assert!(!before.is_up && before.motion.velocity_mps == [0.0; 3]);
     assert!(swarm.set_parameter(2, "speed_mps", 0.5).is_err());
     assert_eq!(swarm.parameter(2, "speed_mps"), None);
     assert!(!swarm.command(2, east), "there is no such robot");
-    run(&mut *swarm, 15);
+    run(&mut swarm, 15);
     let after = swarm.observation(2);
     assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);
     assert_eq!(swarm.parameter(2, "speed_mps"), Some(1.0));
@@ -85,15 +85,15 @@ fn a_goal_message_reaches_the_controller_and_events_return() {
     let mavlink = "[radio]\nformat = \"mavlink\"\n";
     for rest in ["", mavlink, key, &format!("{mavlink}{key}")] {
         let scenario = scenario(TWO, rest);
-        tell_a_goal(&mut *operated(&scenario).expect("they can be placed"));
+        tell_a_goal(&mut operated(&scenario).expect("they can be placed"));
     }
 }
 
-fn tell_a_goal(swarm: &mut dyn Operated) {
+fn tell_a_goal(swarm: &mut Engine) {
     let goal = OnCells::order(RobotId(1), 1, &GridOrder::FormationGoal(Cell::new(3, 9)));
     let header = Header { boot: 0, sender: RobotId(255), sequence: 0 };
     swarm.tell(0, header, &goal.expect("a goal fits a frame"));
-    swarm.advance();
+    swarm.step();
     assert_eq!(swarm.observation(0).status.target, Cell::new(3, 9));
     let begins = Event::ModeChanged { from: Mode::Idle, to: Mode::Cruise };
     assert_eq!(swarm.events(0), [begins]);
@@ -131,7 +131,7 @@ fn random_commands_cause_no_collisions() {
                 };
                 assert!(swarm.command(robot, wish));
             }
-            run(&mut *swarm, 10);
+            run(&mut swarm, 10);
         }
         let outcome = swarm.outcome();
         assert_eq!(outcome.collisions, 0, "seed {seed}: {:?}", outcome.clearance);

@@ -132,7 +132,7 @@ fn the_configured_latency_matches_the_radio_delay() {
         let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
         let setup = scenario.plane.as_ref().expect("robots in the plane");
         let ground = PlaneGround::new(&scenario, setup);
-        let config = ground.config(0, Duration::from_millis(100));
+        let (config, _) = ground.setup(0, 0);
         assert_eq!(config.latency, Duration::from_millis(100 * ticks), "{delay_ms} ms");
     }
 }

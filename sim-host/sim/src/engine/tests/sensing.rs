@@ -1,4 +1,3 @@
-use super::super::simulate::AnyEngine;
 use super::*;
 use crate::scenario::Sensing;
 
@@ -71,9 +70,9 @@ fn errors(sensing: &str, radio: &str, range_m: f64) -> (f64, f64) {
     let (mut squares, mut count, mut moments) = (0.0, 0.0, 0.0);
     for seed in 500..503 {
         let scenario = with_range(seeded(12, sensing, radio, seed), range_m);
-        let AnyEngine::Plane(mut engine) = AnyEngine::new(&scenario).expect("room") else { panic!("no plane") };
+        let mut engine = Engine::new(&scenario, agents(&scenario)).expect("room");
         for _ in 0..160 {
-            let places: Vec<_> = engine.ground.plane().discs().iter().map(|disc| disc.position_m).collect();
+            let places: Vec<_> = engine.view().discs.iter().map(|disc| disc.position_m).collect();
             let tick = engine.tick;
             engine.step();
             for (own, computer) in places.iter().zip(&engine.computers) {

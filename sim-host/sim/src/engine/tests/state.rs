@@ -1,21 +1,11 @@
-use super::super::simulate::AnyEngine;
-use super::super::state::State;
 use super::*;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-macro_rules! with_engines {
-    ($scenario:expr, $check:ident($($rest:expr),*)) => {{
-        let make = || AnyEngine::new($scenario).expect("robots can be placed");
-        match make() {
-            AnyEngine::Plane(_) => $check(
-                &|| match make() { AnyEngine::Plane(engine) => engine, _ => unreachable!() }, $($rest),*),
-            AnyEngine::Cells(_) => $check(
-                &|| match make() { AnyEngine::Cells(engine) => engine, _ => unreachable!() }, $($rest),*),
-        }
-    }};
+fn make(scenario: &Scenario) -> Engine {
+    Engine::new(scenario, agents(scenario)).expect("robots can be placed")
 }
 
-fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, row: &TickRow) -> u64 {
+fn seen(engine: &Engine, row: &TickRow) -> u64 {
     let mut hasher = DefaultHasher::new();
     format!("{:?}", engine.moment(row)).hash(&mut hasher);
     for robot in engine.rows() {
@@ -24,13 +14,8 @@ fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, 
     hasher.finish()
 }
 
-fn resumes<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, ticks: u32, at: &[u32])
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
-    let mut engine = make();
+fn resumes(scenario: &Scenario, name: &str, ticks: u32, at: &[u32]) {
+    let mut engine = make(scenario);
     engine.first_row();
     let (mut rows, mut saved) = (Vec::new(), Vec::new());
     for tick in 0..ticks {
@@ -44,7 +29,7 @@ where
     }
     let whole = format!("{:?}", engine.outcome());
     for (tick, bytes) in saved {
-        let mut engine = make();
+        let mut engine = make(scenario);
         engine.restore(&bytes).unwrap_or_else(|error| panic!("{name} at {tick}: {error}"));
         let mut again = Vec::new();
         engine.save(&mut again).expect("all robots are here");
@@ -57,19 +42,14 @@ where
     }
 }
 
-fn moves<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, tick: u32, ticks: u32)
-where
-    W: Ground,
-    G: HostLaw + State,
-    A: Safety<f32> + Send + State,
-{
-    let (mut one, mut other) = (make(), make());
+fn moves(scenario: &Scenario, name: &str, tick: u32, ticks: u32) {
+    let (mut one, mut other) = (make(scenario), make(scenario));
     for _ in 0..tick {
         one.step();
         other.step();
     }
     // Neither the order in which robots are restored nor occupied cells matter.
-    let fresh = make();
+    let fresh = make(scenario);
     let mut bytes = Vec::new();
     for index in 0..one.robots.len() {
         bytes.clear();
@@ -94,8 +74,8 @@ fn everything(scenario: &Scenario, name: &str, work: usize) {
     let ticks = (work / scenario.robots.len()).clamp(20, 500) as u32;
     let ticks = ticks.min(scenario.ticks);
     let at = [1, ticks / 3, ticks - 2];
-    with_engines!(scenario, resumes(name, ticks, &at));
-    with_engines!(scenario, moves(name, ticks / 2, ticks));
+    resumes(scenario, name, ticks, &at);
+    moves(scenario, name, ticks / 2, ticks);
 }
 
 fn every_scenario(work: usize, most: usize) {
@@ -142,8 +122,8 @@ fn runs_with_radio_faults_resume_in_every_format() {
             let rest =
                 format!("[radio]\nformat = \"{format}\"\n{fault}{key}[[fault]]\nrobot = 2\nat_s = 2\ndown_s = 1.5\n");
             let scenario = scenario(TWO, &rest);
-            with_engines!(&scenario, resumes(&rest, 30, &[3, 5, 9, 20]));
-            with_engines!(&scenario, moves(&rest, 6, 30));
+            resumes(&scenario, &rest, 30, &[3, 5, 9, 20]);
+            moves(&scenario, &rest, 6, 30);
         }
     }
 }
@@ -157,7 +137,7 @@ fn runs_with_interventions_resume() {
          [[intervention]]\nat_s = 3\ndo = { kind = \"down\", robot = 2, for_s = 2 }\n\
          [[intervention]]\nat_s = 4\ndo = { kind = \"radio\", loss = 0.5, range_m = 7 }\n",
     );
-    with_engines!(&on_grid, resumes("grid", 40, &[1, 3, 5, 7, 8, 9, 12]));
+    resumes(&on_grid, "grid", 40, &[1, 3, 5, 7, 8, 9, 12]);
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/six-discs.toml"))
         .expect("it is there");
     let text = format!(
@@ -169,7 +149,7 @@ fn runs_with_interventions_resume() {
     );
     let in_plane = Scenario::parse(&text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
     let at = [5, 15, 25, 35, 45, 55, 65].map(|tenths| tenths * 100_000 / in_plane.tick_us);
-    with_engines!(&in_plane, resumes("plane", at[6] + 20, &at));
+    resumes(&in_plane, "plane", at[6] + 20, &at);
 }
 
 #[test]
@@ -178,7 +158,7 @@ fn runs_with_sensors_resume() {
         [plane.sensing]\nrange_m = 3\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 3\n\
         [plane.robots.circle]\ncount = 8\nradius_m = 1\n[[fault]]\nrobot = 2\nat_s = 1\ndown_s = 1\n";
     let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
-    with_engines!(&scenario, resumes("eyes", 80, &[1, 2, 3, 4, 5, 21, 41, 50]));
+    resumes(&scenario, "eyes", 80, &[1, 2, 3, 4, 5, 21, 41, 50]);
 }
 
 #[test]
@@ -187,70 +167,60 @@ fn runs_with_changing_terrain_and_memory_resume() {
         [[terrain.change]]\nevery_s = 1\ndrift = { share = 0.2, classes = 4 }\n\
         [scouting]\nradius = 8\nunknown = 0.5\nassumed = 3\n[[fault]]\nrobot = 2\nat_s = 3\ndown_s = 2\n";
     let on_grid = scenario(TWO, changes);
-    with_engines!(&on_grid, resumes("grid", 40, &[1, 4, 5, 7, 8, 9, 12]));
-    with_engines!(&on_grid, moves("grid", 9, 40));
+    resumes(&on_grid, "grid", 40, &[1, 4, 5, 7, 8, 9, 12]);
+    moves(&on_grid, "grid", 9, 40);
     let in_plane = "tick_s = 0.1\nname = \"t\"\nticks = 200\n[terrain]\nuniform = { width = 12, height = 6, classes = 2 }\n\
         [[terrain.change]]\nat_s = 2\nfor_s = 3\nclass = 0\nrectangle = { x = 2, y = 0, width = 4, height = 6 }\n\
         [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"route\"\n[scouting]\nunknown = 0.5\n\
         [robots]\nlist = [{ start = [1, 2], goal = [10, 2] }, { start = [10, 3], goal = [1, 3] }]\n";
     let in_plane = Scenario::parse(in_plane, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
-    with_engines!(&in_plane, resumes("plane", 80, &[5, 19, 21, 25, 30, 49, 52]));
-    with_engines!(&in_plane, moves("plane", 30, 60));
+    resumes(&in_plane, "plane", 80, &[5, 19, 21, 25, 30, 49, 52]);
+    moves(&in_plane, "plane", 30, 60);
 }
 
 #[test]
 fn a_damaged_state_is_refused_or_harmless() {
-    fn check<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, whole: &str)
-    where
-        W: Ground,
-        G: HostLaw + State,
-        A: Safety<f32> + Send + State,
-    {
-        let mut engine = make();
+    fn check(scenario: &Scenario, whole: &str) {
+        let mut engine = make(scenario);
         for _ in 0..4 {
             engine.step();
         }
         let mut bytes = Vec::new();
         engine.save(&mut bytes).expect("all robots are here");
         for end in 0..bytes.len() {
-            let error = make().restore(&bytes[..end]).expect_err(whole);
+            let error = make(scenario).restore(&bytes[..end]).expect_err(whole);
             assert!(error.at <= end, "{error}");
         }
         let mut refused = 0;
         for at in 0..bytes.len() {
             bytes[at] ^= 1 << (at % 8);
-            refused += usize::from(make().restore(&bytes).is_err());
+            refused += usize::from(make(scenario).restore(&bytes).is_err());
             bytes[at] ^= 1 << (at % 8);
         }
         // Checkpoints have a checksum; this tests the decoder without it.
         assert!(refused * 2 > bytes.len(), "{refused} of {}", bytes.len());
-        assert!(make().restore(&bytes).is_ok());
+        assert!(make(scenario).restore(&bytes).is_ok());
         assert!(engine.restore(&bytes).expect_err(whole).to_string().contains("under way"));
     }
     let small = scenario(TWO, "[radio]\njitter_ms = 900\n");
-    with_engines!(&small, check("a part is not a state"));
+    check(&small, "a part is not a state");
 }
 
 #[test]
 fn a_state_of_another_scenario_is_refused() {
-    fn check<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, seed: u64)
-    where
-        W: Ground,
-        G: HostLaw + State,
-        A: Safety<f32> + Send + State,
-    {
-        let (mut one, mut other) = (make(), make());
+    fn check(scenario: &Scenario, seed: u64) {
+        let (mut one, mut other) = (make(scenario), make(scenario));
         let mut bytes = Vec::new();
         one.pack(0, &mut bytes);
         let error = other.unpack(1, &bytes).expect_err("it is another robot").to_string();
         assert!(error.contains("robot 1, not robot 2"), "{error}");
         bytes.clear();
-        one.seed = seed;
+        one.roster.seed = seed;
         one.save(&mut bytes).expect("all robots are here");
         let error = other.restore(&bytes).expect_err("it has another seed").to_string();
         assert!(error.contains("2 robots and seed 99"), "{error}");
     }
-    with_engines!(&scenario(TWO, ""), check(99));
+    check(&scenario(TWO, ""), 99);
 }
 
 proptest! {
@@ -275,7 +245,7 @@ proptest! {
         );
         let mut scenario = scenario(&robots, &rest);
         scenario.seed = seed;
-        with_engines!(&scenario, resumes("random", 50, &[at]));
-        with_engines!(&scenario, moves("random", at, 50));
+        resumes(&scenario, "random", 50, &[at]);
+        moves(&scenario, "random", at, 50);
     }
 }

@@ -29,22 +29,29 @@ pub(super) fn between(rng: &mut Rng, from: Place, to: Place) -> [f64; 3] {
     place
 }
 
-/// Accepted places, at least `spacing_m` metres apart. O(1) per place.
+/// Accepted places, at least `spacing_m` metres apart, with heights divided by `downwash`. O(1) per
+/// place.
 pub(super) struct Taken {
     spacing_m: f64,
+    downwash: f64,
     buckets: HashMap<[i64; 3], Vec<[f64; 3]>>,
 }
 
 impl Taken {
-    pub(super) fn new(spacing_m: f64) -> Self {
-        Self { spacing_m, buckets: HashMap::new() }
+    pub(super) fn new(spacing_m: f64, downwash: f64) -> Self {
+        Self { spacing_m, downwash, buckets: HashMap::new() }
     }
 
-    fn bucket(&self, place: [f64; 3]) -> [i64; 3] {
-        place.map(|x| libm::floor(x / self.spacing_m) as i64)
+    fn lowered(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        [x, y, z / self.downwash]
+    }
+
+    fn bucket(&self, lowered: [f64; 3]) -> [i64; 3] {
+        lowered.map(|x| libm::floor(x / self.spacing_m) as i64)
     }
 
     pub(super) fn is_free(&self, place: [f64; 3]) -> bool {
+        let place = self.lowered(place);
         let [x, y, z] = self.bucket(place);
         let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
         let around = around.flat_map(|(dx, dy)| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]));
@@ -56,6 +63,7 @@ impl Taken {
     }
 
     pub(super) fn take(&mut self, place: [f64; 3]) {
+        let place = self.lowered(place);
         self.buckets.entry(self.bucket(place)).or_default().push(place);
     }
 }
@@ -86,7 +94,8 @@ pub(super) fn starts(
             squared >= (group.body.radius_m + other_m) * (group.body.radius_m + other_m)
         })
     };
-    let (mut taken, mut aims) = (Taken::new(spacing_m), Taken::new(spacing_m));
+    let downwash = spec.orca.downwash.unwrap_or(1.0).max(1.0);
+    let (mut taken, mut aims) = (Taken::new(spacing_m, downwash), Taken::new(spacing_m, downwash));
     let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
     for index in 0..entry.count {
         let mut rng = Rng::keyed(seed, SCATTERED, first + index, 0);
@@ -113,7 +122,7 @@ pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> R
     for (number, entry) in (0..).zip(entries) {
         let table = format!("plane.balls[{number}]");
         let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
-        let mut taken = Taken::new(2.0 * entry.radius_m + entry.gap_m);
+        let mut taken = Taken::new(2.0 * entry.radius_m + entry.gap_m, 1.0);
         for index in 0..entry.count {
             let mut rng = Rng::keyed(seed, BALLS, number, index);
             let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));

@@ -150,7 +150,7 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3
             squared >= (radius_m + other_m) * (radius_m + other_m)
         })
     };
-    let mut taken = Taken::new(2.0 * radius_m);
+    let mut taken = Taken::new(2.0 * radius_m, 1.0);
     (0..cloud.count)
         .map(|index| {
             let mut rng = Rng::keyed(seed, STARTS, first + index, 1);

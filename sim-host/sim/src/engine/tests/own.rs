@@ -3,7 +3,7 @@ use crate::engine::{StartError, simulate};
 use crate::scenario::Overrides;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Decision, Law, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
+    Action, BadInput, Decision, InPlane, Law, OnGrid, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
 };
 use staya_controller::grid::Dir;
 use staya_controller::robot::RobotId;
@@ -113,8 +113,9 @@ fn a_run_resumed_from_a_checkpoint_ends_identically() {
         ControlFlow::Break(())
     };
     let _ = simulate_own(&scenario, |_| Highest::default(), until_five).unwrap();
-    let again =
-        simulate_own_from(&scenario, |_| Highest::default(), &bytes, &mut |_, _| ControlFlow::Continue(())).unwrap();
+    let agents = own_agents(&scenario, |_| Highest::default()).unwrap();
+    let engine = Engine::new(&scenario, agents).unwrap();
+    let again = engine.resume(&bytes, scenario.ticks, &mut |_, _| ControlFlow::Continue(())).unwrap();
     assert_eq!(again, whole);
 }
 
