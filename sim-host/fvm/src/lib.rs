@@ -16,5 +16,5 @@ mod tests;
 pub use build::{BuildError, Grid, build};
 pub use function::{Function, System};
 pub use measure::{Errors, HalfPlaneErrors, Measured, Reading, half_planes, measure};
-pub use room::{Room, RoomError};
+pub use room::Room;
 pub use template::{Pair, Template, TemplateError, Templated, VelocityForm};

@@ -1,7 +1,7 @@
 //! Template options and number parsing.
 
 use crate::{Grid, Pair, Room, System, Template, Templated, VelocityForm};
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Result, anyhow};
 use clap::{Args, ValueEnum};
 use staya_sim::file::{TEXT, read_remedy, read_text};
 use std::path::{Path, PathBuf};
@@ -134,7 +134,7 @@ pub fn room(file: Option<&Path>) -> Result<Room> {
     };
     let text = read_text(file, TEXT)
         .map_err(|error| anyhow!("cannot read {}: {error}; {}", file.display(), read_remedy(&error)))?;
-    Room::read(&text).with_context(|| file.display().to_string())
+    Ok(Room::read(&text, file)?)
 }
 
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {

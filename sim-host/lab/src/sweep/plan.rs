@@ -15,11 +15,12 @@ pub use axes::Change;
 use axes::{Axis, SCENARIO};
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
-use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source, nearest};
+use staya_sim::scenario::{Field, Overrides, Read as _, Scenario, ScenarioError, Source, nearest};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 pub use table::PlotTable;
-use table::{Files, PictureTable, PlanFile, SeedRange, Seeds};
+use table::{Files, PlanFile, SeedRange, Seeds};
+use toml::de::DeValue;
 
 const LIST: &str = "docs/sweeps.md";
 /// Some hundred megabytes of rows.
@@ -39,6 +40,8 @@ pub struct Plan {
     axes: Vec<Axis>,
     /// Axes that advance together, as ranges of `axes`; groups are crossed with each other.
     groups: Vec<Range<usize>>,
+    /// Fields with one value for all runs, as TOML, and their lines in the plan.
+    set: Vec<(Field, String, usize)>,
     seeds: Vec<u64>,
     measures: Vec<String>,
     /// Requested pictures; empty for the default.
@@ -51,11 +54,11 @@ pub struct Plan {
     fingerprint: u64,
 }
 
-/// A scenario with the fields that all runs share.
+/// The file of a scenario.
 #[derive(Clone, Debug)]
 struct Base {
     path: PathBuf,
-    table: toml::Table,
+    text: String,
 }
 
 /// Changes of a plan by the command line.
@@ -116,7 +119,7 @@ impl Plan {
             let what = format!("{:?} cannot name a folder of results", file.name);
             return Err(source.error("name", what, "use 1 to 100 letters, digits, - and _").into());
         }
-        let mut bases = match &file.scenario {
+        let bases = match &file.scenario {
             Files::One(name) => vec![Base::read(&source, "scenario", name)?],
             Files::List(names) => (0..)
                 .zip(names)
@@ -129,15 +132,14 @@ impl Plan {
         let mut all = axes::read(&source, &file, bases.iter().map(Base::name).collect())?;
         all.change(&changes.fields)?;
         let axes::Axes { axes, groups, set } = all;
-        for (field, value, span) in set {
-            let wrong = |what| source.error_at(span.clone(), field.name(), what, "name a field of the scenario");
-            bases.iter_mut().try_for_each(|base| field.set(&mut base.table, value.toml()).map_err(wrong))?;
-        }
-        for (axis, base) in axes.iter().flat_map(|axis| bases.iter().map(move |base| (axis, base))) {
-            axes::check_kind(&source, axis, axis.field.get(&base.table))?;
+        let set = set.into_iter().map(|(field, value, span)| (field, value.toml(), source.line(span.start)));
+        let set: Vec<_> = set.collect();
+        let scenarios: Vec<_> = bases.iter().map(|base| base.source(path, &set)).collect::<Result<_, _>>()?;
+        for (axis, scenario) in axes.iter().flat_map(|axis| scenarios.iter().map(move |base| (axis, base))) {
+            axes::check_kind(&source, axis, scenario.get(axis.field.name()))?;
         }
         let seeds = match &file.seeds {
-            None => vec![bases[0].table.get("seed").and_then(toml::Value::as_integer).map_or(0, i64::unsigned_abs)],
+            None => vec![scenarios[0].get("seed").and_then(|seed| u64::read(seed).ok()).unwrap_or_default()],
             Some(seeds) => check_seeds(&source, seeds)?,
         };
         let mut plan = Self {
@@ -147,6 +149,7 @@ impl Plan {
             bases,
             axes,
             groups,
+            set,
             seeds: changes.seeds(seeds, file.seeds.as_ref()),
             measures: Vec::new(),
             plots: Vec::new(),
@@ -166,8 +169,8 @@ impl Plan {
         plan.plots = check_plots(&source, &plan, file.plot)?;
         let reference = file.reference.map(|name| Reference::load(&plan, &source.file(&name)));
         plan.reference = reference.transpose()?;
-        for (index, PictureTable { at }) in file.picture.iter().enumerate() {
-            match Choice::read(&plan, at, &source, &format!("picture[{index}].where")) {
+        for index in 0..file.picture.len() {
+            match Choice::read(&plan, &source, &format!("picture[{index}].where")) {
                 Ok(choice) => plan.pictures.push(choice),
                 // The point is not among those of a changed plan.
                 Err(_) if !changes.fields.is_empty() => {}
@@ -308,19 +311,12 @@ impl Plan {
     }
 
     pub(crate) fn scenario(&self, run: &Run<'_>) -> Result<Scenario, ScenarioError> {
-        let base = self.base(run);
-        let mut table = base.table.clone();
-        for (axis, value) in self.axes.iter().zip(&run.values).filter(|(axis, _)| axis.field.name() != SCENARIO) {
-            axis.field.set(&mut table, value.toml()).map_err(|what| ScenarioError::Field {
-                path: self.path.clone(),
-                line: axis.line.max(1),
-                field: axis.field.name().to_owned(),
-                what,
-                remedy: "name a field of the scenario".to_owned(),
-            })?;
+        let values: Vec<String> = run.values.iter().map(|value| value.toml()).collect();
+        let mut source = self.base(run).source(&self.path, &self.set)?;
+        for (axis, value) in self.axes.iter().zip(&values).filter(|(axis, _)| axis.field.name() != SCENARIO) {
+            source.set(&axis.field, value).map_err(|what| obstructed(&self.path, axis.line, &axis.field, what))?;
         }
-        let text = toml::to_string(&table).unwrap_or_default();
-        Scenario::parse(&text, &base.path, &Overrides { seed: Some(run.seed), ticks: None })
+        Scenario::read(source, &Overrides { seed: Some(run.seed), ticks: None })
             .map_err(|error| self.said_of_plan(run, error))
     }
 
@@ -331,16 +327,10 @@ impl Plan {
 
     /// Converts an error of a generated scenario to places in the user's files.
     fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
-        let ScenarioError::Field { field, what, remedy, .. } = error else {
+        let ScenarioError::Field { path, line, field, what, remedy } = error else {
             return error;
         };
-        let is_below =
-            |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
-        let is_meant = |axis: &&Axis| {
-            let name = axis.field.name();
-            axis.line > 0 && !field.is_empty() && (is_below(name, &field) || is_below(&field, name))
-        };
-        if let Some(axis) = self.axes.iter().find(is_meant) {
+        if let Some(axis) = self.axes.iter().find(|axis| axis.line > 0 && axis.field.is_about(&field)) {
             let field = axis.field.name().to_owned();
             let is_word = axis.is_range && what.contains("quotes");
             let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
@@ -349,17 +339,12 @@ impl Plan {
         let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
         let values = values.join(", ");
         let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
-        let path = &self.base(run).path;
-        let text = read_text(path, TEXT).unwrap_or_default();
-        match Source::new(path, &text) {
-            Ok(source) => source.error(&field, what, remedy),
-            Err(error) => error,
-        }
+        ScenarioError::Field { path, line, field, what, remedy }
     }
 
     /// Covers everything that rows depend on: fields, values, seeds, figures, the scenario's files.
     fn digest(&self) -> u64 {
-        let text = |base: &Base| toml::to_string(&base.table).unwrap_or_default();
+        let text = |base: &Base| base.source(&self.path, &self.set).map(|source| source.written()).unwrap_or_default();
         let mut all = self.bases.iter().fold(FORMAT, |all, base| chained(all, digest(text(base).as_bytes())));
         let mut add = |bytes: &[u8]| all = chained(all, digest(bytes));
         for (axis, index) in self.axes.iter().zip(0u64..) {
@@ -376,9 +361,11 @@ impl Plan {
 
     fn files(&self) -> Vec<PathBuf> {
         let mut files = Vec::new();
-        for Base { path, table } in &self.bases {
-            let mut words = Vec::new();
-            collect_words(&toml::Value::Table(table.clone()), &mut words);
+        for base in &self.bases {
+            let (path, mut words) = (&base.path, Vec::new());
+            if let Ok(source) = base.source(&self.path, &self.set) {
+                source.root().values().for_each(|node| collect_words(node.get_ref(), &mut words));
+            }
             for value in self.axes.iter().flat_map(|axis| &axis.values) {
                 if let Value::Word(word) = value {
                     words.push(word.clone());
@@ -405,13 +392,16 @@ impl Base {
         let text = read_text(&path, TEXT).map_err(|error| {
             source.error(field, format!("{}: {error}", path.display()), "names are relative to the plan's file")
         })?;
-        match text.parse() {
-            Ok(table) => Ok(Self { path, table }),
-            // The reader of scenarios finds the line.
-            Err(_) => Err(Scenario::parse(&text, &path, &Overrides::default())
-                .err()
-                .unwrap_or_else(|| source.error(field, "it is not TOML", "name a scenario"))),
+        Ok(Self { path, text })
+    }
+
+    /// The fields of the scenario with those that all runs share.
+    fn source<'a>(&'a self, plan: &Path, set: &'a [(Field, String, usize)]) -> Result<Source<'a>, ScenarioError> {
+        let mut source = Source::new(&self.path, &self.text)?;
+        for (field, value, line) in set {
+            source.set(field, value).map_err(|what| obstructed(plan, *line, field, what))?;
         }
+        Ok(source)
     }
 
     /// Value of the axis of scenarios.
@@ -478,11 +468,16 @@ impl Design for Plan {
     }
 }
 
-fn collect_words(value: &toml::Value, words: &mut Vec<String>) {
+fn obstructed(plan: &Path, line: usize, field: &Field, what: String) -> ScenarioError {
+    let (path, field, remedy) = (plan.to_owned(), field.name().to_owned(), "name a field of the scenario".to_owned());
+    ScenarioError::Field { path, line: line.max(1), field, what, remedy }
+}
+
+fn collect_words(value: &DeValue<'_>, words: &mut Vec<String>) {
     match value {
-        toml::Value::String(word) => words.push(word.clone()),
-        toml::Value::Array(list) => list.iter().for_each(|value| collect_words(value, words)),
-        toml::Value::Table(table) => table.values().for_each(|value| collect_words(value, words)),
+        DeValue::String(word) => words.push(word.to_string()),
+        DeValue::Array(list) => list.iter().for_each(|node| collect_words(node.get_ref(), words)),
+        DeValue::Table(table) => table.values().for_each(|node| collect_words(node.get_ref(), words)),
         _ => {}
     }
 }

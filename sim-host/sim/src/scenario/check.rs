@@ -152,7 +152,7 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
         return Err(source.error("terrain", "it is missing", "say what land is meant"));
     };
     let has_map = table.file.is_some() || file.scouting.as_ref().is_some_and(|scouting| scouting.map.is_some());
-    if !has_map && source.stands("terrain.load") {
+    if !has_map && source.has("terrain.load") {
         let remedy = "give terrain.file, or leave it out";
         return Err(source.error("terrain.load", "only map files are converted", remedy));
     }
@@ -261,7 +261,7 @@ fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioErro
         if is_paper { &["waits", "lead", "closes_ranks", "footprint", "recovery"] } else { &["crowd"] };
     for name in foreign {
         let field = format!("formation.{name}");
-        if source.stands(&field) {
+        if source.has(&field) {
             return Err(source.error(&field, format!("the law \"{law}\" has no use for it"), "leave it out"));
         }
     }
@@ -271,7 +271,7 @@ fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioErro
             return Err(source.error("formation.waits", what, "leave it out"));
         }
         for name in ["formation.halt_cells", "formation.resume_cells"] {
-            if source.stands(name) {
+            if source.has(name) {
                 return Err(source.error(name, "with waits = false no robot waits", "leave out one of the two"));
             }
         }

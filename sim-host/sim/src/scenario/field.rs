@@ -1,7 +1,10 @@
-//! Paths of scenario fields, with functions that read and set them.
+//! Paths of scenario fields, with a function that sets them.
 
+use super::read::Node;
 use std::fmt::{self, Display, Formatter};
-use toml::Value;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// Path of a field, such as `radio.loss` or `plane.group[0].count`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,49 +35,74 @@ impl Field {
         &self.name
     }
 
-    /// Value of the field in `scenario`; `None` if it is absent.
-    pub fn get<'a>(&self, scenario: &'a toml::Table) -> Option<&'a Value> {
-        let mut table = Some(scenario);
-        let mut value = None;
-        for (name, places) in &self.steps {
-            value = table?.get(name);
-            for &place in places {
-                value = value?.get(place);
-            }
-            table = value?.as_table();
-        }
-        value
+    /// Whether `field` is this field or a part of it.
+    pub fn has(&self, field: &str) -> bool {
+        is_below(field, &self.name)
     }
 
-    /// Sets the field and creates missing tables. The error says what is in the way.
-    pub fn set(&self, scenario: &mut toml::Table, to: Value) -> Result<(), String> {
+    /// Whether `field` is this field, a part of it, or a table with it.
+    pub fn is_about(&self, field: &str) -> bool {
+        !field.is_empty() && (is_below(field, &self.name) || is_below(&self.name, field))
+    }
+
+    /// Sets the field and creates missing tables. Its place is that of the replaced value or else
+    /// of the table. The error says what is in the way.
+    pub(super) fn set<'a>(&self, root: &mut DeTable<'a>, to: DeValue<'a>) -> Result<(), String> {
         let Some(((last, places), tables)) = self.steps.split_last() else {
             return Err("it has no name".to_owned());
         };
-        let mut table = scenario;
+        let (mut table, mut span) = (root, 0..0);
         for (name, places) in tables {
-            let entry = table.entry(name).or_insert_with(|| Value::Table(toml::Table::new()));
-            table = element(entry, name, places)?
-                .as_table_mut()
-                .ok_or_else(|| format!("{name} is not a table in the scenario"))?;
+            let key = Spanned::new(span.clone(), name.clone().into());
+            let entry = table.entry(key).or_insert_with(|| Spanned::new(span, DeValue::Table(DeTable::new())));
+            let node = element(entry, name, places)?;
+            span = node.span();
+            let DeValue::Table(inner) = node.get_mut() else {
+                return Err(format!("{name} is not a table in the scenario"));
+            };
+            table = inner;
         }
         if places.is_empty() {
-            table.insert(last.clone(), to);
+            let span = table.get(last.as_str()).map_or(span, Spanned::span);
+            let key = Spanned::new(span.clone(), last.clone().into());
+            table.insert(key, moved(to, &span));
             return Ok(());
         }
-        let list = table.get_mut(last).ok_or_else(|| format!("{last} is not in the scenario"))?;
-        *element(list, last, places)? = to;
+        let list = table.get_mut(last.as_str()).ok_or_else(|| format!("{last} is not in the scenario"))?;
+        let node = element(list, last, places)?;
+        *node = moved(to, &node.span());
         Ok(())
     }
 }
 
-fn element<'a>(mut value: &'a mut Value, name: &str, places: &[usize]) -> Result<&'a mut Value, String> {
+fn element<'t, 'a>(mut node: &'t mut Node<'a>, name: &str, places: &[usize]) -> Result<&'t mut Node<'a>, String> {
     for &place in places {
-        let list = value.as_array_mut().ok_or_else(|| format!("{name} is not a list in the scenario"))?;
+        let DeValue::Array(list) = node.get_mut() else {
+            return Err(format!("{name} is not a list in the scenario"));
+        };
         let count = list.len();
-        value = list.get_mut(place).ok_or_else(|| format!("{name} has {count} elements, counted from 0"))?;
+        node = list.get_mut(place).ok_or_else(|| format!("{name} has {count} elements, counted from 0"))?;
     }
-    Ok(value)
+    Ok(node)
+}
+
+/// A value of another text with all its parts at `span`.
+fn moved<'a>(value: DeValue<'a>, span: &Range<usize>) -> Node<'a> {
+    let inner = |node: Node<'a>| moved(node.into_inner(), span);
+    let value = match value {
+        DeValue::Array(list) => DeValue::Array(list.into_iter().map(inner).collect()),
+        DeValue::Table(table) => {
+            let entry = |(key, node): (Spanned<_>, _)| (Spanned::new(span.clone(), key.into_inner()), inner(node));
+            DeValue::Table(table.into_iter().map(entry).collect())
+        }
+        value => value,
+    };
+    Spanned::new(span.clone(), value)
+}
+
+/// Whether `field` is `above`, or a part of it.
+fn is_below(field: &str, above: &str) -> bool {
+    field.strip_prefix(above).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 impl Display for Field {
@@ -84,47 +112,4 @@ impl Display for Field {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SCENARIO: &str = "ticks = 5\n[plane]\nradius_m = 1\n[[plane.group]]\nfrom_m = [1, 2]\n[[plane.group]]\n";
-
-    fn set(name: &str) -> Result<toml::Table, String> {
-        let mut scenario = SCENARIO.parse().expect("TOML");
-        Field::read(name).expect("a name").set(&mut scenario, Value::Integer(7)).map(|()| scenario)
-    }
-
-    #[test]
-    fn a_field_is_found_set_and_made() {
-        for name in ["ticks", "plane.radius_m", "plane.group[1].count", "radio.burst.share", "plane.group[0].from_m[1]"]
-        {
-            let changed = set(name).unwrap_or_else(|what| panic!("{name}: {what}"));
-            assert_eq!(Field::read(name).and_then(|field| field.get(&changed).cloned()), Some(Value::Integer(7)));
-            let mut before: toml::Table = SCENARIO.parse().expect("TOML");
-            Field::read(name).expect("a name").set(&mut before, Value::Integer(7)).expect("a place");
-            assert_eq!(before, changed);
-        }
-        let scenario = SCENARIO.parse().expect("TOML");
-        assert_eq!(Field::read("plane.group[2].count").expect("a name").get(&scenario), None);
-    }
-
-    #[test]
-    fn an_obstruction_on_the_path_is_named() {
-        for (name, what) in [
-            ("plane.group[2].count", "group has 2 elements, counted from 0"),
-            ("plane.radius_m.x", "radius_m is not a table in the scenario"),
-            ("ticks[0]", "ticks is not a list in the scenario"),
-            ("plane.order[0]", "order is not in the scenario"),
-            ("order[0].at_s", "order is not a list in the scenario"),
-        ] {
-            assert_eq!(set(name).expect_err(name), what);
-        }
-    }
-
-    #[test]
-    fn malformed_paths_are_refused() {
-        for bad in ["", ".", "a.", "a[", "a[]", "a[-1]", "a[+1]", "a[01]", "a]0[", "a b", "[0]", "a[0]b", "a..b"] {
-            assert_eq!(Field::read(bad), None, "{bad:?}");
-        }
-    }
-}
+mod tests;

@@ -3,10 +3,10 @@
 
 use super::ranges::{micros, short};
 use super::source::{ScenarioError, Source};
-use super::{Node, Read, Robot, Scenario, ScenarioFile, Table, Wrong, nearest};
-use crate::kinds;
+use super::{Robot, Scenario, ScenarioFile, nearest};
 use crate::world::Refusal;
 use crate::world::plane::{FAR_M, Shape};
+use crate::{kinds, table};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::parameters;
 use staya_controller::robot::RobotId;
@@ -98,22 +98,13 @@ kinds!(Shape {
     Ball = "ball" { center_m, radius_m },
 });
 
-/// `[[intervention]]`.
-#[derive(Clone, Debug)]
-pub struct InterventionTable {
-    /// Time after the start, seconds.
-    pub at_s: f64,
-    /// The intervention `do`, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
-    pub what: Intervention,
-}
-
-impl Read for InterventionTable {
-    const KIND: &'static str = "a table";
-
-    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
-        let table = Table::new(node, &["at_s", "do"])?;
-        let at_s = table.read("at_s", Some(&(0.0..=14_400_000.0, "seconds")))?;
-        Ok(Self { at_s: at_s.ok_or_else(|| table.missing("at_s"))?, what: table.need("do")? })
+table! {
+    /// `[[intervention]]`.
+    pub struct InterventionTable {
+        /// Time after the start, seconds.
+        pub at_s: f64, 0.0..=14_400_000.0, "seconds";
+        /// The intervention, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
+        pub r#do: Intervention;
     }
 }
 
@@ -200,10 +191,10 @@ pub(super) fn interventions(
     for (index, table) in file.intervention.iter().enumerate() {
         let field = |name: &str| format!("intervention[{index}].{name}");
         table
-            .what
+            .r#do
             .check(robots)
             .map_err(|refusal| source.error(&field(&format!("do.{}", refusal.field)), refusal.what, refusal.remedy))?;
-        interventions.push((tick(table.at_s, file.tick_s), table.what.clone()));
+        interventions.push((tick(table.at_s, file.tick_s), table.r#do.clone()));
     }
     interventions.sort_by_key(|(tick, _)| *tick);
     Ok(interventions)
@@ -239,47 +230,30 @@ pub fn with_interventions(text: &str, tick_us: u32, done: &[(u32, Intervention)]
     for (tick, what) in done {
         let micros = u64::from(*tick) * u64::from(tick_us);
         let (seconds, micros) = (micros / 1_000_000, micros % 1_000_000);
-        let what = toml::Value::try_from(what).expect("an intervention is a table of numbers, words and lists");
-        text.push_str(&format!("\n[[intervention]]\nat_s = {seconds}.{micros:06}\ndo = {what}\n"));
+        let mut fields = serde_json::to_value(what).expect("an intervention is a table of numbers, words and lists");
+        if let Intervention::Radio { range_m: Some(f64::INFINITY), .. } = what {
+            fields["range_m"] = INFINITE.into();
+        }
+        text.push_str(&format!("\n[[intervention]]\nat_s = {seconds}.{micros:06}\ndo = {}\n", inline(&fields)));
     }
     text
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// In JSON, infinity is null like an absent field.
+const INFINITE: &str = "inf";
 
-    #[test]
-    fn multiples_of_a_tick_convert_exactly() {
-        for tick_s in [0.1, 0.05, 0.3, 1.0, 0.007, 60.0] {
-            for number in [0_u32, 1, 3, 7, 1001, 70_000] {
-                let micros = u64::from(number) * u64::from(super::micros(tick_s));
-                assert_eq!(tick(micros as f64 / 1e6, tick_s), number, "{tick_s} {number}");
-            }
+/// Fields as TOML in one line.
+fn inline(fields: &serde_json::Value) -> String {
+    match fields {
+        serde_json::Value::Object(fields) => {
+            let given = fields.iter().filter(|(_, value)| !value.is_null());
+            let given: Vec<_> = given.map(|(name, value)| format!("{name} = {}", inline(value))).collect();
+            format!("{{ {} }}", given.join(", "))
         }
-        assert_eq!(tick(0.15, 0.1), 2);
-    }
-
-    #[test]
-    fn invalid_interventions_are_refused_with_a_remedy() {
-        let robots = [Robot { id: RobotId(3), start: Default::default(), goal: Default::default() }];
-        let polygon = |points_m| Intervention::Solid { solid: Shape::Polygon { points_m } };
-        let wrong = [
-            Intervention::Goal { robot: Some(2), place_m: [0.0; 3] },
-            Intervention::Goal { robot: Some(3), place_m: [f64::NAN, 0.0, 0.0] },
-            Intervention::Parameter { robot: None, name: "share".into(), value: 2.0 },
-            Intervention::Down { robot: 3, for_s: Some(-1.0) },
-            Intervention::Radio { loss: Some(1.5), range_m: None },
-            Intervention::Radio { loss: None, range_m: Some(f64::NAN) },
-            polygon(vec![[0.0; 2]; 2]),
-            polygon(vec![[f64::INFINITY, 0.0]; 3]),
-            Intervention::Solid { solid: Shape::Circle { center_m: [0.0; 2], radius_m: 0.0 } },
-            Intervention::Move { index: 0, by_m: [f64::NAN, 0.0] },
-        ];
-        for intervention in wrong {
-            let refusal = intervention.check(&robots).unwrap_err();
-            assert!(!refusal.remedy.is_empty(), "{intervention:?}");
-        }
-        assert_eq!(Intervention::Goal { robot: Some(3), place_m: [1.0; 3] }.check(&robots), Ok(()));
+        serde_json::Value::String(text) if text == INFINITE => text.clone(),
+        other => other.to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,6 @@
 
 mod authentication;
 mod check;
-mod de;
 pub use read::nearest;
 mod field;
 mod fingerprint;
@@ -24,6 +23,7 @@ mod scouting;
 mod setting;
 mod setup;
 mod source;
+mod write;
 
 pub use field::Field;
 pub use formation::FormationEntry;
@@ -39,7 +39,7 @@ pub use plane::{
 };
 pub use plausibility::PlausibilityTable;
 pub use ranges::within;
-pub use read::{Field as Read, Fields, Line, Node, Table, Wrong, empty, word};
+pub use read::{AnyTable, Field as Read, Fields, Line, Node, Table, Wrong, empty, plain, word};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,
@@ -48,6 +48,7 @@ pub use schema::{
 pub use setting::{Setting, text_with, with_settings};
 pub use source::ScenarioError;
 pub use source::Source;
+pub use write::{fields, inline};
 
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
@@ -223,15 +224,22 @@ impl Scenario {
     /// # Errors
     /// See [`Scenario::load`].
     pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
-        Self::build(text, path, overrides, u32::MAX)
+        Self::read(Source::new(path, text)?, overrides)
+    }
+
+    /// Like [`Scenario::parse`], for parsed fields.
+    ///
+    /// # Errors
+    /// See [`Scenario::load`].
+    pub fn read(source: Source<'_>, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        Self::build(source, overrides, u32::MAX)
     }
 
     /// Refuses events that are later than `ticks`, than the text's ticks, and than the override's.
-    fn build(text: &str, path: &Path, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
-        let mut source = Source::new(path, text)?;
+    fn build(mut source: Source<'_>, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
         let parameters = source.json();
         plane::inherit(source.root_mut());
-        let mut file: ScenarioFile = source.table(LIST)?;
+        let mut file: ScenarioFile = source.read(LIST)?;
         let ticks = ticks.max(file.ticks);
         file.seed = overrides.seed.unwrap_or(file.seed);
         file.ticks = overrides.ticks.unwrap_or(file.ticks);

@@ -1,7 +1,6 @@
 //! Reads the tables of a settings file without serde. [`table!`](crate::table!) defines a struct
 //! with reader, ranges, units, defaults and documentation. An error carries the place of the value.
 
-use super::de::needed;
 use super::plane::Place;
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
@@ -37,7 +36,8 @@ impl Wrong {
         Self { span: None, path: String::new(), what: what.into(), remedy: None, is_listed: true }
     }
 
-    fn not(node: &Node<'_>, needed: &str) -> Self {
+    /// Creates an error about a value that is not `needed`.
+    pub fn not(node: &Node<'_>, needed: &str) -> Self {
         Self::new(node, format!("{} is not {needed}", in_words(node.get_ref())))
     }
 
@@ -166,18 +166,26 @@ fn number(node: &Node<'_>) -> Option<f64> {
 }
 
 macro_rules! whole_numbers {
-    ($($number:ty),*) => { $(
+    ($($number:ty, $range:literal;)*) => { $(
         impl Field for $number {
             const KIND: &'static str = "a whole number";
 
             fn read(node: &Node<'_>) -> Result<Self, Wrong> {
                 let value = integer(node).and_then(|value| Self::try_from(value).ok());
-                value.ok_or_else(|| Wrong::not(node, needed(stringify!($number))))
+                value.ok_or_else(|| Wrong::not(node, concat!("a whole number", $range)))
             }
         }
     )* };
 }
-whole_numbers!(u8, u16, u32, u64, usize, i16);
+whole_numbers! {
+    u8, " from 0 to 255";
+    u16, " from 0 to 65535";
+    u32, " from 0 to 4294967295";
+    u64, ", 0 or more";
+    usize, ", 0 or more";
+    i16, " from -32768 to 32767";
+    i32, "";
+}
 
 macro_rules! values {
     ($($type:ty, $kind:literal, $value:pat => $read:expr;)*) => { $(
@@ -277,6 +285,18 @@ impl Field for Place {
             Some(&[x, y, z]) => Ok(Self([x, y, z])),
             _ => Err(Wrong::new(node, "expected [x, y] or [x, y, z]")),
         }
+    }
+}
+
+/// A table that is allowed and read by other means: [`Source::get`](super::Source::get).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AnyTable;
+
+impl Field for AnyTable {
+    const KIND: &'static str = "a table";
+
+    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
+        Table::any(node).map(|_| Self)
     }
 }
 
@@ -380,6 +400,18 @@ pub(super) fn out_of(value: f64, range: &RangeInclusive<f64>, unit: &str) -> (St
     match unit {
         "probability" => (format!("{value} is not a probability"), format!("give a number from {low} to {high}")),
         _ => (format!("{value} is out of range"), format!("give {low} to {high} {unit}").trim_end().to_owned()),
+    }
+}
+
+/// Name of a field without the mark of names that are words of Rust.
+#[must_use]
+pub const fn plain(name: &'static str) -> &'static str {
+    match name.as_bytes() {
+        [b'r', b'#', rest @ ..] => match std::str::from_utf8(rest) {
+            Ok(name) => name,
+            Err(_) => name,
+        },
+        _ => name,
     }
 }
 
@@ -489,14 +521,15 @@ macro_rules! table {
 
         impl $crate::scenario::Fields for $name {
             const NAMES: &'static [&'static [&'static str]] =
-                &[$(<$part_type as $crate::scenario::Fields>::NAMES[0],)* &[$(stringify!($field)),*]];
+                &[$(<$part_type as $crate::scenario::Fields>::NAMES[0],)* &[$($crate::scenario::plain(stringify!($field))),*]];
 
             fn fields(table: &$crate::scenario::Table<'_>) -> Result<Self, $crate::scenario::Wrong> {
                 Ok(Self {
                     $($part: $crate::scenario::Fields::fields(table)?,)*
                     $($field: {
-                        let value = table.read(stringify!($field), $crate::table!(@range $($range, $unit)?).as_ref())?;
-                        $crate::table!(@or table, $field, value $(, $default)?)
+                        let name = $crate::scenario::plain(stringify!($field));
+                        let value = table.read(name, $crate::table!(@range $($range, $unit)?).as_ref())?;
+                        $crate::table!(@or table, name, value $(, $default)?)
                     }),*
                 })
             }
@@ -514,7 +547,7 @@ macro_rules! table {
                 let parts: Vec<Vec<$crate::scenario::Line>> =
                     vec![$(<$part_type as $crate::scenario::Read>::lines()),*];
                 let own = [$($crate::scenario::Line {
-                    name: stringify!($field),
+                    name: $crate::scenario::plain(stringify!($field)),
                     doc: concat!($($doc),*),
                     kind: <$type as $crate::scenario::Read>::KIND,
                     range: $crate::table!(@range $($range, $unit)?),
@@ -527,13 +560,13 @@ macro_rules! table {
     };
     (@range) => { None };
     (@range $range:expr, $unit:literal) => { Some(($range, $unit)) };
-    (@or $table:ident, $field:ident, $value:ident) => {
+    (@or $table:ident, $name:ident, $value:ident) => {
         match $value {
             Some(value) => value,
-            None => return Err($table.missing(stringify!($field))),
+            None => return Err($table.missing($name)),
         }
     };
-    (@or $table:ident, $field:ident, $value:ident, $default:expr) => { $value.unwrap_or_else(|| $default) };
+    (@or $table:ident, $name:ident, $value:ident, $default:expr) => { $value.unwrap_or_else(|| $default) };
 }
 
 /// Implements [`Default`] for tables without required fields.
@@ -575,3 +608,6 @@ pub(super) fn json(value: &DeValue<'_>) -> serde_json::Value {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,8 @@
 //! TOML text of a scenario or another settings file, and errors that point into it.
 
-use super::de;
-use super::read::{Field, Node, Wrong, json};
+use super::read::{Field as Read, Node, Wrong, json};
+use super::{Field, write};
 use crate::file::read_remedy;
-use serde::Deserialize;
 use std::cell::RefCell;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -61,7 +60,7 @@ impl<'a> Source<'a> {
             }
             Err(error) => Err(ScenarioError::Field {
                 path: path.to_owned(),
-                line: line_of(text, error.span()),
+                line: line_of(text, error.span().map_or(0, |span| span.start)),
                 field: String::new(),
                 what: first_line(error.message()),
                 remedy: "this is not TOML; strings need quotes, tables [brackets]".to_owned(),
@@ -89,21 +88,9 @@ impl<'a> Source<'a> {
         self.files.take()
     }
 
-    /// The whole text.
-    #[must_use]
-    pub fn text(&self) -> &'a str {
-        self.text
-    }
-
     /// Creates an error about a field. If the field is absent, the line is that of its table.
     pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
-        ScenarioError::Field {
-            path: self.path.to_owned(),
-            line: line_of(self.text, self.find(field).0.map(Spanned::span)),
-            field: field.to_owned(),
-            what: what.into(),
-            remedy: remedy.into(),
-        }
+        self.error_at(self.find(field).0.map_or(0..0, Spanned::span), field, what, remedy)
     }
 
     /// Creates an error about a range of bytes in the text.
@@ -116,11 +103,17 @@ impl<'a> Source<'a> {
     ) -> ScenarioError {
         ScenarioError::Field {
             path: self.path.to_owned(),
-            line: line_of(self.text, Some(span)),
+            line: self.line(span.start),
             field: field.to_owned(),
             what: what.into(),
             remedy: remedy.into(),
         }
+    }
+
+    /// The line of a byte of the text, counted from 1.
+    #[must_use]
+    pub fn line(&self, byte: usize) -> usize {
+        line_of(self.text, byte)
     }
 
     /// The parsed fields with their positions.
@@ -146,16 +139,8 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// A field is unknown, missing, of another type, or out of range.
-    pub fn table<T: Field>(&self, list: &str) -> Result<T, ScenarioError> {
+    pub fn read<T: Read>(&self, list: &str) -> Result<T, ScenarioError> {
         T::read(&self.root).map_err(|wrong| self.refuse(wrong, list))
-    }
-
-    /// Deserializes the whole file; `list` is the page that documents all fields.
-    ///
-    /// # Errors
-    /// A field is unknown, missing, or of another type; the error names file, line and field.
-    pub fn read<'s, T: Deserialize<'s>>(&'s self, list: &str) -> Result<T, ScenarioError> {
-        de::read(&self.root).map_err(|wrong| self.refuse(wrong, list))
     }
 
     fn refuse(&self, wrong: Wrong, list: &str) -> ScenarioError {
@@ -167,14 +152,33 @@ impl<'a> Source<'a> {
         self.error_at(wrong.span.unwrap_or_default(), &wrong.path, first_line(&wrong.what), remedy)
     }
 
-    /// Whether the file has this field or table at its top level.
-    pub fn has(&self, name: &str) -> bool {
-        self.root().get(name).is_some()
+    /// Sets a field and creates missing tables. `value` is a TOML value; other text is a string.
+    /// Its place is that of the replaced value or else of the table.
+    ///
+    /// # Errors
+    /// Says what is in the way.
+    pub fn set(&mut self, field: &Field, value: &'a str) -> Result<(), String> {
+        let parsed = DeValue::parse(value).map(Spanned::into_inner);
+        field.set(self.root_mut(), parsed.unwrap_or_else(|_| DeValue::String(value.into())))
     }
 
-    /// Whether the file has this field.
-    pub fn stands(&self, field: &str) -> bool {
-        self.find(field).1
+    /// The value of a field, if it is there.
+    #[must_use]
+    pub fn get(&self, field: &str) -> Option<&Node<'a>> {
+        let (deepest, is_field) = self.find(field);
+        deepest.filter(|_| is_field)
+    }
+
+    /// Whether this field or table is there.
+    #[must_use]
+    pub fn has(&self, field: &str) -> bool {
+        self.get(field).is_some()
+    }
+
+    /// The fields as TOML text.
+    #[must_use]
+    pub fn written(&self) -> String {
+        write::file(self.root())
     }
 
     /// The deepest value on the path of a field, and whether it is the field itself.
@@ -193,9 +197,8 @@ impl<'a> Source<'a> {
     }
 }
 
-fn line_of(text: &str, span: Option<Range<usize>>) -> usize {
-    let start = span.map_or(0, |span| span.start);
-    1 + text.bytes().take(start).filter(|&byte| byte == b'\n').count()
+fn line_of(text: &str, byte: usize) -> usize {
+    1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
 }
 
 fn first_line(message: &str) -> String {

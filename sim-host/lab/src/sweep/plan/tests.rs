@@ -1,5 +1,6 @@
 use super::*;
 use proptest::prelude::*;
+use staya_sim::scenario::Line;
 use std::fs;
 use tempfile::TempDir;
 
@@ -169,7 +170,7 @@ fn errors_name_the_plan_the_line_and_the_field() {
         (error("seeds = 0"), "plan.toml:3: seeds: there is none"),
         (error("seeds = [1, 2, 1]"), "plan.toml:3: seeds: 1 is listed twice"),
         (error("seeds = 2000000"), "plan.toml:3: seeds: there are too many"),
-        (error("seeds = 'all'"), "plan.toml:3: seeds: invalid seeds, expected a number"),
+        (error("seeds = 'all'"), "plan.toml:3: seeds: \"all\" is not a number, a list"),
         (
             error("measures = ['arrivd']"),
             "plan.toml:3: measures[0]: arrivd is neither a figure of summary.json nor of a probe; did you mean arrived?",
@@ -267,11 +268,15 @@ fn changed_map_changes_the_fingerprint() {
     assert_ne!(of(), first);
 }
 
+fn names(lines: Vec<Line>) -> Vec<&'static str> {
+    lines.into_iter().flat_map(|line| [vec![line.name], names(line.inner)].concat()).collect()
+}
+
 #[test]
 fn every_field_of_a_plan_is_documented() {
-    let fields = include_str!("table.rs").lines().filter_map(|line| line.strip_prefix("    pub ")?.split_once(": "));
-    let fields: Vec<&str> = fields.map(|(name, _)| name).collect();
-    assert!(fields.len() > 15, "{fields:?}");
+    let tables = [PlanFile::lines(), SeedRange::lines(), table::RangeTable::lines()];
+    let fields: Vec<&str> = tables.into_iter().flat_map(names).collect();
+    assert!(fields.len() > 30, "{fields:?}");
     let page = include_str!("../../../../../docs/sweeps.md");
     for field in fields {
         let is_named = ["`", "[", "[[", " ", "{ "]
@@ -380,4 +385,28 @@ fn wrong_acceptances_and_references_are_refused() {
         let said = parse(&folder, text).expect_err(table);
         assert!(said.contains(expected), "{said}");
     }
+}
+
+#[test]
+fn a_plan_with_a_wrong_character_is_refused_with_its_place() {
+    let folder = folder();
+    let text = "title = 't'\nseeds = [1, 2]\nmeasures = ['arrived']\n[set]\nticks = 5\n[axes]\nradio.loss = [0, 0.5]\n[[zip]]\n\
+                radio.delay_ms = [1, 2]\nplane.radius_m = [0.1, 0.2]\n[[sample]]\nkind = 'random'\ncount = 2\n\
+                axes = { tick_s = { from = 0.1, to = 0.2 } }\n[[plot]]\nfigure = 'arrived'\nover = 'loss'\n[[picture]]\n\
+                where = { loss = 0.5 }\n[[accept]]\nmeasure = 'arrived'\nwhere = { loss = [0, 0.5] }\nat_least = 0\n";
+    parse(&folder, text).expect("a plan");
+    let mut refused = 0;
+    for (at, new) in (0..text.len()).flat_map(|at| ["", "x", "-", "["].map(|new| (at, new))) {
+        let mut text = text.to_owned();
+        text.replace_range(at..=at, new);
+        let Err(error) = parse(&folder, &text) else { continue };
+        let (place, what) = error.split_once(": ").unwrap_or_else(|| panic!("no place: {error}"));
+        let line = place.strip_prefix("plan.toml:").or_else(|| place.strip_prefix("duel.toml:"));
+        assert!(line.is_some_and(|line| line.parse::<usize>().is_ok()), "no line: {error}");
+        assert!(what.contains("; "), "no remedy: {error}");
+        let mut words = what.split(|c: char| !c.is_ascii_alphanumeric());
+        assert!(!words.any(|word| ["u32", "u64", "usize", "f64", "struct", "enum"].contains(&word)), "a type: {error}");
+        refused += 1;
+    }
+    assert!(refused > 500, "only {refused} were refused");
 }

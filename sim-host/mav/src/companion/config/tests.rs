@@ -1,4 +1,5 @@
 use super::*;
+use staya_sim::scenario::{Line, Read as _};
 
 const SCENARIO: &str = "../scenarios/swap-circle.toml";
 
@@ -143,23 +144,17 @@ fn errors_name_line_field_and_remedy() {
     assert!(error.contains("vehicle: no vehicle is listed; add [[vehicle]]"), "{error}");
 }
 
+fn names(lines: Vec<Line>) -> Vec<&'static str> {
+    lines.into_iter().flat_map(|line| [vec![line.name], names(line.inner)].concat()).collect()
+}
+
 #[test]
 fn documentation_lists_every_field() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let text = std::fs::read_to_string(folder.join("docs/autopilots.md")).unwrap();
-    let code = include_str!("../config.rs");
-    let (mut is_table, mut missing) = (false, Vec::new());
-    for line in code.lines() {
-        if line.starts_with("struct ") {
-            is_table = line.contains("Table {") || line.contains("ConfigFile {");
-        } else if line == "}" {
-            is_table = false;
-        }
-        let field = line.trim().split_once(": ").map(|(name, _)| name);
-        let field = field.filter(|_| is_table && !line.contains("//"));
-        missing.extend(field.filter(|name| !text.contains(&format!("{name}`"))));
-    }
+    let text = include_str!("../../../../../docs/autopilots.md");
+    let names = names(ConfigFile::lines());
+    let missing: Vec<_> = names.iter().filter(|name| !text.contains(&format!("{name}`"))).collect();
     assert!(missing.is_empty(), "{missing:?}");
+    assert!(names.len() > 30, "only {} were found", names.len());
 }
 
 #[test]

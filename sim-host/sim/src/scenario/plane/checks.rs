@@ -151,7 +151,7 @@ pub(super) fn cloud(source: &Source<'_>, group: &Group, cloud: &CloudEntry) -> R
     let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
     velocity(source, &field("velocity_from_mps"), from)?;
     let fastest = Place(std::array::from_fn(|axis| from.0[axis].abs().max(to.0[axis].abs())));
-    let name = if source.stands(&field("velocity_to_mps")) { "velocity_to_mps" } else { "velocity_from_mps" };
+    let name = if source.has(&field("velocity_to_mps")) { "velocity_to_mps" } else { "velocity_from_mps" };
     start_velocity(source, &field(name), fastest, group.body.max_speed_mps)?;
     goal_count(source, &field("goals_m"), group.body.guidance, cloud.goals_m.len())?;
     for (index, goal) in cloud.goals_m.iter().enumerate() {

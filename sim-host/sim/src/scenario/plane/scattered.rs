@@ -94,7 +94,7 @@ pub(super) fn starts(
             squared >= (group.body.radius_m + other_m) * (group.body.radius_m + other_m)
         })
     };
-    let downwash = spec.orca.downwash.unwrap_or(1.0).max(1.0);
+    let downwash = group.body.orca.and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
     let (mut taken, mut aims) = (Taken::new(spacing_m, downwash), Taken::new(spacing_m, downwash));
     let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
     for index in 0..entry.count {
