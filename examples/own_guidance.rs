@@ -5,7 +5,7 @@
 //! emulated parts: see docs/project.md.
 
 use patrol::Patrol;
-use staya_plot::motion_pictures;
+use staya_plot::run_pictures;
 use staya_record::recording::RunRecorder;
 use staya_sim::engine::simulate_own;
 use staya_sim::record::{Options, Output, Recorder};
@@ -43,9 +43,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             ControlFlow::Continue(())
         },
     )?;
-    if let (Some(folder), Some(recording), Some(plane)) = (folder, recording, &scenario.plane) {
+    if let (Some(folder), Some(recording)) = (folder, recording) {
         recording.finish(&())?.finish()?;
-        for file in motion_pictures(&scenario, plane, &recorder.finish()?, &folder)? {
+        for file in run_pictures(&scenario, &recorder.finish()?, &folder)? {
             println!("{}", file.display());
         }
         println!("look at it: staya view {}/patrol.staya", folder.display());

@@ -14,14 +14,14 @@ from pathlib import Path
 SEEDS = range(7001, 7006)
 # Small versions of the experiments, with the first seeds.
 EXPERIMENTS = [
-    "route --runs 10",
+    "route --seeds 10",
     "scouting --seeds 5",
     "formation --seeds 3",
     "swap --axis count=4,8,16,32 --axis radius_m=2,2,2,3.2 --set plane.robots.circle.noise_m=0.05",
     "doorway",
     "crossing --seeds 3",
-    "flock --seeds 1 --robots 30",
-    "goals --seeds 1 --robots 25",
+    "flock --seeds 1 --set plane.robots.cloud.count=30",
+    "goals --seeds 1 --set plane.robots.cloud.count=25",
 ]
 SEEDS_OF_EXPERIMENTS = SEEDS[:2]
 # Runs of minutes.

@@ -4,14 +4,15 @@ use anyhow::{Context as _, Result, anyhow};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, print, print_json};
+use staya_record::mind::{self, Events};
 use staya_record::page;
-use staya_record::recording::{Reader, RecordingError, RunRecorder};
-use staya_sim::engine::{Moment, simulate};
+use staya_record::recording::{Reader, RunRecorder};
+use staya_record::scene::{Mode, Scene, description};
+use staya_sim::engine::operated;
 use staya_sim::file::{MAP, read, read_remedy};
-use staya_sim::record::{Error, Files, RobotRow};
-use staya_sim::scenario::Scenario;
+use staya_sim::record::{Error, Files};
+use staya_sim::scenario::{Scenario, text_with};
 use std::io::Write as _;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Make one HTML file of a run, for any browser, without server or network.
@@ -26,6 +27,9 @@ pub struct PageArgs {
     /// For a scenario: ticks between two recorded moments.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
+    /// For a scenario: robots whose knowledge, links and permitted velocities the page contains.
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    minds: Vec<u32>,
 }
 
 /// Output of `--json`.
@@ -50,8 +54,17 @@ impl PageArgs {
         let (bytes, mut output) = match is_scenario {
             true => {
                 let scenario = self.source.load()?;
+                let scene = Scene {
+                    minds: self.minds(&scenario)?,
+                    description: description(&text_with(path, self.source.settings())?),
+                    ..Scene::new(&scenario, Mode::Recording)
+                };
                 let output = Files::reading(&scenario.files).create(&self.out)?;
-                (recorded(&scenario, self.every, &stop, global)?, output)
+                (recorded(&scenario, scene, self.every, &stop, global)?, output)
+            }
+            false if !self.minds.is_empty() => {
+                let path = path.display();
+                return Err(anyhow!("--minds: the recording {path} has no minds; give its scenario (.toml) instead"));
             }
             false => {
                 let output = Files::reading([path]).create(&self.out)?;
@@ -76,22 +89,47 @@ impl PageArgs {
         }
         Ok(Ended::by(&stop))
     }
+
+    /// Indices of the robots of `--minds`.
+    fn minds(&self, scenario: &Scenario) -> Result<Vec<usize>> {
+        let ids: Vec<u32> = scenario.robots.iter().map(|robot| robot.id.0).collect();
+        let index = |id: &u32| {
+            let range = ids.first().zip(ids.last());
+            let (first, last) = range.unwrap_or((&0, &0));
+            let name = &scenario.name;
+            let error = || anyhow!("--minds {id}: {name} has no robot {id}; its robots have numbers {first} to {last}");
+            ids.binary_search(id).map_err(|_| error())
+        };
+        let mut minds = self.minds.iter().map(index).collect::<Result<Vec<usize>>>()?;
+        minds.sort_unstable();
+        minds.dedup();
+        Ok(minds)
+    }
 }
 
-fn recorded(scenario: &Scenario, every: u32, stop: &Stop, global: &Global) -> Result<Vec<u8>> {
-    let mut recorder = RunRecorder::new(Vec::new(), Path::new(&scenario.name), scenario, every)?;
+fn recorded(scenario: &Scenario, scene: Scene, every: u32, stop: &Stop, global: &Global) -> Result<Vec<u8>> {
+    let (minds, origin_m) = (scene.minds.clone(), scene.origin_m);
+    let mut recorder = RunRecorder::of(scene, Vec::new(), Path::new(&scenario.name), scenario, every)?;
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
-    let mut failed: Option<RecordingError> = None;
-    let watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
-        failed = recorder.tick(moment, robots).err();
-        progress.set(moment.row.tick.into(), || "ticks".to_owned());
-        if failed.is_some() || stop.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
-    let outcome = simulate(scenario, watch).context("the robots cannot be placed; change their starts")?;
-    progress.finish();
-    if let Some(error) = failed {
-        return Err(error.into());
+    let mut engine = operated(scenario).context("the robots cannot be placed; change their starts")?;
+    engine.log_receptions(!minds.is_empty());
+    let (mut events, mut tick) = (Events::default(), 0);
+    loop {
+        let mut done = Ok(());
+        engine.show(&mut |moment, robots| done = recorder.tick(moment, robots));
+        done?;
+        for &index in &minds {
+            events.add(&engine, index, tick);
+            recorder.mind(mind::recorded(&engine, scenario, origin_m, &events, (tick, index)));
+        }
+        progress.set(tick.into(), || "ticks".to_owned());
+        if engine.is_over() || tick >= scenario.ticks || stop.is_requested() {
+            break;
+        }
+        engine.step();
+        tick += 1;
     }
-    let summary = crate::run::summary(scenario, &outcome);
+    progress.finish();
+    let summary = crate::run::summary(scenario, &engine.outcome());
     Ok(recorder.finish(&summary)?)
 }

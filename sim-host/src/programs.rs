@@ -31,7 +31,7 @@ pub const PROGRAMS: [Program; 5] = [
         package: "staya-lab",
         commands: &[
             ("sweep", "Run a scenario thousands of times with other values in its fields, here or on a cluster"),
-            ("experiment", "Rerun experiments from papers, and benchmarks"),
+            ("experiment", "Rerun experiments from papers, and benchmarks; without a name, they are listed"),
         ],
     },
     Program {

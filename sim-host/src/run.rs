@@ -9,7 +9,7 @@ use clap::Args;
 pub use outputs::Observer;
 use outputs::{OutputArgs, RunOutputs};
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
-use staya_plot::{motion_pictures, run_pictures};
+use staya_plot::run_pictures;
 use staya_record::recording::RecordingError;
 use staya_sim::checkpoint::{Checkpoint, Place};
 use staya_sim::engine::{Moment, Outcome, StartError, simulate, simulate_from};
@@ -180,14 +180,10 @@ fn run_into(
         }
     };
     let wall_seconds = from.map_or(0.0, |from| from.wall_seconds()) + began.elapsed().as_secs_f64();
-    let edges = scenario.numbered_edges();
     let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
     let names = if keeps_robots { &names[..] } else { &names[..3] };
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
-    let pictures = match &scenario.plane {
-        None => run_pictures(&scenario.terrain, &scenario.changing_cells(), &history, &edges, dir)?,
-        Some(setup) => motion_pictures(scenario, setup, &history, dir)?,
-    };
+    let pictures = run_pictures(scenario, &history, dir)?;
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
     files.extend(outputs.paths());
     let mut summary = Summary::new(scenario, &outcome, files);

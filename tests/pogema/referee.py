@@ -4,7 +4,9 @@ multi-agent pathfinding")."""
 
 from __future__ import annotations
 
+import multiprocessing
 import warnings
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 
@@ -73,6 +75,11 @@ def play(case: Case, number: int, first_id: int = 1) -> dict[str, float]:
         if all(ended) or all(stopped):
             return infos[0]["metrics"]
         cells, goals = places(seen)
+
+
+def processes() -> ProcessPoolExecutor:
+    """A copy of a process that has run robots would wait for threads that it does not have."""
+    return ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn"))
 
 
 def received(far: np.ndarray, lost: float, random: np.random.Generator) -> np.ndarray:

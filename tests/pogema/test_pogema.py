@@ -3,19 +3,18 @@ was chosen on those."""
 
 import csv
 import os
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
-from referee import COUNTS, MAPS, Case, play
+from referee import COUNTS, MAPS, Case, play, processes
 
 FIELDS = ["maps", "robots", "lost", "sensing", "lifelong", "instances", "CSR", "ISR", "SoC", "avg_throughput"]
 
 
 def table(case, numbers):
     """Runs the instances of a row, and adds it to target/pogema.csv."""
-    with ProcessPoolExecutor() as pool:
+    with processes() as pool:
         results = list(pool.map(play, [case] * len(numbers), numbers))
     means = {name: float(np.mean([result[name] for result in results])) for name in results[0]}
     if target := os.environ.get("STAYA_TABLES"):

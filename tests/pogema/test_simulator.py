@@ -2,14 +2,13 @@
 
 import os
 import subprocess
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 from instances import POINTS, SCENARIO, metrics, plan, write
 from pogema import pogema_v0
-from referee import ACTIONS, MAPS, config
+from referee import ACTIONS, MAPS, config, processes
 from staya._staya import GridBodies
 
 MOVES = np.array(sorted(ACTIONS, key=ACTIONS.get), dtype=np.int16)
@@ -72,7 +71,7 @@ def test_all_maps_in_the_simulator(maps):
 @pytest.mark.long
 def test_robots_move_as_in_pogema_in_a_million_steps(tmp_path):
     steps = 10**6 // (2 * MAPS) + 1
-    with ProcessPoolExecutor() as pool:
+    with processes() as pool:
         walks = [pool.submit(walk, tmp_path, maps, n, steps) for maps in ("random", "mazes") for n in range(MAPS)]
         for one in walks:
             one.result()

@@ -13,7 +13,6 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "the intruder is as fast as the robots and drives into one that gives way to others",
     ),
     ("experiment-flock", "fragment: more than one component", "without a reference a flock breaks up, as in the paper"),
-    ("experiment-goals", "not all robots arrive", "the runs end after 150 s; the table measures the share"),
     ("flock-squeeze", "not all robots arrive", "an alpha flock follows a reference"),
     ("scale", "not all robots arrive", "the first three ticks of a long run"),
     ("two-flocks", "not all robots arrive", "an alpha flock follows a reference"),

@@ -1,35 +1,46 @@
 //! Golden tables of swaps, doorways and other crossings: the figures of `papers/orca`.
 
 use staya_lab::figure;
-use staya_lab::sweep::Plan;
 use staya_lab::sweep::plan::Changes;
 use staya_lab::sweep::run::perform;
+use staya_lab::sweep::{Figure, Plan};
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{golden, root, run};
 use std::fs;
 
-/// Makes all runs of a figure with these changes and compares a table of them. A run lacks its
-/// story if not all robots arrive or robots overlap.
-fn golden_figure(name: &str, figure: &str, changes: &[&str], seeds: u32) {
+/// Makes all runs of a figure (`PAPER/FIGURE`) with these changes. Returns the plan, a table of the
+/// runs, and their figures.
+pub fn table(figure: &str, changes: &[&str], seeds: u32) -> (Plan, String, Vec<Vec<Figure>>) {
     let fields = changes.iter().map(|change| change.parse().expect("a change")).collect();
     let changes = Changes { fields, seeds: Some(seeds), ..Changes::default() };
-    let path = root().join("papers/orca").join(figure).join("figure.toml");
+    let path = root().join("papers").join(figure).join("figure.toml");
     let plan = Plan::load(&path, &changes).expect("a sound plan");
+    let mut text =
+        format!("{}, seed, {}, trace\n", plan.axes().collect::<Vec<_>>().join(", "), plan.measures().join(", "));
+    let mut all = Vec::new();
+    for number in 0..plan.runs() {
+        let row = perform(&plan, number, || true).expect("a run that is not stopped").row;
+        let figures: Vec<_> = row.figures.iter().map(ToString::to_string).collect();
+        let (values, seed) = (plan.values_of(number).join(", "), plan.run(number).seed);
+        text += &format!("{values}, {seed}, {}, {}\n", figures.join(", "), row.trace_hash);
+        all.push(row.figures);
+    }
+    (plan, text, all)
+}
+
+/// Compares a table of a figure. A run lacks its story if not all robots arrive or robots overlap.
+fn golden_figure(name: &str, figure: &str, changes: &[&str], seeds: u32) {
+    let (plan, text, all) = table(&format!("orca/{figure}"), changes, seeds);
     let column = |measure: &str| plan.measures().iter().position(|name| name == measure);
     let times = column("free.worst_ratio").expect("a measure");
     let overlaps = ["collisions", "intruder_overlaps"].map(column);
-    let mut text =
-        format!("{}, seed, {}, trace\n", plan.axes().collect::<Vec<_>>().join(", "), plan.measures().join(", "));
     let mut gaps = Vec::new();
-    for number in 0..plan.runs() {
-        let row = perform(&plan, number, || true).expect("a run that is not stopped").row;
+    for (number, figures) in (0..).zip(&all) {
         let seed = plan.run(number).seed;
-        let figures: Vec<_> = row.figures.iter().map(ToString::to_string).collect();
-        text += &format!("{}, {seed}, {}, {}\n", plan.values_of(number).join(", "), figures.join(", "), row.trace_hash);
-        if row.figures[times].0.is_none() && name != "crossing-flock" {
+        if figures[times].0.is_none() && name != "crossing-flock" {
             gaps.push(format!("seed {seed}: not all robots arrive"));
         }
-        if overlaps.into_iter().flatten().any(|column| row.figures[column].0 != Some(0.0)) {
+        if overlaps.into_iter().flatten().any(|column| figures[column].0 != Some(0.0)) {
             gaps.push(format!("seed {seed}: robots overlap"));
         }
     }

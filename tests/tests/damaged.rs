@@ -195,7 +195,7 @@ fn rows(count: u32) {
     let plan = fs::read_to_string(root().join("sweeps/swap-loss.toml")).expect("a plan");
     let plan = plan.replace("seeds = 5", "seeds = 1");
     let plan = Plan::parse(&plan, &root().join("sweeps/small.toml"), &Default::default()).expect("a plan");
-    let job = |_: &mut (), number| perform(&plan, number, || true);
+    let job = |number| perform(&plan, number, || true);
     perform_shard(&plan, Shard::default(), folder.path(), Existing::Refuse, job, |_, _| {}).expect("rows");
     let whole = files(folder.path()).expect("a folder");
     check("rows", &whole, count, 0.3, &|path, bytes| {

@@ -1,51 +1,35 @@
 //! Golden tables of small flock experiments; `cargo xtask bless golden` rewrites them.
 
-use staya_controller::agent::SafetyKind;
-use staya_controller::names::Named as _;
-use staya_lab::experiment::Experiment as _;
-use staya_lab::flock::closing::Closing;
-use staya_lab::flock::{Case, Plan, Reference};
-use staya_lab::goals;
+use crate::crossing::table;
+use staya_lab::sweep::{Figure, Plan};
 use staya_sim::metrics::flock::{FlockMeter, polarisation};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{golden, root, run};
-use std::fmt::Write as _;
+
+/// Values of a measure, a run each.
+fn column(plan: &Plan, all: &[Vec<Figure>], measure: &str) -> Vec<Option<f64>> {
+    let column = plan.measures().iter().position(|name| name == measure).expect("a measure");
+    all.iter().map(|figures| figures[column].0).collect()
+}
 
 #[test]
 fn golden_experiment_flock() {
     let (mut text, mut gaps) = (String::new(), Vec::new());
-    for safety in [SafetyKind::None, SafetyKind::Orca] {
-        let plan = Plan {
-            cases: Case::ALL.to_vec(),
-            references: vec![Reference::Moving],
-            runs: 1,
-            robots: Some(24),
-            safety,
-            ..Plan::default()
-        };
-        let report = plan.measure().expect("a sound plan");
-        writeln!(text, "safety {}", report.safety).expect("memory");
-        for case in &report.cases {
-            let run = &case.each[0];
-            let end = run.end.expect("robots are somewhere");
-            gaps.extend((end.components > 1).then(|| format!("{}: more than one component", case.case.name())));
-            let pair = run.least_pair_over_d.unwrap_or(f64::INFINITY);
-            let clear = run.least_clearance_over_d.unwrap_or(f64::INFINITY);
-            writeln!(
-                text,
-                "{:<13} alpha from {:<10} parts {:>2}  R {:8.3} m  E~ {:.5}  K~ {:.5}  pair {pair:.4} d  clear {clear:.4} d  hash {}",
-                case.case.name(),
-                format!("{:?}", run.alpha.alpha_flocking),
-                end.components,
-                end.radius_m,
-                end.deviation_energy,
-                end.velocity_mismatch,
-                run.trace_hash
-            )
-            .expect("memory");
-        }
+    let orca: &[&str] = &["plane.safety=orca", "plane.orca.horizon_s=0.3", "plane.orca.wall_horizon_s=0.3"];
+    for (knows, safety, scenarios) in [
+        ("packets", &["plane.safety=none"][..], "free,fragment,rendezvous,split,squeeze"),
+        ("packets", orca, "free,fragment,split,squeeze"),
+        ("packets", &["plane.safety=fly", "plane.orca.horizon_s=0.3"], "rendezvous"),
+        ("all", &["plane.safety=none"], "free,fragment"),
+    ] {
+        let [scenarios, knows] = [format!("scenario={scenarios}"), format!("study.knows={knows}")];
+        let few = [&[&scenarios, &knows, "plane.robots.cloud.count=24"], safety].concat();
+        let (plan, table, all) = table("olf/flock", &few, 1);
+        text += &table;
+        let parts = (0..).zip(column(&plan, &all, "flock.parts")).filter(|(_, parts)| *parts != Some(1.0));
+        gaps.extend(parts.map(|(number, _)| format!("{}: more than one component", plan.values_of(number)[0])));
     }
     gaps.dedup();
     golden("experiment-flock", &text, &gaps);
@@ -53,78 +37,43 @@ fn golden_experiment_flock() {
 
 #[test]
 fn golden_experiment_closing() {
-    let plan = Closing { speeds: vec![2.0, 8.0], runs: 2, ..Closing::default() };
-    let report = plan.measure().expect("a sound plan");
-    let mut text = String::new();
-    for line in &report.lines {
-        writeln!(
-            text,
-            "{:<6} {:<7} {} d/s  bare {:>3} overlaps, pair {:.4} d  ORCA {:>3} overlaps, pair {:.4} d",
-            format!("{:?}", line.flock),
-            format!("{:?}", line.sides),
-            line.speed_over_d,
-            line.bare.overlaps,
-            line.bare.least_pair_over_d,
-            line.orca.overlaps,
-            line.orca.least_pair_over_d
-        )
-        .expect("memory");
+    let (mut text, mut gaps) = (String::new(), Vec::new());
+    for figure in ["staya/closing", "staya/closing-boids"] {
+        let (plan, table, all) = table(figure, &["plane.safety=none,orca"], 1);
+        text += &table;
+        let is_behind_orca = |run: u64| plan.values_of(run).contains(&"orca".to_owned());
+        let mut overlaps = (0..).zip(column(&plan, &all, "collisions")).filter(|(run, _)| is_behind_orca(*run));
+        gaps.extend(
+            overlaps.any(|(_, overlaps)| overlaps != Some(0.0)).then(|| "robots behind ORCA overlap".to_owned()),
+        );
     }
-    let overlap = report.lines.iter().any(|line| line.orca.overlaps > 0);
-    golden("experiment-closing", &text, overlap.then(|| "robots behind ORCA overlap".to_owned()).as_slice());
+    golden("experiment-closing", &text, &gaps);
 }
 
 #[test]
 fn golden_experiment_goals() {
-    let all = goals::Knowledge::All;
-    let packets = goals::Knowledge::Packets;
-    let (mut text, mut gaps) = (String::new(), Vec::new());
-    for (knowledge, safety) in [
-        (all, SafetyKind::PushOut),
-        (packets, SafetyKind::None),
-        (packets, SafetyKind::Orca),
-        (packets, SafetyKind::PushOut),
+    let (mut text, mut missing) = (String::new(), false);
+    for knows in [
+        ["study.knows=all", "plane.safety=push_out", "plane.push_out.min_distance_m=10"],
+        ["study.knows=packets", "plane.safety=push_out", "plane.push_out.min_distance_m=8"],
+        ["study.knows=packets", "plane.safety=none,orca", "plane.sight_m=20"],
     ] {
-        let plan = goals::Plan {
-            k1: vec![50.0, 150.0],
-            k2: vec![0.0, 50.0],
-            neighborhoods_m: vec![40.0],
-            robots: vec![30],
-            knows: vec![knowledge],
-            safeties: vec![safety],
-            seconds: 150.0,
-            step_s: 0.2,
-            moves_goal: true,
-            ..goals::Plan::default()
-        };
-        let report = plan.measure().expect("a sound plan");
-        writeln!(text, "knows {}, safety {}", knowledge.name(), safety.name()).expect("memory");
-        for point in &report.points {
-            let of = |value: Option<f64>| value.unwrap_or(f64::NAN);
-            gaps.extend((point.arrived < 1.0).then(|| "not all robots arrive".to_owned()));
-            let is_bare = safety == SafetyKind::None;
-            gaps.extend((point.overlaps > 0 && !is_bare).then(|| "robots behind a layer overlap".to_owned()));
-            writeln!(
-                text,
-                "K1 {:>3}  K2 {:>2}  order {:.4}  together {:.4}  company {:.4}  spread {:.4}  gathered {:.3}  arrived {:.3}  pair {:.4}  overlaps {:>4}  hash {}",
-                point.setting.k1,
-                point.setting.k2,
-                of(point.polarisation),
-                of(point.together),
-                of(point.company),
-                of(point.spread),
-                point.gathered,
-                point.arrived,
-                of(point.least_pair_over_min_distance),
-                point.overlaps,
-                point.trace_hash
-            )
-            .expect("memory");
-        }
+        let few = [
+            "plane.goal_flock.k1=50,150",
+            "k2=0,50",
+            "neighborhood_m=40",
+            "plane.robots.cloud.count=30",
+            "plane.robots.cloud.from_m[0]=-110",
+            "plane.robots.cloud.to_m[0]=110",
+            "plane.robots.cloud.from_m[1]=-110",
+            "plane.robots.cloud.to_m[1]=110",
+            "ticks=1200",
+        ];
+        let (plan, table, all) = table("pav/goals", &[&knows[..], &few].concat(), 1);
+        text += &table;
+        missing |= column(&plan, &all, "company.arrived").into_iter().any(|arrived| arrived != Some(1.0));
     }
-    gaps.sort_unstable();
-    gaps.dedup();
-    golden("experiment-goals", &text, &gaps);
+    golden("experiment-goals", &text, missing.then(|| "not all robots arrive".to_owned()).as_slice());
 }
 
 #[test]

@@ -109,6 +109,17 @@ fn robots_pass_each_other_in_a_corridor_at_any_loss() {
     }
 }
 
+#[test]
+fn a_disc_walks_around_one_that_died_in_a_corridor() {
+    let map = ".......... .@@@@@@@@. ..........";
+    let ends = [([3, 0], [9, 0]), ([0, 0], [9, 1])];
+    for loss in [0.0, 0.3, 0.6] {
+        let scenario = in_plane(map, &ends, loss, "[[fault]]\nrobot = 1\nat_s = 4\ndown_s = 1000\n");
+        let (outcome, _) = run(&scenario);
+        assert_eq!((outcome.arrived, outcome.collisions), (1, 0), "loss {loss}");
+    }
+}
+
 const LAW: &str = "[law]\nname = \"negotiation\"\n";
 
 /// Sixty robots of a benchmark among walls.

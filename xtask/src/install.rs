@@ -1,5 +1,5 @@
-//! `cargo xtask install`: the program, the firmware that it runs on emulated parts and boards, its
-//! manual and what shells complete it by.
+//! `cargo xtask install`: the program, the firmware that it runs on emulated parts and boards, the
+//! figures of papers, its manual and what shells complete it by.
 
 use crate::device::PARTS;
 use crate::files;
@@ -49,9 +49,39 @@ fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<(), String> {
             fs::remove_file(&to).map_err(|error| format!("{}: {error}", to.display()))?;
         }
     }
+    put_figures(repo, &prefix.join("share/staya"))?;
     let program = prefix.join("bin").join(files::name(&repo.program(profile, MAIN)));
     let mut shell = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya-shell"]);
     run(shell.args((profile == "release").then_some("--release")).arg("--").arg(prefix))?;
     println!("{}; is {} in PATH?", program.display(), prefix.join("bin").display());
     Ok(())
+}
+
+/// Copies the data of figures, and the maps that they name. Removes those of another version.
+fn put_figures(repo: &Repo, share: &Path) -> Result<(), String> {
+    for folder in ["papers", "maps"] {
+        files::remove(&share.join(folder))?;
+        let source = repo.root.join(folder);
+        let is_data = |path: &Path| path != source.join("src") && files::name(path) != "Cargo.toml";
+        for file in files::below(&source, &is_data)? {
+            let name = file.strip_prefix(&repo.root).map_err(|error| error.to_string())?;
+            files::copy(&file, &share.join(name))?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_installed_without_the_code_beside_them() {
+        let repo = Repo::find();
+        let share = repo.target.join("tmp/installed-figures");
+        put_figures(&repo, &share).expect("a folder to write to");
+        assert!(share.join("papers/orca/swap/figure.toml").is_file());
+        assert!(!share.join("papers/src").exists() && !share.join("papers/Cargo.toml").exists());
+        files::remove(&share).expect("removed");
+    }
 }

@@ -3,7 +3,7 @@ use crate::cost::{Cost, Gain};
 use crate::grid::{Cell, DIAGONAL, Norm, UNIT};
 use core::fmt::Debug;
 
-/// Sixteenths of a surplus that count, chosen on seed 1 of `staya experiment route --share` (dT
+/// Sixteenths of a surplus that count, chosen on seed 1 of `staya experiment share` (dT
 /// 12.2 to 14.8 % at 70 to 160 obstacles; with 8, 12.3 to 16.2 %; with 16, 12.3 to 15.6 %).
 const BELIEVED_16: i64 = 10;
 const HALF_TILE: u32 = TILE.unsigned_abs() as u32 >> 1;

@@ -65,7 +65,8 @@ impl Progress {
             ProgressDrawTarget::hidden()
         };
         let bar = ProgressBar::with_draw_target(Some(total), target);
-        let style = "{prefix} [{bar:30}] {pos}/{len}{msg} ({elapsed} elapsed, {eta} left)";
+        // The message is cut at the last column, so that the line does not wrap.
+        let style = "{prefix} [{bar:20}] {pos}/{len}, {eta} left{wide_msg}";
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style.progress_chars("=> "));
         }

@@ -1,7 +1,8 @@
 //! Figures of papers: plans in `papers/PAPER/FIGURE/figure.toml`.
 
+use crate::error::SweepError;
+use crate::sweep::Plan;
 use crate::sweep::report::VERDICT;
-use crate::sweep::{Plan, SweepError};
 use anyhow::Result;
 use staya_sim::record::Error;
 use staya_sim::scenario::nearest;
@@ -12,6 +13,8 @@ const FILE: &str = "figure.toml";
 const HERE: &str = "papers";
 /// The checkout that the program was built in.
 const CHECKOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../papers");
+/// From the folder of an installed program; `cargo xtask install` puts the figures there.
+const INSTALLED: &str = "../share/staya/papers";
 
 /// A figure of a paper.
 #[derive(Clone, Debug)]
@@ -41,14 +44,21 @@ impl Figure {
     }
 }
 
-/// All figures, sorted by place: those below `papers/` here, or of the checkout of the program.
+/// All figures, sorted by place: those below `papers/` here, else of the checkout of the program,
+/// else of its installation.
 ///
 /// # Errors
 /// A folder or a figure cannot be read.
 pub fn all() -> Result<Vec<Figure>> {
-    let root = [HERE, CHECKOUT].map(Path::new).into_iter().find(|root| root.is_dir());
-    let Some(root) = root else {
-        let what = "there is no such folder here";
+    let program = std::env::current_exe().unwrap_or_default();
+    let installed = program.parent().unwrap_or(Path::new("")).join(INSTALLED);
+    all_below([Path::new(HERE), Path::new(CHECKOUT), &installed])
+}
+
+/// The figures below the first of these folders that exists.
+fn all_below(roots: [&Path; 3]) -> Result<Vec<Figure>> {
+    let Some(root) = roots.into_iter().find(|root| root.is_dir()) else {
+        let what = "there is no such folder here, in the program's checkout or installed";
         return Err(SweepError::new(HERE, what, "change to a checkout, or name the file of a plan").into());
     };
     let mut figures = Vec::new();
@@ -91,4 +101,28 @@ pub fn find(name: &str) -> Result<Figure> {
         None => "`staya experiment` lists all".to_owned(),
     };
     Err(SweepError::new(name, "there is no such experiment", remedy).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_folder_with_figures_counts() {
+        let dir = tempfile::tempdir().unwrap();
+        let root = |name: &str| dir.path().join(name);
+        for name in ["checkout", "installed"] {
+            let folder = root(name).join("paper/figure-1");
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join(FILE), format!("name = '{name}'\nscenario = 'x.toml'\n")).unwrap();
+        }
+        let [here, checkout, installed] = ["here", "checkout", "installed"].map(root);
+        let names = |roots: [&Path; 3]| -> Vec<String> {
+            all_below(roots).unwrap().into_iter().map(|figure| figure.name).collect()
+        };
+        assert_eq!(names([&here, &checkout, &installed]), ["checkout"]);
+        assert_eq!(names([&here, &here, &installed]), ["installed"]);
+        let none = all_below([&here; 3]).unwrap_err().to_string();
+        assert!(none.contains("change to a checkout"), "{none}");
+    }
 }

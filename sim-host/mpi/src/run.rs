@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_mpi::ranks::{Ended as RunEnded, Exchange as _, RankError, Sharing, Traffic, check, remark, simulate_on};
-use staya_plot::{motion_pictures, run_pictures};
+use staya_plot::run_pictures;
 use staya_sim::checkpoint::{Checkpoint, CheckpointInterval, Place};
 use staya_sim::engine::{Moment, Watch, agents};
 use staya_sim::record::{History, Options, Recorder, Results, RobotRow, write_summary};
@@ -213,11 +213,7 @@ impl RunArgs {
             return Ok(files);
         }
         files.extend(trace.map(|name| out.join(name)));
-        let edges = scenario.numbered_edges();
-        let pictures = match &scenario.plane {
-            None => run_pictures(&scenario.terrain, &scenario.changing_cells(), history, &edges, dir)?,
-            Some(setup) => motion_pictures(scenario, setup, history, dir)?,
-        };
+        let pictures = run_pictures(scenario, history, dir)?;
         files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
         Ok(files)
     }

@@ -4,7 +4,7 @@ use super::canvas::{extent, longest};
 use super::flock::{Obstacle, Sheet, Snapshot};
 use super::run::packets;
 use staya_sim::nearby::Space;
-use staya_sim::record::{self, Error, Frame, History};
+use staya_sim::record::{Error, Frame, History};
 use staya_sim::scenario::{PlaneSetup, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
@@ -17,28 +17,19 @@ const TRAIL_POINTS: usize = 400;
 /// Obstacles larger than this multiple of the extent of the robots are clipped.
 const LARGE: f64 = 2.0;
 
-/// Draws the pictures of a run into `out_dir`, which is created if needed, each as SVG and PNG.
-/// Returns the paths. O(samples of the history).
-///
-/// - `motion`: positions with past paths at four moments, from above, on the map if there is one;
-///   only if the history has frames
-/// - `packets`: packets per second by result, over time
-///
-/// # Errors
-/// The directory or a file cannot be written.
-pub fn motion_pictures(
+pub(super) fn in_plane(
+    of: &str,
     scenario: &Scenario,
     setup: &PlaneSetup,
     history: &History,
     out_dir: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
-    record::make_dir(out_dir)?;
     let mut files = Vec::new();
     if !history.frames().is_empty() {
         let land = setup.has_terrain.then_some(&scenario.terrain);
-        files.extend(motion_sheet(&scenario.name, setup, land, history).draw().write(&out_dir.join("motion"))?);
+        files.extend(motion_sheet(of, setup, land, history).draw().write(&out_dir.join("motion"))?);
     }
-    files.extend(packets(history).write(&out_dir.join("packets"))?);
+    files.extend(packets(of, history).write(&out_dir.join("packets"))?);
     Ok(files)
 }
 

@@ -5,7 +5,7 @@ use super::colour::{self, Colour, WHITE};
 use super::panels::Panels;
 use super::{ticks, trajectories};
 use staya_controller::grid::Cell;
-use staya_sim::record::{self, Error, History, PacketCounts, SeriesPoint};
+use staya_sim::record::{Error, History, PacketCounts, SeriesPoint};
 use staya_sim::terrain::Terrain;
 use std::path::{Path, PathBuf};
 
@@ -13,38 +13,29 @@ use std::path::{Path, PathBuf};
 const NOISY: usize = 150;
 const MEANS: usize = 100;
 
-/// Draws the pictures of a run into `out_dir`, which is created if needed, each as SVG and PNG.
-/// Returns the paths. O(cells + samples of the history).
-///
-/// - `trajectories`: the map at the start, its changing cells (`changing`), the path of each robot,
-///   and the formation (`edges` between robot ids) over time; only if the history has frames
-/// - `formation`: formation error and graph distance over time, if the run has them
-/// - `packets`: packets per second by result, over time
-///
-/// # Errors
-/// The directory or a file cannot be written.
-pub fn run_pictures(
+/// `changing`: cells; `edges`: of the formation, between robot ids.
+pub(super) fn on_map(
+    of: &str,
     terrain: &Terrain,
     changing: &[Cell],
     history: &History,
     edges: &[(u32, u32)],
     out_dir: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
-    record::make_dir(out_dir)?;
     let mut files = Vec::new();
     if !history.frames().is_empty() {
         let stem = out_dir.join("trajectories");
-        let canvas = trajectories::draw(terrain, changing, history, edges).map_err(Error::new("draw", &stem))?;
+        let canvas = trajectories::draw(of, terrain, changing, history, edges).map_err(Error::new("draw", &stem))?;
         files.extend(canvas.write(&stem)?);
     }
-    if let Some(panels) = formation(history.series()) {
+    if let Some(panels) = formation(of, history.series()) {
         files.extend(panels.write(&out_dir.join("formation"))?);
     }
-    files.extend(packets(history).write(&out_dir.join("packets"))?);
+    files.extend(packets(of, history).write(&out_dir.join("packets"))?);
     Ok(files)
 }
 
-pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
+pub(super) fn formation(of: &str, series: &[SeriesPoint]) -> Option<Panels> {
     let clock = Clock::new(series);
     let curve = |title: &str, label: &str, colour, value: fn(&SeriesPoint) -> f64| {
         let points: Vec<[f64; 2]> = series.iter().map(|point| [clock.at(point), value(point)]).collect();
@@ -59,7 +50,7 @@ pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
     ];
     let mut charts = charts.into_iter().flatten().peekable();
     charts.peek()?;
-    Some(charts.fold(Panels::new("Formation over time"), Panels::with))
+    Some(charts.fold(Panels::new(format!("{of}: formation over time")), Panels::with))
 }
 
 fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -> Chart {
@@ -85,7 +76,7 @@ fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     (!known.is_empty()).then(|| sum.map(|value| value / count))
 }
 
-pub(super) fn packets(history: &History) -> Panels {
+pub(super) fn packets(of: &str, history: &History) -> Panels {
     let series = history.series();
     let clock = Clock::new(series);
     let bins: Vec<(f64, f64, PacketCounts)> =
@@ -100,7 +91,7 @@ pub(super) fn packets(history: &History) -> Panels {
     let chart = |title| Chart::new(title, clock.label, &per).x_range(ends[0], ends[1]).size(760.0, 300.0);
     let all = history.totals();
     let n = ticks::grouped;
-    Panels::new("Packets over time")
+    Panels::new(format!("{of}: packets over time"))
         .with(
             chart("Sent, delivered and lost")
                 .note(format!(

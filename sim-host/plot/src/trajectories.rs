@@ -38,7 +38,13 @@ struct Way {
 }
 
 /// `changing`: sorted cells that differ from `terrain` at some time.
-pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u32, u32)]) -> io::Result<Canvas> {
+pub fn draw(
+    of: &str,
+    terrain: &Terrain,
+    changing: &[Cell],
+    history: &History,
+    edges: &[(u32, u32)],
+) -> io::Result<Canvas> {
     let ways = ways(terrain, history.frames());
     let view = view(terrain, &ways);
     let crowd = (ways.len() > CROWD).then(|| {
@@ -47,7 +53,7 @@ pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u
     });
     let with_edges = crowd.is_none() && !edges.is_empty();
 
-    let title = title(history.frames(), ways.len());
+    let title = title(of, history.frames(), ways.len());
     let width = Map::new(&view, [0.0; 2]).area[2].max(MIN_WIDTH) + 2.0 * PAD;
     let room = width - 2.0 * PAD;
     let mut canvas = Canvas::new(width, 0.0, &title);
@@ -98,14 +104,14 @@ fn corner_m(terrain: &Terrain, cell: Cell) -> [f64; 2] {
     [x + f64::from(cell.x) * terrain.cell_m, y + f64::from(cell.y) * terrain.cell_m]
 }
 
-fn title(frames: &[Frame], robots: usize) -> String {
+fn title(of: &str, frames: &[Frame], robots: usize) -> String {
     let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
-        return "No robot was recorded".into();
+        return format!("{of}: no robot was recorded");
     };
     let plural = if robots == 1 { "" } else { "s" };
     let seconds = last.time_s - first.time_s;
     let robots = ticks::grouped(robots as u64);
-    format!("Trajectories of {robots} robot{plural} over {seconds:.0} s")
+    format!("{of}: trajectories of {robots} robot{plural} over {seconds:.0} s")
 }
 
 fn note(terrain: &Terrain, view: &Terrain, robots: usize) -> String {

@@ -61,6 +61,25 @@ pub struct Figures {
     pub goals: Vec<[f64; 3]>,
 }
 
+impl Figures {
+    /// The plotted figures, NaN for none: arrived, waiting, collisions, formation error, order,
+    /// packets delivered, packets lost, smallest distance.
+    #[must_use]
+    pub fn plotted(&self) -> [f32; 8] {
+        let real = |value: Option<f64>| value.map_or(f32::NAN, |value| value as f32);
+        [
+            self.arrived as f32,
+            self.waiting as f32,
+            self.collisions as f32,
+            real(self.formation_error),
+            real(self.order),
+            self.packets.delivered as f32,
+            self.packets.lost as f32,
+            real(self.gap_m),
+        ]
+    }
+}
+
 /// One moment of a run. Arrays have one entry per body: the robots by number, then the intruders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameData {
@@ -207,6 +226,22 @@ impl FrameData {
             out.resize(out.len().next_multiple_of(4), 0);
         }
         out.extend(figures);
+    }
+
+    /// The bytes of the positions of a frame: `f32` x of all bodies, y, and z in space. O(1).
+    ///
+    /// # Errors
+    /// [`FrameError`].
+    pub fn positions_of(bytes: &[u8]) -> Result<(u32, &[u8]), FrameError> {
+        let Some((head, rest)) = bytes.split_at_checked(HEAD).filter(|(head, _)| head.starts_with(&MAGIC)) else {
+            return Err(FrameError::Magic);
+        };
+        let word = |at: usize| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
+        let axes = if word(20) & HAS_Z != 0 { 3 } else { 2 };
+        let length = u64::from(word(16)) * 4 * axes;
+        let positions = usize::try_from(length).ok().and_then(|length| rest.get(..length));
+        let missing = FrameError::Length { expected: HEAD as u64 + length, found: bytes.len() };
+        Ok((word(4), positions.ok_or(missing)?))
     }
 
     /// Reads only the tick and the figures. O(1).

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod frame;
+pub mod mind;
 pub mod page;
 pub mod recording;
 pub mod scene;

@@ -56,6 +56,12 @@ pub struct Scene {
     pub parameters: Vec<Parameter>,
     /// Names of the numbers in frames.
     pub words: Words,
+    /// Robots with a recorded mind, by index.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub minds: Vec<usize>,
+    /// The comment at the top of the scenario, its first paragraph; empty if there is none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
 }
 
 /// Motion of bodies.
@@ -224,6 +230,8 @@ impl Scene {
             radio: Radio::of(scenario),
             parameters: Vec::new(),
             words: Words { modes: MODES.map(str::to_owned).into(), waits: wait_names().map(str::to_owned).collect() },
+            minds: Vec::new(),
+            description: String::new(),
         }
     }
 }
@@ -241,6 +249,13 @@ impl From<&staya_sim::scenario::Intruder> for Intruder {
     fn from(intruder: &staya_sim::scenario::Intruder) -> Self {
         Self { radius_m: intruder.radius_m, heard: intruder.is_heard }
     }
+}
+
+/// The description of a scenario: the first paragraph of the comment at the top of its text.
+#[must_use]
+pub fn description(text: &str) -> String {
+    let comment = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
+    comment.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// Names of the reasons to wait, by the numbers in frames.
@@ -433,6 +448,12 @@ mod tests {
             let robots = scene.robots.id.len();
             assert!(robots > 0 && scene.robots.radius_m.len() == robots && scene.robots.group.len() == robots);
         }
+    }
+
+    #[test]
+    fn the_description_is_the_first_paragraph_of_the_comment() {
+        assert_eq!(description("# Two robots\n# meet.\n#\n# Fields: see there.\nname = \"t\"\n"), "Two robots meet.");
+        assert_eq!(description("name = \"t\"\n# Not this.\n"), "");
     }
 
     #[test]

@@ -2,7 +2,6 @@
 
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, null];
 const PAN_PIXELS = 60;
-const COUNTS_EVERY_MS = 250;
 const NARROW = "(max-width: 720px)";
 
 const element = (id) => document.getElementById(id);
@@ -19,15 +18,15 @@ export function duration(seconds) {
 export class Controls {
   constructor(app) {
     this.app = app;
-    this.counted = 0;
     this.is = "";
     const click = (id, action) => element(id).addEventListener("click", action);
     click("play", () => this.playOrPause());
-    click("go-on", () => app.send({ do: "play" }));
+    click("undo", () => app.send({ do: "undo" }));
     click("step", () => this.step(1));
     click("back", () => this.step(-1));
-    click("zoom-in", () => app.camera.zoom(1.4));
-    click("zoom-out", () => app.camera.zoom(1 / 1.4));
+    click("zoom-in", () => this.zoom(1.4));
+    click("zoom-out", () => this.zoom(1 / 1.4));
+    click("measure", () => app.pointer.measure());
     click("fit", () => app.fit());
     click("theme", () => app.look.toggleTheme());
     click("toggle-side", () => this.toggleSide());
@@ -35,6 +34,9 @@ export class Controls {
     element("timeline").addEventListener("input", () => this.scrub());
     element("timeline").addEventListener("change", () => {
       this.scrubbing = false;
+    });
+    element("branch").addEventListener("change", () => {
+      app.send({ do: "branch", number: Number(element("branch").value) });
     });
     element("speed").addEventListener("change", () => {
       app.send({ do: "speed", x: element("speed").value === "null" ? null : Number(element("speed").value) });
@@ -69,6 +71,8 @@ export class Controls {
     ]
       .filter(Boolean)
       .join(" · ");
+    element("about-panel").hidden = !scene.description;
+    element("about").textContent = scene.description ?? "";
     const root = element("app");
     root.dataset.mode = document.body.dataset.mode = scene.mode;
     root.dataset.kind = scene.kind;
@@ -79,8 +83,7 @@ export class Controls {
     show("formation", Boolean(scene.formation));
     show("relief", Boolean(scene.land));
     show("window", Boolean(scene.land) && scene.mode !== "recording");
-    show("known", scene.mode !== "recording");
-    show("links", scene.mode !== "recording");
+    for (const layer of ["known", "links", "mind"]) show(layer, app.hasMinds);
     element("colour-by").value = app.look.colourBy;
     if (this.trailsFor !== app.robots) {
       this.trailsFor = app.robots;
@@ -108,8 +111,7 @@ export class Controls {
     element("play-icon").setAttribute("href", playing ? "#i-pause" : "#i-play");
     element("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     element("back").disabled = state.tick <= state.first;
-    const later = app.live && state.paused && state.tick < state.last;
-    element("go-on").hidden = !later;
+    this.branches();
     const { speed } = state,
       select = element("speed");
     const speeds = SPEEDS.includes(speed) ? SPEEDS : [...SPEEDS.slice(0, -1), speed].sort((a, b) => a - b).concat(null);
@@ -122,11 +124,32 @@ export class Controls {
     const timeline = element("timeline");
     timeline.min = state.first;
     timeline.max = Math.max(app.horizon, state.first + 1);
+    this.mark();
     this.clock();
     this.showStatus();
     if (before && before.paused !== state.paused) {
       app.announce(state.paused ? `Paused at tick ${state.tick}${state.at_end ? ", the end" : ""}` : "Playing");
     }
+  }
+
+  /** Lists the branches once there are two. */
+  branches() {
+    const { state, scene } = this.app;
+    const branches = state.branches ?? [];
+    element("branch-label").hidden = branches.length < 2;
+    document.querySelector("[data-layer='branch']").parentElement.hidden = branches.length < 2;
+    element("undo").disabled = !branches.some(({ number, orders }) => number === state.branch && orders);
+    const key = JSON.stringify(branches.map(({ number, from, orders }) => [number, from, orders]));
+    if (key !== this.listed) {
+      this.listed = key;
+      element("branch").replaceChildren(
+        ...branches.map(({ number, from, orders }) => {
+          const origin = number > 1 ? `from ${duration(from * scene.tick_s)}, ` : "";
+          return new Option(`${number}: ${origin}${orders} ${orders === 1 ? "change" : "changes"}`, String(number));
+        }),
+      );
+    }
+    element("branch").value = String(state.branch);
   }
 
   connection(is) {
@@ -177,14 +200,19 @@ export class Controls {
     timeline.style.setProperty("--known", share(Math.max(state.last, scene.mode === "recording" ? 0 : frame.tick)));
   }
 
-  /** Marks the orders on the timeline. */
-  mark(orders) {
-    const { first, last } = this.app.state;
+  /** Marks the orders on the timeline, one mark for each tick. */
+  mark() {
+    const { state, marked, horizon } = this.app;
+    if (!state || !marked || (marked === this.marked && horizon === this.markedTo)) return;
+    this.marked = marked;
+    this.markedTo = horizon;
+    const kinds = new Map();
+    for (const { tick, order } of marked) kinds.set(tick, (kinds.get(tick) ?? new Set()).add(order.kind));
     element("marks").replaceChildren(
-      ...orders.map(({ tick, order }) => {
+      ...[...kinds].map(([tick, of]) => {
         const mark = document.createElement("i");
-        mark.style.left = `${(100 * (tick - first)) / Math.max(last - first, 1)}%`;
-        mark.title = `${order.kind} at tick ${tick}`;
+        mark.style.left = `${(100 * (tick - state.first)) / Math.max(horizon - state.first, 1)}%`;
+        mark.title = `${[...of].join(", ")} at tick ${tick}`;
         return mark;
       }),
     );
@@ -193,12 +221,13 @@ export class Controls {
   scrub() {
     const { app } = this;
     this.scrubbing = true;
+    this.scrubbedTo = Number(element("timeline").value);
     // At most one order per frame.
     if (this.scrubWaits) return;
     this.scrubWaits = true;
     requestAnimationFrame(() => {
       this.scrubWaits = false;
-      app.seek(Number(element("timeline").value));
+      app.seek(this.scrubbedTo);
     });
   }
 
@@ -222,6 +251,11 @@ export class Controls {
     select.selectedIndex = next;
     select.dispatchEvent(new Event("change"));
     this.app.announce(`Speed ${select.options[next].text}`);
+  }
+
+  zoom(factor) {
+    this.app.pointer.touched = true;
+    this.app.camera.zoom(factor);
   }
 
   /** On narrow screens panels stay closed until a robot is selected. */
@@ -273,22 +307,25 @@ export class Controls {
       ",": () => this.step(-1),
       "[": () => this.faster(-1),
       "]": () => this.faster(1),
-      "+": () => app.camera.zoom(1.25),
-      "=": () => app.camera.zoom(1.25),
-      "-": () => app.camera.zoom(1 / 1.25),
+      "+": () => this.zoom(1.25),
+      "=": () => this.zoom(1.25),
+      "-": () => this.zoom(1 / 1.25),
       f: () => app.fit(),
       "?": () => element("help").showModal(),
       n: () => next(1),
       b: () => next(-1),
       c: () => this.toggleFollow(),
       p: () => this.toggleSide(),
+      m: () => app.pointer.measure(),
+      z: () => element("undo").click(),
       d: () => app.look.toggleTheme(),
       l: () => {
-        if (app.scene?.mode !== "recording") document.querySelector("[data-layer='links']").click();
+        if (app.hasMinds) document.querySelector("[data-layer='links']").click();
       },
       Escape: () => {
         if (app.pointer.corners.length) app.pointer.choose("polygon");
         else if (app.pointer.drag) app.pointer.cancel();
+        else if (app.pointer.measures) app.pointer.measure();
         else if (app.pointer.tool !== "select") app.pointer.choose("select");
         else app.select(null);
       },
@@ -357,6 +394,13 @@ export class Controls {
         context.lineTo(24, 7);
         context.stroke();
       };
+    const area =
+      (colour, alpha = 1) =>
+      (context) => {
+        context.globalAlpha = alpha;
+        context.fillStyle = colour;
+        context.fillRect(1, 2, 24, 10);
+      };
     if (look.colourBy === "mode")
       scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word === "fault" ? "down" : word, `mode:${i}`));
     if (look.colourBy === "wait") {
@@ -383,14 +427,20 @@ export class Controls {
     }
     if (layers.velocities) key(line(css.velocity), "velocity", "velocity");
     if (layers.formation && scene.formation) key(line(css.formation), "formation");
+    if (app.otherBranch !== null) key(disc("transparent", css.muted), `branch ${app.otherBranch}`);
     if (layers.leaders) key(line(css.leader, [3, 3]), "leader");
     if (layers.links) {
       key(line(css.ok), "packet delivered");
       key(line(css.vermillion), "packet lost");
       key(line(css.orange, [2, 2]), "packet damaged");
     }
-    if (layers.known && app.selected !== null && scene.mode !== "recording")
+    if (layers.known && app.robot?.neighbors)
       key(disc("transparent", css.ghost), "known positions of others");
+    if (layers.mind && app.robot?.orca) {
+      key(area(css.allowed), "permitted velocities");
+      key(line(css.line), "half-planes");
+      if (scene.kind !== "space") key(area(css.ghost, 0.2), "velocity obstacles");
+    }
     if (app.view.plan().length) key(line(css.selected), "planned moves");
     if (scene.land) {
       key((context) => {
@@ -400,22 +450,16 @@ export class Controls {
         context.fillStyle = shades;
         context.fillRect(1, 2, 24, 10);
       }, `land, easy to slow (${scene.land.classes})`);
-      key((context) => {
-        context.fillStyle = css.wall;
-        context.fillRect(1, 2, 24, 10);
-      }, "wall");
+      key(area(css.wall), "wall");
     }
     element("legend-body").replaceChildren(...keys);
-    this.counted = 0;
     this.counts();
   }
 
   counts() {
     const { app } = this;
-    const frame = app.motion.current,
-      now = performance.now();
-    if (!frame || !element("legend").open || now - this.counted < COUNTS_EVERY_MS) return;
-    this.counted = now;
+    const frame = app.motion.current;
+    if (!frame || !element("legend").open) return;
     const counts = { mode: new Uint32Array(256), wait: new Uint32Array(256) };
     const n = Math.min(frame.n, app.robots);
     for (let i = 0; i < n; i++) {

@@ -62,3 +62,8 @@ export function fromBase64(encoded) {
   for (let i = 0; i < bytes.length; i++) bytes[i] = binary.charCodeAt(i);
   return bytes;
 }
+
+/** Packets as pairs of sender and (receiver << 2 | result). */
+export function pairsOf(encoded) {
+  return new Uint32Array(fromBase64(encoded).buffer);
+}

@@ -1,6 +1,7 @@
 // The connection to a running view, which reconnects by itself.
 
-import { fromBase64, parseFrame } from "staya/frame.js";
+import { fromBase64, pairsOf, parseFrame } from "staya/frame.js";
+import { PLOTTED } from "staya/plots.js";
 
 const FIRST_RETRY_MS = 500;
 const LAST_RETRY_MS = 8000;
@@ -58,7 +59,16 @@ export class Live {
           this.listener.onRobot(message);
           break;
         case "figures":
-          for (const [tick, figures] of message.rows) this.listener.onFigures(tick, figures);
+          for (const [tick, values] of figuresOf(message.rows)) this.listener.onFigures(tick, values, message.every);
+          break;
+        case "trail":
+          this.listener.onTrail(
+            message.rows.map(([tick, places]) => [tick, floatsOf(places)]),
+            message.branch,
+          );
+          break;
+        case "orders":
+          this.listener.onOrders(message.orders);
           break;
         case "links":
           this.listener.onLinks(message.tick, pairsOf(message.pairs));
@@ -86,7 +96,13 @@ export class Live {
   }
 }
 
-/** Pairs of sender and (receiver << 2 | result). */
-function pairsOf(encoded) {
-  return new Uint32Array(fromBase64(encoded).buffer);
+/** Rows of a tick and its plotted figures. */
+function* figuresOf(encoded) {
+  const { buffer } = fromBase64(encoded);
+  const [ticks, values] = [new Uint32Array(buffer), new Float32Array(buffer)];
+  for (let at = 0; at < ticks.length; at += 1 + PLOTTED) yield [ticks[at], values.subarray(at + 1, at + 1 + PLOTTED)];
+}
+
+function floatsOf(encoded) {
+  return new Float32Array(fromBase64(encoded).buffer);
 }

@@ -18,7 +18,8 @@ const NAMED = {
   robots: "yellow",
   goal_taken: "green",
 };
-const NUMBERED = ["blue", "orange", "green", "purple", "sky", "vermillion", "yellow"];
+// In the order of the colours of saved pictures.
+const NUMBERED = ["blue", "vermillion", "green", "purple", "orange", "sky", "yellow"];
 const CSS = {
   paper: "paper",
   grid: "grid",
@@ -106,6 +107,7 @@ export class Look {
     // shows.
     this.leastRadius = 4;
     this.targetSize = 6;
+    this.targetAlpha = 1;
     this.velocitySeconds = 1;
     this.crowded = false;
     this.words = { modes: [], waits: [] };
@@ -131,6 +133,16 @@ export class Look {
 
   get targets() {
     return this.layers.targets && !this.crowded;
+  }
+
+  /** The colour of a body, as the GPU draws it. */
+  colourOf(frame, i, { robots, groups }) {
+    if (i >= robots) return this.css.purple;
+    if (this.colourBy === "robot") return this.numberColours[i % 7];
+    if (this.colourBy === "group") return this.numberColours[groups[i] % 7];
+    const of = this.colourBy === "wait" ? frame.wait[i] : frame.mode[i];
+    const colours = this.colourBy === "wait" ? this.waitColours : this.modeColours;
+    return of === 255 ? this.css.grey : (colours[Math.min(of, 12) % Math.max(colours.length, 1)] ?? this.css.grey);
   }
 
   /** Reads the colours again after a change of the theme, the words or the meaning of colours. */

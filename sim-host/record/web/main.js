@@ -6,18 +6,24 @@ import { fromBase64 } from "staya/frame.js";
 import { Ground } from "staya/ground.js";
 import { Live } from "staya/live.js";
 import { Look } from "staya/look.js";
+import { Mind } from "staya/mind.js";
 import { Motion } from "staya/motion.js";
 import { Orders } from "staya/orders.js";
 import { Panel } from "staya/panel.js";
 import { Player } from "staya/player.js";
-import { Plots } from "staya/plots.js";
+import { Picture, download } from "staya/picture.js";
+import { Plots, ROBOT_PLOTS, plotted } from "staya/plots.js";
 import { Pointer } from "staya/pointer.js";
 import { Renderer } from "staya/renderer.js";
 import { View } from "staya/view.js";
 
 const PLOTS_EVERY_MS = 120;
+// The camera keeps up to this many robots in sight.
+const MOST_IN_SIGHT = 20000;
 const TOAST_MS = 6000;
 const TOP_RATIO = 2;
+// Robots of another branch are shown up to this number.
+const MOST_OTHERS = 2000;
 const NO_WEBGL =
   "This browser does not support WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, " +
   "or start Chromium with --enable-unsafe-swiftshader; current versions of Firefox, Chrome, Edge and Safari support it.";
@@ -42,16 +48,26 @@ class App {
     this.renderer = Renderer.on(element("bodies"));
     this.lack = this.renderer ? null : NO_WEBGL;
     this.ground = new Ground(element("ground"));
+    this.mind = new Mind(this);
     this.view = new View(this, element("overlay"));
     this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
     this.panel = new Panel(this);
+    this.robotPlots = new Plots(element("robot-plots"), (tick) => this.seek(tick), ROBOT_PLOTS);
     this.orders = new Orders(this);
+    this.picture = new Picture(this);
     this.controls = new Controls(this);
     this.pointer = new Pointer(this, element("overlay"));
     this.look.onTheme = () => this.restyle();
     this.restyle();
     this.banner(this.lack);
     new ResizeObserver(() => this.resize()).observe(element("stage"));
+    // A plot in a closed panel has no size and is drawn when the panel opens.
+    const plots = new ResizeObserver(() => {
+      this.plots.stale = this.robotPlots.stale = this.dirty = true;
+      this.plottedAt = 0;
+    });
+    for (const id of ["plots", "robot-plots"]) plots.observe(element(id));
+    addEventListener("hashchange", () => this.scene && this.state && this.openAddress());
     this.resize();
   }
 
@@ -89,6 +105,9 @@ class App {
     if (isNewRun) {
       this.motion.reset();
       this.plots.reset();
+      this.robotPlots.reset();
+      this.lastFrame = null;
+      this.renderer?.trails.reset();
     }
     const balls = scene.kind === "space" ? this.solids.filter(({ kind }) => kind === "ball") : [];
     if (isNewRun || balls.length) {
@@ -101,9 +120,12 @@ class App {
     this.ground.setScene(scene, this.cells, this.solids);
     this.look.words = scene.words;
     if (!same) {
-      this.look.colourBy = this.robots <= 8 ? "robot" : "mode";
+      const groups = new Set(scene.robots.group).size;
+      this.look.colourBy = groups > 1 ? "group" : this.robots <= 8 ? "robot" : "mode";
       this.select(null);
       this.fit();
+      // The panels of narrow screens are closed at first.
+      if (scene.description && element("app").classList.contains("side-closed")) this.toast(scene.description);
     }
     this.controls.scene();
     this.orders.scene();
@@ -113,19 +135,37 @@ class App {
   onState(state) {
     const before = this.state;
     if (before && before.speed !== state.speed) this.motion.interval = 50;
-    if (state.last < (before?.last ?? 0)) this.plots.forgetAfter(state.last);
+    const other = this.otherBranch;
     this.state = state;
-    this.plots.setRange(state.first, state.last);
+    if (before && before.branch !== state.branch) {
+      this.shownBefore = before.branch;
+      this.plots.changeBranch();
+      this.robotPlots.reset();
+      this.renderer?.trails.reset();
+    }
+    if (this.timed) {
+      for (const plots of [this.plots, this.robotPlots]) plots.forgetAfter(state.last);
+      this.renderer?.trails.forgetAfter(state.last);
+    }
+    for (const plots of [this.plots, this.robotPlots]) plots.setRange(state.first, this.horizon);
+    if (this.otherBranch !== other) {
+      this.other = null;
+      this.controls.legend();
+    }
     this.controls.state(before);
     this.orders.state();
     this.dirty = true;
+    if (!this.opened && this.scene) {
+      this.opened = true;
+      this.openAddress();
+    }
   }
 
-  /** The tick at the end of the timeline. */
+  /** The tick at the end of the timeline: of all ticks of the scenario or the recording. */
   get horizon() {
     const { state, scene } = this;
     if (!state || !scene) return 1;
-    return scene.mode !== "live" || state.at_end ? state.last : Math.max(state.last, scene.ticks ?? 0);
+    return scene.mode === "live" ? Math.max(state.last, scene.ticks) : state.last;
   }
 
   onFrame(frame) {
@@ -133,22 +173,79 @@ class App {
     if (!this.scene) return;
     this.motion.offer(frame);
     this.figures = frame.figures;
-    this.plots.add(frame.tick, frame.figures);
+    this.lastFrame = frame;
+    this.sample(frame, this.robot);
+    // A live run sends the figures of all ticks.
+    if (!this.live) this.plots.add(frame.tick, plotted(frame.figures));
+    // Frames and other messages are not ordered, so that a frame may be of the branch before.
+    if (!this.live && this.suitTrails(frame)) this.renderer.trails.store(frame.tick, frame.x, frame.y, frame.z);
   }
 
-  /** Passes figures to the plots. */
-  onFigures(tick, figures) {
-    this.plots.add(tick, figures);
+  /** Adds a moment of the selected robot to its plots; its knowledge may be of another tick. */
+  sample(frame, robot, every = 1) {
+    const i = this.selected;
+    if (i === null || i >= frame.n) return;
+    const far = (j) => Math.hypot(frame.x[j] - frame.x[i], frame.y[j] - frame.y[i], frame.z ? frame.z[j] - frame.z[i] : 0);
+    let gap = Infinity;
+    for (let j = 0; j < frame.n; j++) if (j !== i) gap = Math.min(gap, far(j) - this.radii[i] - this.radii[j]);
+    const known = robot?.tick === frame.tick ? (robot.neighbors ?? []) : [];
+    const figures = {
+      speed_mps: Math.hypot(frame.vx[i], frame.vy[i], frame.vz?.[i] ?? 0),
+      gap_m: gap < Infinity ? gap : null,
+      age_s: known.length ? Math.max(...known.map(({ age_s }) => age_s)) : null,
+    };
+    this.robotPlots.add(frame.tick, plotted(figures, ROBOT_PLOTS), every);
+    if (frame === this.lastFrame) this.robotFigures = figures;
+  }
+
+  /** Passes figures to the plots; `every` is the distance between ticks. */
+  onFigures(tick, values, every) {
+    this.plots.add(tick, values, every);
+    this.dirty = true;
+  }
+
+  /** The branch to compare with: the one that was shown before, else the newest; null for none. */
+  get otherBranch() {
+    const { state, look } = this;
+    const others = (state?.branches ?? []).map(({ number }) => number).filter((number) => number !== state.branch);
+    if (!others.length || !look.layers.branch || this.robots > MOST_OTHERS) return null;
+    return others.includes(this.shownBefore) ? this.shownBefore : others.at(-1);
+  }
+
+  /** Past positions, which the trails lack, or positions in another branch. */
+  onTrail(rows, branch = null) {
+    const { renderer, motion } = this;
+    if (branch !== null) {
+      const [[tick, at]] = rows;
+      this.other = { branch, tick, at };
+      this.askedOther = null;
+      this.dirty = true;
+      return;
+    }
+    if (!renderer || !motion.current) return;
+    const { trails } = renderer,
+      { n } = motion.current;
+    for (const [tick, at] of rows) {
+      trails.store(tick, at.subarray(0, n), at.subarray(n, 2 * n), at.length > 2 * n ? at.subarray(2 * n) : null);
+    }
+    trails.answered();
+    this.dirty = true;
+  }
+
+  suitTrails(frame) {
+    const { renderer, look, scene } = this;
+    return Boolean(renderer?.suitTrails(frame, look.trails, scene.tick_s));
   }
 
   onRobot(robot) {
     if (robot.index !== this.selected) return;
-    const plans = (robot) => Boolean(robot?.plan?.length);
-    const changes = plans(robot) !== plans(this.robot);
+    const keys = (robot) => ["plan", "orca", "neighbors"].map((name) => Boolean(robot?.[name]?.length ?? robot?.[name]));
+    const changes = `${keys(robot)}` !== `${keys(this.robot)}`;
     this.robot = robot;
+    if (this.lastFrame?.tick === robot.tick) this.sample(this.lastFrame, robot);
     if (changes) this.controls.legend();
     this.showWindow();
-    this.panel.update();
+    this.panelStale = true;
     this.orders.robot();
     this.dirty = true;
   }
@@ -159,25 +256,23 @@ class App {
   }
 
   onOrders(orders) {
-    this.controls.mark(orders);
+    this.marked = orders;
+    this.controls.mark();
   }
 
   onMessage(kind, text) {
     this.toast(text, kind);
   }
 
-  onSaved({ name, text }) {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([text], { type: "application/toml" }));
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-    this.toast(`Saved as ${name}.`);
+  onSaved({ name, text, branch, orders }) {
+    download(name, new Blob([text], { type: "application/toml" }));
+    this.toast(`Saved branch ${branch} with ${orders} ${orders === 1 ? "change" : "changes"} as ${name}.`);
   }
 
   onConnection(is, inSeconds) {
     if (is === "open") {
       this.banner(this.lack);
+      this.askedOther = null;
       if (this.selected !== null) this.send({ do: "select", robot: this.selected });
       if (this.look.layers.links) this.send({ do: "links", on: true });
     } else if (is === "over") {
@@ -210,20 +305,36 @@ class App {
     return this.scene?.mode === "live";
   }
 
+  /** Whether there is more to show about a robot than its body. */
+  get hasMinds() {
+    return this.scene?.mode !== "recording" || Boolean(this.scene.minds?.length);
+  }
+
   get timed() {
     return this.scene && this.scene.mode !== "watch";
   }
 
   seek(tick) {
     if (!this.timed) return;
-    const { first, last } = this.state;
-    this.send({ do: "seek", tick: Math.max(first, Math.min(last, Math.round(tick))) });
+    this.send({ do: "seek", tick: Math.max(this.state.first, Math.min(this.horizon, Math.round(tick))) });
+  }
+
+  /** Opens the moment in the address: `#t=SECONDS&robot=NUMBER`, both optional. */
+  openAddress() {
+    const wanted = new URLSearchParams(location.hash.slice(1));
+    const [seconds, robot] = ["t", "robot"].map((name) => (wanted.has(name) ? Number(wanted.get(name)) : NaN));
+    if (seconds >= 0) this.seek(seconds / this.scene.tick_s);
+    const index = this.scene.robots.id.indexOf(robot);
+    if (index >= 0) this.select(index);
+    else if (wanted.has("robot")) this.toast(`There is no robot ${wanted.get("robot")}.`);
   }
 
   select(index) {
     if (index === this.selected) return;
     this.selected = index;
     this.robot = null;
+    this.robotFigures = {};
+    this.robotPlots.reset();
     this.follow = this.follow && index !== null;
     if (this.source) this.send({ do: "select", robot: index });
     this.showWindow();
@@ -271,6 +382,16 @@ class App {
     return best;
   }
 
+  /** The position of body `i` in the other branch at this tick; null for none. */
+  placeInOther(i) {
+    const { other, otherBranch } = this;
+    const frame = this.motion.current;
+    if (!other || other.branch !== otherBranch || (this.state.paused && other.tick !== frame?.tick)) return null;
+    const { at } = other,
+      n = frame.n;
+    return at.length < 2 * n ? null : [at[i], at[n + i], at.length > 2 * n ? at[2 * n + i] : 0];
+  }
+
   /** The goal of body `i`; null for none. */
   targetOf(i) {
     const frame = this.motion.current;
@@ -278,16 +399,43 @@ class App {
     return [frame.tx[i], frame.ty[i], frame.tz ? frame.tz[i] : 0];
   }
 
+  /** The scene's bounds and heights, moved and grown so far that all robots are inside; a function
+      of the shown moment. */
+  get sight() {
+    const { scene, motion } = this;
+    const [west, south, east, north] = scene.bounds_m;
+    const ranges = [[west, east], [south, north], scene.height_m ?? [0, 0]];
+    const n = Math.min(motion.current?.n ?? 0, this.robots);
+    if (!n || n > MOST_IN_SIGHT) return ranges;
+    const [low, high] = [Array(3).fill(Infinity), Array(3).fill(-Infinity)];
+    const place = [0, 0, 0];
+    for (let i = 0; i < n; i++) {
+      motion.place(i, place);
+      for (let k = 0; k < 3; k++) {
+        low[k] = Math.min(low[k], place[k] - this.radii[i]);
+        high[k] = Math.max(high[k], place[k] + this.radii[i]);
+      }
+    }
+    return ranges.map(([from, to], k) => {
+      const size = Math.max(to - from, high[k] - low[k]);
+      const start = Math.max(high[k] - size, Math.min(low[k], from));
+      return k < 2 ? [start, start + size] : [Math.min(from, low[k]), Math.max(to, high[k])];
+    });
+  }
+
+  /** Shows all robots, and keeps them in sight until the camera is moved by hand. */
   fit() {
     const { scene, camera } = this;
     if (!scene) return;
+    this.pointer.touched = false;
+    const [[west, east], [south, north], heights] = this.sight;
     const phone = camera.width < 720;
     const left = this.live && !phone ? 58 : 12;
     camera.fit(
-      scene.bounds_m,
-      scene.height_m ?? [0, 0],
+      [west, south, east, north],
+      heights,
       scene.kind === "space",
-      phone ? [8, 8, 8, 44] : [left, 14, 58, 54],
+      phone ? [8, this.live ? 56 : 8, 8, 44] : [left, 14, 58, 54],
     );
     this.follow = false;
     this.controls?.follow();
@@ -296,7 +444,7 @@ class App {
   restyle() {
     this.look.read();
     this.ground.setLook(this.look.layers.relief, this.look.css);
-    this.plots.stale = true;
+    this.plots.stale = this.robotPlots.stale = true;
     this.controls.legend();
     this.panel.update();
     this.dirty = true;
@@ -327,6 +475,8 @@ class App {
     this.camera.resize(Math.max(width, 1), Math.max(height, 1));
     for (const layer of [this.ground, this.renderer, this.view]) layer?.resize(width, height, ratio);
     if (first || !this.pointer.touched) this.fit();
+    // A resized canvas is empty until it is drawn.
+    if (this.scene) this.draw(performance.now());
     this.dirty = true;
   }
 
@@ -335,9 +485,19 @@ class App {
     if (!this.scene) return;
     const paused = this.state?.paused ?? false;
     const news = motion.advance(now, paused);
-    if (news === "jump") this.renderer?.trails.reset();
     if (this.follow && this.selected !== null && motion.current)
       camera.centre(...motion.place(this.selected, [0, 0, 0]));
+    else if (!this.pointer.touched && (news !== "none" || this.wasMoving)) {
+      const sight = this.sight.join();
+      if (sight !== this.seen) this.fit();
+      this.seen = sight;
+    }
+    this.askForTrail(now);
+    // Messages about a robot come before its frame is taken.
+    if (this.panelStale && this.robot) {
+      this.panelStale = false;
+      this.panel.update();
+    }
     if (news === "none" && !this.wasMoving && !this.dirty && camera.version === this.drawnVersion) return;
     this.wasMoving = motion.moving;
     this.dirty = false;
@@ -347,6 +507,18 @@ class App {
       this.frames.drawn++;
       if (this.source instanceof Live) this.source.seen();
     }
+  }
+
+  askForTrail(now) {
+    const { motion, renderer, otherBranch: branch } = this;
+    const tick = motion.current?.tick;
+    if (branch !== null && tick !== undefined && !this.askedOther && this.other?.tick !== tick) {
+      this.askedOther = true;
+      this.send({ do: "trail", branch, ticks: [tick] });
+    }
+    if (!this.timed || !motion.current || !this.suitTrails(motion.current)) return;
+    const ticks = renderer.trails.missing(tick, now);
+    if (ticks.length) this.send({ do: "trail", ticks });
   }
 
   draw(now) {
@@ -362,6 +534,7 @@ class App {
     if (now - (this.plottedAt ?? 0) > PLOTS_EVERY_MS) {
       this.plottedAt = now;
       this.plots.draw(motion.current?.tick ?? 0, this.figures, look.css);
+      if (this.selected !== null) this.robotPlots.draw(motion.current?.tick ?? 0, this.robotFigures, look.css);
       this.controls.counts();
       this.controls.clock();
     } else {
@@ -399,6 +572,20 @@ window.staya = {
   get robot() {
     return app.robot;
   },
+  /** Numbers of the robots that wait. */
+  get waiting() {
+    return app.scene.robots.id.filter((_, i) => app.motion.current.wait[i] !== 255);
+  },
+  /** Corners of a measuring line, and its text. */
+  get ruler() {
+    return app.view.ruler && { ...app.view.ruler, text: app.view.rulerText };
+  },
+  get sentence() {
+    return app.mind.sentence;
+  },
+  get caption() {
+    return app.mind.caption;
+  },
   get fps() {
     return app.fps;
   },
@@ -409,6 +596,39 @@ window.staya = {
     const at = app.camera.project(x, y, z);
     const { left, top } = element("overlay").getBoundingClientRect();
     return at && [at[0] + left, at[1] + top];
+  },
+  /** Known values of a plot, `[tick, value]`. */
+  series: (name) => app.plots.series(name),
+  robotSeries: (name) => app.robotPlots.series(name),
+  /** The drawn lines of a plot, each a list of [tick, value]. */
+  lines: (name) => app.plots.lines(name),
+  /** Places of the written labels on the picture: left, top, right, bottom. */
+  get labels() {
+    return app.view.boxes;
+  },
+  /** Least radius of robots and size of goals, pixels. */
+  get marks() {
+    return { robot: app.look.leastRadius, goal: app.look.targetSize };
+  },
+  /** Position of a robot in the other branch, metres. */
+  otherPlace: (i) => app.placeInOther(i),
+  get plotted() {
+    return [app.plots.first, app.plots.last];
+  },
+  get links() {
+    return app.links && { tick: app.links.tick, pairs: app.links.pairs.length / 2 };
+  },
+  /** Ticks of the stored positions behind the shown ones. */
+  get trail() {
+    const { trails } = app.renderer;
+    return trails.ticks(app.motion.tick).filter((tick) => trails.rows.has(tick)).reverse();
+  },
+  /** Whether the picture has all that belongs to the shown moment. */
+  get settled() {
+    const { motion, renderer } = app;
+    if (!motion.current || motion.mix < 1) return false;
+    if (app.otherBranch !== null && app.other?.tick !== motion.current.tick) return false;
+    return !renderer?.hasTrails || renderer.trails.ticks(motion.tick).every((tick) => renderer.trails.rows.has(tick));
   },
   target: (i) => app.targetOf(i),
   place: (i) => (app.motion.current ? app.motion.place(i, [0, 0, 0]) : null),

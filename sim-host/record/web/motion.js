@@ -16,7 +16,6 @@ export class Motion {
     this.interval = 50;
     this.stride = 1;
     this.taken = 0;
-    this.headings = new Float32Array(0);
   }
 
   /** Replaces a frame that was not drawn yet. */
@@ -42,7 +41,6 @@ export class Motion {
       const gap = Math.min(now - this.taken, SLOWEST_MS);
       this.interval = follows ? this.interval + 0.3 * (gap - this.interval) : 50;
       this.taken = now;
-      this.turn(before, frame, follows);
     }
     this.mix = paused ? 1 : Math.min(1, (now - this.taken) / this.interval);
     return news;
@@ -51,21 +49,6 @@ export class Motion {
   /** Whether bodies still move without a new frame. */
   get moving() {
     return this.mix < 1;
-  }
-
-  turn(before, frame, follows) {
-    const { n, vx, vy, x, y } = frame;
-    if (this.headings.length !== 2 * n) this.headings = new Float32Array(2 * n);
-    const headings = this.headings;
-    for (let i = 0; i < n; i++) {
-      if (vx[i] !== 0 || vy[i] !== 0) {
-        headings[2 * i] = vx[i];
-        headings[2 * i + 1] = vy[i];
-      } else if (follows && (x[i] !== before.x[i] || y[i] !== before.y[i])) {
-        headings[2 * i] = x[i] - before.x[i];
-        headings[2 * i + 1] = y[i] - before.y[i];
-      }
-    }
   }
 
   /** Writes the displayed position of body `i` to `out`. */
@@ -77,9 +60,9 @@ export class Motion {
     return out;
   }
 
-  /** The displayed simulated time. */
-  get time() {
+  /** The last tick before the displayed moment, or at it. */
+  get tick() {
     const { previous: a, current: b, mix } = this;
-    return b ? a.time + (b.time - a.time) * mix : 0;
+    return Math.floor(a.tick + (b.tick - a.tick) * mix);
   }
 }

@@ -1,6 +1,6 @@
 // Details of the selected robot.
 
-import { drawVelocities } from "staya/velocity.js";
+import { plotVelocities } from "staya/velocity.js";
 import { metres } from "staya/view.js";
 
 const MOST_NEIGHBORS = 32;
@@ -43,6 +43,7 @@ export class Panel {
       order("down", { for_s: REBOOT_S }),
     );
     for (const each of [this.down, this.reboot]) each.classList.add("live-only");
+    this.sentence = make("p", "sentence");
     this.facts = make("dl", "grid-facts");
     this.velocities = make("section");
     this.plot = make("canvas");
@@ -52,8 +53,12 @@ export class Panel {
       "aria-label",
       "Permitted velocities, the preferred velocity and the chosen one",
     );
+    new ResizeObserver(() => app.robot?.orca && this.showVelocities(app.robot)).observe(this.plot);
     this.key = make("p", "caption");
-    this.velocities.append(make("h3", "", "Permitted velocities"), this.plot, this.key);
+    this.velocityTitle = make("h3", "");
+    this.velocities.append(this.velocityTitle, this.plot, this.key);
+    this.plots = make("section");
+    this.plots.id = "robot-plots";
     this.neighbors = make("section");
     this.neighborTitle = make("h3", "");
     this.rows = make("tbody");
@@ -70,10 +75,14 @@ export class Panel {
     this.eventsPart = make("section");
     this.events = make("ul", "events");
     this.eventsPart.append(make("h3", "", "Events"), make("div", "scroll", this.events));
+    this.lack = make("p", "muted");
     this.body.append(
+      this.sentence,
+      this.lack,
       make("div", "actions", this.follow, this.reboot, this.down),
       this.facts,
       this.velocities,
+      this.plots,
       this.neighbors,
       this.eventsPart,
     );
@@ -87,6 +96,10 @@ export class Panel {
     if (opened) this.panel.open = true;
     document.getElementById("robot-title").textContent = `Robot ${app.idOf(app.selected)}`;
     const { robot } = app;
+    this.sentence.textContent = app.mind.sentence ?? "";
+    const minds = app.scene.mode === "recording" && !robot?.neighbors ? (app.scene.minds ?? []) : [];
+    this.lack.hidden = !minds.length;
+    this.lack.textContent = `This page contains the knowledge of ${minds.length > 1 ? "robots" : "robot"} ${minds.map((i) => app.idOf(i)).join(", ")}.`;
     this.showFacts(robot);
     this.velocities.hidden = !robot?.orca;
     if (robot?.orca) this.showVelocities(robot);
@@ -151,8 +164,9 @@ export class Panel {
     const { app } = this,
       { css } = app.look;
     const frame = app.motion.current;
+    this.velocityTitle.textContent = `Permitted velocities${app.mind.isSlice ? " with the chosen climb (a slice)" : ""}`;
     const velocity = frame && index < frame.n ? [frame.vx[index], frame.vy[index]] : [0, 0];
-    drawVelocities(this.plot, orca, velocity, css);
+    plotVelocities(this.plot, orca, velocity, css);
     const key = (colour, text) => {
       const sign = make("b", "", "—");
       sign.style.color = colour;

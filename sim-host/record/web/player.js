@@ -1,7 +1,8 @@
 // Plays a recording: handles the page's orders and answers like a server.
 
 import { Recording } from "staya/recording.js";
-import { fromBase64 } from "staya/frame.js";
+import { fromBase64, pairsOf } from "staya/frame.js";
+import { plotted } from "staya/plots.js";
 
 // Recordings up to this size in bytes are read completely for the plots; of larger ones only played
 // parts are plotted.
@@ -85,6 +86,7 @@ export class Player {
       while (this.wanted !== null) {
         const tick = this.wanted;
         this.wanted = null;
+        this.awaited = tick;
         await this.show(tick);
         this.say();
       }
@@ -97,7 +99,7 @@ export class Player {
   }
 
   async show(tick) {
-    const { frame, scene, next } = await this.recording.at(tick);
+    const { frame, scene, next, minds } = await this.recording.at(tick);
     if (scene !== this.shownScene) {
       this.shownScene = scene;
       this.listener.onScene({ ...scene, mode: "recording" });
@@ -105,14 +107,16 @@ export class Player {
     this.tick = frame.tick;
     this.next = next;
     this.listener.onFrame(frame);
-    this.tell(frame);
+    this.tell(frame, minds);
   }
 
   /** Sends the recorded data of the selected robot. */
-  tell(frame) {
+  tell(frame, minds) {
     const index = this.selected;
+    const mind = minds.find((mind) => mind.index === index);
+    this.listener.onLinks(frame.tick, mind ? pairsOf(mind.links) : new Uint32Array(0));
     if (index === null || index >= frame.n) return;
-    this.listener.onRobot({
+    this.listener.onRobot(mind ?? {
       index,
       id: this.shownScene.robots.id[index] ?? null,
       tick: frame.tick,
@@ -150,12 +154,14 @@ export class Player {
   async readThrough() {
     if (this.recording.size > READ_THROUGH) return;
     const count = this.recording.frames.length;
+    let before = null;
     try {
       for (let index = 0; index < count; index++) {
         const block = await this.recording.unpacked(index);
         for (let i = 0; i < block.ticks.length; i++) {
           const { tick, figures } = block.frame(i);
-          this.listener.onFigures(tick, figures);
+          this.listener.onFigures(tick, plotted(figures), tick - (before ?? tick));
+          before = tick;
           if (i % 64 === 63) await new Promise((resolve) => setTimeout(resolve));
         }
       }
@@ -164,8 +170,46 @@ export class Player {
     }
   }
 
+  /** Fills the plots of the selected robot from the whole recording. */
+  async readRobot(index) {
+    if (index === null || this.recording.size > READ_THROUGH) return;
+    let before = null;
+    try {
+      for (let at = 0; at < this.recording.frames.length; at++) {
+        const block = await this.recording.unpacked(at);
+        const minds = new Map(block.minds.filter((mind) => mind.index === index).map((mind) => [mind.tick, mind]));
+        for (let i = 0; i < block.ticks.length; i++) {
+          const tick = block.ticks[i];
+          if (this.selected !== index) return;
+          this.listener.sample(block.frame(i), minds.get(tick), tick - (before ?? tick));
+          before = tick;
+          if (i % 64 === 63) await new Promise((resolve) => setTimeout(resolve));
+        }
+      }
+    } catch {
+      // Playback reports the damaged block when it reaches it.
+    }
+  }
+
+  /** Sends the positions at past ticks. */
+  async trail(ticks) {
+    const rows = [];
+    try {
+      for (const tick of ticks) {
+        const { x, y, z } = (await this.recording.at(tick)).frame;
+        rows.push([tick, Float32Array.from([...x, ...y, ...(z ?? [])])]);
+      }
+    } catch {
+      // Playback reports the damaged block when it reaches it.
+    }
+    this.listener.onTrail(rows);
+  }
+
   send(message) {
     switch (message.do) {
+      case "trail":
+        this.trail(message.ticks);
+        break;
       case "pause":
         this.paused = true;
         this.say();
@@ -186,9 +230,13 @@ export class Player {
         this.paused = true;
         this.seek(message.tick);
         break;
+      case "links":
       case "select":
-        this.selected = message.robot;
-        this.wanted ??= this.tick;
+        if (message.do === "select") {
+          this.selected = message.robot;
+          this.readRobot(message.robot);
+        }
+        this.wanted ??= this.busy ? this.awaited : this.tick;
         this.fetch();
         break;
     }

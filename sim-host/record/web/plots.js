@@ -1,8 +1,10 @@
 // Small plots of figures over time.
 
-const MOST = 2048;
+// Samples per figure; of longer runs, the last of several ticks counts.
+const MOST = 1 << 16;
 
-// Plotted figures of frames. A plot appears once one of its lines has a value.
+// Plotted figures in the order of the message `figures`. A plot appears once one of its lines has a
+// value.
 const PLOTS = [
   { name: "Arrived", lines: [{ of: (f) => f.arrived, colour: "ok" }], digits: 0 },
   { name: "Waiting", lines: [{ of: (f) => f.waiting, colour: "warn" }], digits: 0 },
@@ -19,13 +21,28 @@ const PLOTS = [
   },
   { name: "Smallest gap", unit: "m", lines: [{ of: (f) => f.gap_m, colour: "violet" }], digits: 3 },
 ];
-const LINES = PLOTS.flatMap((plot) => plot.lines);
+// Plotted figures of the selected robot.
+export const ROBOT_PLOTS = [
+  { name: "Speed", unit: "m/s", lines: [{ of: (r) => r.speed_mps, colour: "accent" }], digits: 3 },
+  { name: "Gap to the nearest", unit: "m", lines: [{ of: (r) => r.gap_m, colour: "violet" }], digits: 3 },
+  { name: "Oldest knowledge", unit: "s", lines: [{ of: (r) => r.age_s, colour: "warn" }], digits: 2 },
+];
+const linesOf = (plots) => plots.flatMap((plot) => plot.lines);
+export const PLOTTED = linesOf(PLOTS).length;
+
+/** The plotted values of figures, NaN for none. */
+export function plotted(figures, plots = PLOTS) {
+  return linesOf(plots).map((line) => line.of(figures) ?? NaN);
+}
 
 export class Plots {
-  constructor(element, onSeek) {
+  constructor(element, onSeek, plots = PLOTS) {
     this.element = element;
+    this.columns = linesOf(plots);
     this.onSeek = onSeek;
-    this.rows = PLOTS.map((plot) => this.row(plot));
+    this.first = 0;
+    this.last = 1;
+    this.rows = plots.map((plot) => this.row(plot));
     this.reset();
   }
 
@@ -52,36 +69,64 @@ export class Plots {
   }
 
   reset() {
-    // One sample for every `spacing` ticks, the last one received.
-    this.samples = [];
+    // One sample for every `spacing` ticks, and whether it is known.
+    this.samples = new Float32Array(0);
+    this.known = new Uint8Array(0);
+    this.count = 0;
     this.spacing = 1;
-    this.first = 0;
-    this.last = 1;
+    // Samples with more ticks between them are not joined.
+    this.every = 1;
+    // The samples of the branch that was shown before.
+    this.before = null;
     this.stale = true;
   }
 
-  add(tick, figures) {
+  /** Starts with another branch; the lines of the one before stay as faint lines. */
+  changeBranch() {
+    const { samples, known, count, spacing, every, columns } = this;
+    this.reset();
+    this.before = { samples, known, count, spacing, every, columns };
+  }
+
+  add(tick, values, every = 1) {
     while (tick / this.spacing >= MOST) this.coarsen();
-    this.samples[Math.floor(tick / this.spacing)] = LINES.map((line) => line.of(figures) ?? NaN);
+    const at = Math.floor(tick / this.spacing);
+    if (at >= this.known.length) this.grow(at + 1);
+    this.known[at] = 1;
+    this.samples.set(values, at * this.columns.length);
+    this.count = Math.max(this.count, at + 1);
+    this.every = Math.max(this.every, every);
     this.stale = true;
+  }
+
+  grow(least) {
+    const size = Math.min(MOST, Math.max(least, 2 * this.known.length, 1024));
+    const { known, samples } = this;
+    this.known = new Uint8Array(size);
+    this.known.set(known);
+    this.samples = new Float32Array(size * this.columns.length);
+    this.samples.set(samples);
   }
 
   coarsen() {
-    const finer = this.samples;
+    const { known, samples, count } = this;
+    for (let i = 0; i < count; i++) {
+      const [from, to] = [i * this.columns.length, (i >> 1) * this.columns.length];
+      if (known[i]) samples.copyWithin(to, from, from + this.columns.length);
+      known[i >> 1] = known[i] | (i & 1 ? known[i >> 1] : 0);
+    }
     this.spacing *= 2;
-    this.samples = [];
-    finer.forEach((values, i) => {
-      this.samples[i >> 1] = values;
-    });
+    this.count = (count + 1) >> 1;
+    known.fill(0, this.count);
   }
 
   /** Drops samples after `tick`, from which the run continues differently. */
   forgetAfter(tick) {
     const keep = Math.floor(tick / this.spacing) + 1;
-    if (this.samples.length > keep) {
-      this.samples.length = keep;
-      this.stale = true;
-    }
+    if (this.count <= keep) return;
+    this.known.fill(0, keep);
+    this.count = keep;
+    this.stale = true;
   }
 
   setRange(first, last) {
@@ -89,6 +134,25 @@ export class Plots {
     this.first = first;
     this.last = Math.max(last, first + 1);
     this.stale = true;
+  }
+
+  /** The drawn pieces of a plot's first line. */
+  lines(name) {
+    const same = (value) => value;
+    return pieces(this, this.column(name), same, same);
+  }
+
+  column(name) {
+    return this.columns.indexOf(this.rows.find(({ plot }) => plot.name === name).plot.lines[0]);
+  }
+
+  /** The known samples of a plot's first line, `[tick, value]`. */
+  series(name) {
+    const line = this.column(name);
+    const found = [];
+    for (let i = 0; i < this.count; i++)
+      if (this.known[i]) found.push([i * this.spacing, this.samples[i * this.columns.length + line]]);
+    return found;
   }
 
   draw(tick, figures, colours) {
@@ -101,7 +165,7 @@ export class Plots {
       const from = line;
       line += plot.lines.length;
       const values = plot.lines.map(({ of }) => of(figures) ?? null);
-      if (row.hidden && values.some((each) => each !== null)) row.hidden = false;
+      if (row.hidden && (values.some((each) => each !== null) || this.hasValues(from, line))) row.hidden = false;
       if (row.hidden) continue;
       value.replaceChildren(
         ...values.map((each, i) => {
@@ -120,6 +184,14 @@ export class Plots {
     }
   }
 
+  /** Whether a line of `from..to` has a known value. */
+  hasValues(from, to) {
+    for (let i = 0; i < this.count; i++) {
+      for (let k = from; this.known[i] && k < to; k++) if (!Number.isNaN(this.samples[i * this.columns.length + k])) return true;
+    }
+    return false;
+  }
+
   drawPlot(canvas, plot, from, tick, colours) {
     const ratio = devicePixelRatio || 1;
     const { clientWidth: width, clientHeight: height } = canvas;
@@ -131,9 +203,11 @@ export class Plots {
     context.clearRect(0, 0, width, height);
     let greatest = plot.greatest ?? 0;
     if (!plot.greatest) {
-      for (const values of this.samples) {
-        if (values)
-          for (let i = 0; i < plot.lines.length; i++) if (values[from + i] > greatest) greatest = values[from + i];
+      for (let i = 0; i < this.count; i++) {
+        for (let k = 0; this.known[i] && k < plot.lines.length; k++) {
+          const value = this.samples[i * this.columns.length + from + k];
+          if (value > greatest) greatest = value;
+        }
       }
     }
     const x = (at) => ((at - this.first) / (this.last - this.first)) * width;
@@ -144,31 +218,28 @@ export class Plots {
     context.lineTo(width, height - 1.5);
     context.stroke();
     plot.lines.forEach(({ colour }, i) => {
-      context.beginPath();
-      let pen = false,
-        firstX = null,
-        lastX = 0;
-      this.samples.forEach((values, at) => {
-        const value = values[from + i];
-        if (Number.isNaN(value)) {
-          pen = false;
-          return;
-        }
-        lastX = x((at + 0.5) * this.spacing);
-        if (pen) context.lineTo(lastX, y(value));
-        else context.moveTo(lastX, y(value));
-        firstX ??= lastX;
-        pen = true;
-      });
-      context.strokeStyle = colours[colour];
+      context.strokeStyle = context.fillStyle = colours[colour];
+      context.lineJoin = context.lineCap = "round";
+      const column = (at) => Math.round(x(at) * 2 * ratio) / 2 / ratio;
+      context.lineWidth = 1;
+      context.globalAlpha = 0.4;
+      for (const points of this.before ? pieces(this.before, from + i, column, y) : []) {
+        context.beginPath();
+        for (const point of points) context.lineTo(...point);
+        context.stroke();
+      }
       context.lineWidth = 1.4;
-      context.lineJoin = "round";
-      context.stroke();
-      if (plot.lines.length === 1 && pen) {
+      context.globalAlpha = 1;
+      for (const points of pieces(this, from + i, column, y)) {
+        const [[firstX, firstY], [lastX]] = [points[0], points.at(-1)];
+        context.beginPath();
+        for (const point of points) context.lineTo(...point);
+        if (points.length === 1) context.lineTo(firstX, firstY);
+        context.stroke();
+        if (plot.lines.length > 1) continue;
         context.lineTo(lastX, height - 2);
         context.lineTo(firstX, height - 2);
         context.globalAlpha = 0.12;
-        context.fillStyle = colours[colour];
         context.fill();
         context.globalAlpha = 1;
       }
@@ -180,4 +251,38 @@ export class Plots {
     context.lineTo(x(tick), height);
     context.stroke();
   }
+}
+
+/** Joined points of a line; each gap in time or value starts a new piece. Of the samples with one
+    place on the x axis, it keeps the first, least, greatest and last one. */
+function pieces({ samples, known, count, spacing, every, columns }, line, x, y) {
+  const joined = Math.max(every, spacing);
+  const found = [];
+  let before = -Infinity,
+    column = null;
+  const flush = () => {
+    if (!column) return;
+    const { at, values } = column;
+    const [first, last] = [values[0], values.at(-1)];
+    const kept = values.length > 2 ? [first, Math.min(...values), Math.max(...values), last] : values;
+    found.at(-1).push(...kept.map((value) => [at, y(value)]));
+    column = null;
+  };
+  for (let i = 0; i < count; i++) {
+    const value = samples[i * columns.length + line];
+    if (!known[i] || Number.isNaN(value)) {
+      if (known[i]) before = -Infinity;
+      continue;
+    }
+    const tick = i * spacing,
+      at = x(tick);
+    const isNew = tick - before > joined;
+    if (isNew || column?.at !== at) flush();
+    if (isNew) found.push([]);
+    if (column) column.values.push(value);
+    else column = { at, values: [value] };
+    before = tick;
+  }
+  flush();
+  return found;
 }

@@ -87,6 +87,15 @@ export class Pointer {
     document.getElementById("paint-classes").replaceChildren(...buttons);
   }
 
+  /** Turns the measuring line on or off. */
+  measure() {
+    this.measures = !this.measures;
+    this.app.view.ruler = null;
+    this.app.dirty = true;
+    document.getElementById("measure").setAttribute("aria-pressed", this.measures);
+    this.canvas.classList.toggle("drawing", this.measures);
+  }
+
   cancel() {
     this.drag = null;
     this.app.view.sketch = this.corners.length ? { kind: "polygon", points: this.corners } : null;
@@ -115,6 +124,7 @@ export class Pointer {
     const { app } = this;
     const robot = app.pick(at[0], at[1]);
     const still = event.button === 1 || event.button === 2;
+    if (this.measures && !still) return { kind: "measure", from: this.placeAt(at) };
     if (app.live && !still) {
       if ((event.shiftKey || this.tool === "goal") && robot !== null)
         return { kind: "goal", robot, heights: app.motion.place(robot, [0, 0, 0]) };
@@ -156,6 +166,7 @@ export class Pointer {
       this.hover(at);
       return;
     }
+    this.showPlace(at);
     const before = this.pointers.get(event.pointerId);
     this.pointers.set(event.pointerId, at);
     if (!drag) return;
@@ -196,6 +207,9 @@ export class Pointer {
     drag.place = place;
     app.dirty = true;
     switch (drag.kind) {
+      case "measure":
+        app.view.ruler = drag.from && drag.moved ? { from: drag.from, to: this.placeAt(at) } : null;
+        break;
       case "goal":
       case "waypoint":
         if (drag.moved) app.view.sketch = { kind: "goal", robot: drag.robot ?? null, place };
@@ -317,9 +331,34 @@ export class Pointer {
     this.cancel();
   }
 
+  /** The centre of the robot at a pixel, else the point on the ground there; null for none. */
+  placeAt([px, py]) {
+    const { app } = this;
+    const robot = app.pick(px, py, 1);
+    return robot === null ? app.camera.unproject(px, py) : app.motion.place(robot, [0, 0, 0]);
+  }
+
+  /** Writes the scenario's coordinates at a pixel, and the cell. */
+  showPlace(at) {
+    const { scene, camera } = this.app;
+    const place = at && camera.unproject(...at);
+    let text = "";
+    if (place) {
+      const digits = Math.max(0, Math.min(3, Math.round(Math.log10(camera.pixelsPerMetre(camera.space ? camera.distance : 1)))));
+      const [x, y] = [0, 1].map((axis) => (place[axis] + scene.origin_m[axis]).toFixed(digits));
+      text = `x ${x}, y ${y} m${camera.space ? " on the ground" : ""}`;
+      const { land } = scene;
+      const cell = land && [0, 1].map((axis) => Math.floor((place[axis] - land.origin_m[axis]) / land.cell_m));
+      if (cell && cell[0] >= 0 && cell[1] >= 0 && cell[0] < land.width && cell[1] < land.height)
+        text += `\ncell ${cell.join(", ")}`;
+    }
+    document.getElementById("pointer-place").textContent = text;
+  }
+
   hover(at) {
     const { app } = this;
     if (!app.scene) return;
+    this.showPlace(at);
     if (this.corners.length) {
       const place = at && app.camera.unproject(at[0], at[1]);
       app.view.sketch = { kind: "polygon", points: place ? [...this.corners, place] : this.corners };

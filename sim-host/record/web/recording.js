@@ -9,7 +9,8 @@ const FILE_HEADER = 12;
 const BLOCK_HEADER = 13;
 const SCENE = 1,
   FRAMES = 2,
-  ORDERS = 3;
+  ORDERS = 3,
+  MINDS = 5;
 // Cache of uncompressed blocks, bytes.
 const KEPT = 96 << 20;
 
@@ -118,6 +119,7 @@ export class Recording {
       if (kind === SCENE) scene = block;
       if (kind === FRAMES && scene) recording.frames.push(Object.assign(block, { scene }));
       if (kind === ORDERS) recording.ordersBlock = block;
+      if (kind === MINDS && recording.frames.length) recording.frames.at(-1).minds = block;
       at = end;
     }
     if (!recording.frames.length) throw new Error("the recording has no frames");
@@ -178,7 +180,11 @@ export class Recording {
   async unpacked(index) {
     let block = this.kept.get(index);
     if (block) this.kept.delete(index);
-    else block = framesOf(await unpack(this.frames[index]));
+    else {
+      const { minds } = this.frames[index];
+      block = framesOf(await unpack(this.frames[index]));
+      block.minds = minds ? JSON.parse(text.decode(await unpack(minds))) : [];
+    }
     this.kept.set(index, block);
     let size = 0;
     for (const each of this.kept.values()) size += each.size;
@@ -190,7 +196,8 @@ export class Recording {
     return block;
   }
 
-  /** The last frame at or before `tick` with its scene; `{frame, scene, next}`, where `next` is the following tick or null. */
+  /** The last frame at or before `tick` with its scene and minds; `{frame, scene, next, minds}`, where `next` is the
+      following tick or null. */
   async at(tick) {
     let low = 0;
     for (let high = this.frames.length - 1; low < high;) {
@@ -202,6 +209,7 @@ export class Recording {
     let i = 0;
     while (i + 1 < block.ticks.length && block.ticks[i + 1] <= tick) i++;
     const after = i + 1 < block.ticks.length ? block.ticks[i + 1] : (this.frames[low + 1]?.first ?? null);
-    return { frame: block.frame(i), scene: await this.scene(this.frames[low].scene), next: after };
+    const minds = block.minds.filter((mind) => mind.tick === block.ticks[i]);
+    return { frame: block.frame(i), scene: await this.scene(this.frames[low].scene), next: after, minds };
   }
 }

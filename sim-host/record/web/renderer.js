@@ -105,11 +105,9 @@ export class Renderer {
     const pairs = () => new Table(gl, gl.RG32F, gl.RG, gl.FLOAT, 2, WIDTH);
     this.frames = [words(), words()];
     this.held = [null, null];
-    this.headings = pairs();
     this.statics = pairs();
     this.ballFrame = words();
     this.ballStatics = pairs();
-    this.noHeadings = pairs();
     this.lines = new Table(gl, gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, 4, 3 * LINES_A_ROW);
     this.trails = new Trails(gl, this.software);
     gl.bindVertexArray(gl.createVertexArray());
@@ -121,7 +119,6 @@ export class Renderer {
   setBodies(robots, bodies, balls) {
     Object.assign(this, { robots, bodies, balls });
     this.held = [null, null];
-    this.headingsOf = null;
     this.statics.store(bodies);
     this.trails.reset();
     // Balls are drawn like bodies, from a frame of their own.
@@ -137,13 +134,18 @@ export class Renderer {
     });
     this.ballFrame.store(words);
     this.ballStatics.store(Float32Array.from(balls.flatMap((ball) => [ball[3], 0])));
-    this.noHeadings.store(new Float32Array(2 * n));
   }
 
   resize(width, height, ratio) {
     this.ratio = ratio;
     this.canvas.width = Math.round(width * ratio);
     this.canvas.height = Math.round(height * ratio);
+  }
+
+  /** Prepares trails for the bodies of a frame. Returns whether they are drawn. */
+  suitTrails(frame, seconds, tickS) {
+    this.hasTrails = this.trails.suit(Math.min(frame.n, this.bodies.length / 2), seconds, tickS);
+    return this.hasTrails;
   }
 
   /** The table with `frame`; if there is none, the one without `keep` is refilled. */
@@ -170,10 +172,6 @@ export class Renderer {
     if (!frame) return;
     gl.activeTexture(gl.TEXTURE0);
     const count = Math.min(frame.n, this.bodies.length / 2);
-    if (this.headingsOf !== frame) {
-      this.headings.store(motion.headings);
-      this.headingsOf = frame;
-    }
     const now = this.tableOf(frame, motion.previous),
       before = this.tableOf(motion.previous, frame);
     const { at } = frame;
@@ -186,7 +184,6 @@ export class Renderer {
       before,
       mix: motion.mix,
       statics: this.statics,
-      headings: this.headings,
       robots: this.robots,
       colourBy: COLOUR_BY.indexOf(look.colourBy),
       place: triple(""),
@@ -194,7 +191,7 @@ export class Renderer {
       target: triple("t"),
       modeWait: [at.mode / 4, at.wait / 4],
     };
-    if (look.trails && this.trails.record(motion, count, look.trails)) {
+    if (this.hasTrails && this.trails.record(motion)) {
       const program = this.begin(this.programs.trails, scene);
       gl.uniform4fv(program.uniforms.uInk, look.colours.trail);
       this.trails.draw(program);
@@ -203,6 +200,7 @@ export class Renderer {
     if (look.targets && frame.tx) {
       const { uniforms } = this.beginBodies(this.programs.targets, scene);
       gl.uniform1f(uniforms.uSize, look.targetSize);
+      gl.uniform1f(uniforms.uAlpha, look.targetAlpha);
       gl.drawArrays(gl.TRIANGLES, 0, 6 * Math.min(this.robots, count));
     }
     if (!camera.space && look.velocities) this.drawVelocities(scene);
@@ -236,7 +234,6 @@ export class Renderer {
       ["uNow", scene.now],
       ["uBefore", scene.before],
       ["uStatic", scene.statics],
-      ["uHeadings", scene.headings],
     ].forEach(([name, table], unit) => {
       if (!uniforms[name]) return;
       gl.activeTexture(gl.TEXTURE0 + unit);
@@ -273,7 +270,6 @@ export class Renderer {
       now: this.ballFrame,
       before: this.ballFrame,
       statics: this.ballStatics,
-      headings: this.noHeadings,
       colourBy: 0,
       place: [0, n, 2 * n],
       modeWait: [3 * n, 3 * n + ((n + 3) >> 2)],

@@ -26,7 +26,7 @@ uniform usampler2D uNow, uBefore;
 uniform ivec3 uAtPlace, uAtVelocity, uAtTarget;
 uniform ivec2 uAtModeWait;
 uniform float uMix;
-uniform sampler2D uStatic, uHeadings;
+uniform sampler2D uStatic;
 uint word(usampler2D words, int i) { return texelFetch(words, ivec2(i & 2047, i >> 11), 0).r; }
 float number(usampler2D words, int i) { return uintBitsToFloat(word(words, i)); }
 vec3 triple(usampler2D words, ivec3 at, int i) {
@@ -99,7 +99,7 @@ void main() {
   float reach = vRadius + (vKind == 1 ? 3.5 * uRatio : 1.5);
   vAt = square() * reach;
   vColour = colour(body);
-  vec2 heading = pair(uHeadings, body);
+  vec2 heading = triple(uNow, uAtVelocity, body).xy;
   vHeading = dot(heading, heading) > 0.0 ? normalize(heading) : vec2(0.0);
   gl_Position = clip;
   gl_Position.xy += vAt * 2.0 / uViewport * clip.w;
@@ -189,6 +189,7 @@ in vec2 vAt;
 flat in vec4 vColour;
 uniform vec4 uRim;
 uniform float uSize;
+uniform float uAlpha;
 out vec4 result;
 void main() {
   vec2 p = abs(vAt) / uRatio;
@@ -198,7 +199,7 @@ void main() {
   float halo = clamp(2.4 - off, 0.0, 1.0) * clamp(1.5 - end, 0.0, 1.0) * 0.7;
   float alpha = max(fill, halo);
   if (alpha < 0.02) discard;
-  result = vec4(mix(uRim.rgb, vColour.rgb, fill / alpha) * alpha, alpha);
+  result = vec4(mix(uRim.rgb, vColour.rgb, fill / alpha), 1.0) * alpha * uAlpha;
 }`,
 ];
 
@@ -237,11 +238,12 @@ uniform sampler2D uSnapshots;
 uniform vec4 uPalette[16];
 uniform vec4 uInk;
 uniform int uColourBy;
-uniform int uBodies, uRows, uSlots, uOldest, uSegments;
+uniform int uBodies, uRows, uSegments;
+uniform int uOrder[161];   // the snapshots' rows, oldest first
 ${RIBBON}
 flat out vec4 vColour;
-vec3 place(int slot, int body) {
-  return texelFetch(uSnapshots, ivec2(body & 1023, (slot % uSlots) * uRows + (body >> 10)), 0).xyz;
+vec3 place(int snapshot, int body) {
+  return texelFetch(uSnapshots, ivec2(body & 1023, uOrder[snapshot] * uRows + (body >> 10)), 0).xyz;
 }
 void main() {
   int segment = gl_VertexID / 6, body = segment % uBodies, step = segment / uBodies;
@@ -249,7 +251,7 @@ void main() {
   vec4 ink = uColourBy == 3 ? uPalette[body % 7] : uInk;
   float alpha = ink.a * mix(0.85, 0.08, age);
   vColour = vec4(ink.rgb * alpha, alpha);
-  vec3 from = place(uOldest + step, body), to = place(uOldest + step + 1, body);
+  vec3 from = place(step, body), to = place(step + 1, body);
   if (from == to || !ribbon(from, to, uColourBy == 3 ? 2.0 : 1.3)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`,
   `${COMMON}${EDGE}

@@ -10,6 +10,9 @@ const MOST_STEMS = 2000;
 const MOST_FEET = 200;
 const MOST_NUMBERS = 400;
 const MOST_CROSSES = 400;
+const MOST_TIES = 400;
+const MANY = 200;
+const LABEL_HEIGHT = 1.15;
 const VECTOR_PIXELS = 34;
 const CROWDED_PIXELS = 9;
 const SCALE_PIXELS = 110;
@@ -25,6 +28,8 @@ export class View {
     this.above = new Lines();
     // The action of the pointer: `{kind, ...}` or null.
     this.sketch = null;
+    // The ends of the measuring line, or null.
+    this.ruler = null;
     this.hovered = null;
   }
 
@@ -42,8 +47,11 @@ export class View {
     const pixels = camera.pixelsPerMetre(camera.space ? camera.distance : 1);
     // Approximate distance between robots, pixels.
     const apart = Math.sqrt(((x1 - x0) * (y1 - y0)) / Math.max(app.robots, 1)) * pixels;
-    look.leastRadius = Math.max(0.9, Math.min(app.robots <= 200 ? 6 : 4, 0.22 * apart));
-    look.targetSize = Math.max(2.5, Math.min(6, 0.3 * apart));
+    look.leastRadius = Math.max(0.9, Math.min(app.robots <= MANY ? 6 : 3, 0.22 * apart));
+    // Goals of many robots are dots, smaller and fainter than the robots.
+    const many = app.robots > MANY;
+    look.targetSize = many ? Math.max(1.2, 0.6 * look.leastRadius) : Math.max(2.5, Math.min(6, 0.3 * apart));
+    look.targetAlpha = many ? 0.5 : 1;
     look.crowded = apart < CROWDED_PIXELS;
     // A round number of seconds in which the fastest robot travels about the length of an arrow.
     look.velocitySeconds = niceStep(
@@ -75,6 +83,13 @@ export class View {
       const ink = packed(look.css.leader, 0.8);
       for (let i = 0; i < app.robots && i < frame.n; i++) {
         if (frame.leader[i] !== NONE) join(below, i, frame.leader[i], ink, 1.4, 4);
+      }
+    }
+    if (look.targets && app.robots <= MOST_TIES) {
+      const ink = packed(look.css.muted, 0.28);
+      for (let i = 0; i < app.robots; i++) {
+        const target = app.targetOf(i);
+        if (target && i !== app.selected) below.add(...motion.place(i, a), ...target, ink, 1);
       }
     }
     this.crosses = [];
@@ -169,19 +184,25 @@ export class View {
     const { app, context } = this;
     context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     context.clearRect(0, 0, app.camera.width, app.camera.height);
+    this.boxes = [];
     this.drawScale();
     const frame = app.motion.current;
     if (!frame) return;
     const at = (i) => app.camera.project(...app.motion.place(i, [0, 0, 0]));
     const selected = app.selected !== null && app.selected < frame.n;
     if (selected && app.look.layers.known) this.drawGhosts();
+    this.drawOther(frame);
     this.drawCrosses();
     this.drawGoals(frame);
     if (app.look.layers.numbers) this.drawNumbers(frame, at);
     if (this.hovered !== null && this.hovered < frame.n)
       this.ring(at(this.hovered), this.hovered, app.look.css.muted, 1.5);
-    if (selected) this.ring(at(app.selected), app.selected, app.look.css.selected, 2);
+    if (selected) {
+      this.ring(at(app.selected), app.selected, app.look.css.selected, 2);
+      app.mind.draw(this);
+    }
     if (this.sketch) this.drawSketch(at);
+    if (this.ruler) this.drawRuler();
   }
 
   pixelRadius(i, at) {
@@ -202,9 +223,19 @@ export class View {
     context.stroke();
   }
 
-  write(text, x, y, align = "center", size = 11) {
-    const { context } = this,
-      { css } = this.app.look;
+  /** Whether a centred label overlaps no other one; if so, its place is taken. */
+  hasRoom(text, x, y, size = 11) {
+    this.context.font = `500 ${size}px system-ui, "DejaVu Sans", sans-serif`;
+    const half = this.context.measureText(text).width / 2 + 2;
+    const box = [x - half, y - LABEL_HEIGHT * size, x + half, y + 2];
+    if (this.boxes.some((other) => box[0] < other[2] && box[2] > other[0] && box[1] < other[3] && box[3] > other[1]))
+      return false;
+    this.boxes.push(box);
+    return true;
+  }
+
+  write(text, x, y, align = "center", size = 11, context = this.context) {
+    const { css } = this.app.look;
     context.font = `500 ${size}px system-ui, "DejaVu Sans", sans-serif`;
     context.textAlign = align;
     context.lineJoin = "round";
@@ -219,7 +250,6 @@ export class View {
   drawNumbers(frame, at) {
     const { app } = this;
     const { width, height } = app.camera;
-    const taken = new Set();
     let written = 0;
     const number = (i) => {
       const place = at(i);
@@ -227,11 +257,11 @@ export class View {
       const [x, y] = place;
       if (x < 0 || y < 0 || x > width || y > height) return;
       const radius = this.pixelRadius(i, place);
-      const slot = `${Math.round(x / 34)}:${Math.round(y / 20)}`;
-      if (taken.has(slot)) return;
-      taken.add(slot);
+      const text = i < app.robots ? String(app.idOf(i)) : "intruder";
+      const above = y - radius - (i === app.selected ? 11 : 5);
+      if (!this.hasRoom(text, x, above) && i !== app.selected) return;
       written++;
-      this.write(i < app.robots ? String(app.idOf(i)) : "intruder", x, y - radius - (i === app.selected ? 11 : 5));
+      this.write(text, x, above);
     };
     if (app.selected !== null && app.selected < frame.n) number(app.selected);
     for (let i = app.robots; i < frame.n; i++) number(i);
@@ -280,6 +310,29 @@ export class View {
     }
   }
 
+  /** Draws where the robots are in another branch at this tick. */
+  drawOther(frame) {
+    const { app, context } = this;
+    if (app.otherBranch === null) return;
+    context.lineWidth = 1;
+    context.strokeStyle = app.look.css.muted;
+    for (let i = 0; i < frame.n; i++) {
+      const place = app.placeInOther(i),
+        to = place && app.camera.project(...place),
+        from = app.camera.project(...app.motion.place(i, [0, 0, 0]));
+      if (!to || !from || Math.hypot(to[0] - from[0], to[1] - from[1]) < 1) continue;
+      context.setLineDash([2, 3]);
+      context.beginPath();
+      context.moveTo(from[0], from[1]);
+      context.lineTo(to[0], to[1]);
+      context.stroke();
+      context.setLineDash([]);
+      context.beginPath();
+      context.arc(to[0], to[1], this.pixelRadius(i, to), 0, 2 * Math.PI);
+      context.stroke();
+    }
+  }
+
   drawCrosses() {
     const { app, context } = this;
     context.lineWidth = 1.6;
@@ -310,12 +363,34 @@ export class View {
       context.strokeStyle = app.look.css.accent;
       context.lineWidth = 2;
       context.stroke();
-      this.write(`goal ${i}`, x, y - 14);
+      if (this.hasRoom(`goal ${i}`, x, y - 14)) this.write(`goal ${i}`, x, y - 14);
       context.beginPath();
       context.arc(x, y, 3, 0, 2 * Math.PI);
       context.fillStyle = app.look.css.accent;
       context.fill();
     });
+  }
+
+  get rulerText() {
+    const { from, to } = this.ruler;
+    return to && metres(Math.hypot(...from.map((value, axis) => to[axis] - value)));
+  }
+
+  drawRuler() {
+    const { app, context, ruler } = this;
+    const ends = [ruler.from, ruler.to].map((place) => place && app.camera.project(...place));
+    if (!ends[0] || !ends[1]) return;
+    context.strokeStyle = context.fillStyle = app.look.css.accent;
+    context.lineWidth = 2;
+    context.beginPath();
+    for (const [x, y] of ends) context.lineTo(x, y);
+    context.stroke();
+    for (const [x, y] of ends) {
+      context.beginPath();
+      context.arc(x, y, 3, 0, 2 * Math.PI);
+      context.fill();
+    }
+    this.write(this.rulerText, (ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2 - 8, "center", 12);
   }
 
   drawSketch(at) {

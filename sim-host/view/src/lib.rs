@@ -6,8 +6,9 @@ pub mod mcap;
 mod observers;
 pub mod pace;
 pub mod playback;
+mod series;
 pub mod server;
 pub mod session;
 pub mod watch;
 
-use staya_record::{frame, page, recording, scene};
+use staya_record::{frame, mind, page, recording, scene};

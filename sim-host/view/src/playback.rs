@@ -3,7 +3,9 @@
 use crate::frame::FrameData;
 use crate::pace::Pace;
 use crate::recording::{Reader, RecordingError};
+use crate::series::Series;
 use crate::server::{Client, FromPage, Server, WORDS};
+use crate::session::trail;
 use serde::Deserialize;
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -12,9 +14,12 @@ use std::time::{Duration, Instant};
 
 const FRAME: Duration = Duration::from_millis(16);
 const STATE: Duration = Duration::from_millis(500);
-const ROWS: u32 = 2000;
+/// Ticks of one request for past positions.
+const TRAIL: usize = 240;
+/// Figures of more ticks are read for every n-th tick.
+const FIGURES: u32 = 1 << 16;
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 enum Wanted {
     Pause,
@@ -29,6 +34,9 @@ enum Wanted {
     Seen {
         frames: u64,
     },
+    Trail {
+        ticks: Vec<u32>,
+    },
     #[serde(other)]
     Other,
 }
@@ -41,7 +49,8 @@ pub struct Playback {
     last: u32,
     tick: u32,
     scene: String,
-    rows: Option<String>,
+    figures: String,
+    orders: String,
     pace: Pace,
     pages: BTreeSet<Client>,
     is_new: bool,
@@ -66,14 +75,16 @@ impl Playback {
             last,
             tick: first,
             scene,
-            rows: None,
+            figures: String::new(),
+            orders: String::new(),
             pace: Pace::new(tick_s, is_paused),
             pages: BTreeSet::new(),
             is_new: true,
             shown: now,
             told: now,
         };
-        playback.rows = playback.rows()?;
+        playback.figures = playback.figures()?;
+        playback.orders = json!({ "type": "orders", "orders": playback.reader.orders()? }).to_string();
         Ok(playback)
     }
 
@@ -104,7 +115,7 @@ impl Playback {
             let mut patience = patience.max(Duration::from_millis(1));
             for _ in 0..WORDS {
                 let Some(word) = server.next(patience) else { break };
-                self.hear(word, server);
+                self.hear(word, server)?;
                 patience = Duration::ZERO;
             }
             let start = Instant::now();
@@ -128,14 +139,13 @@ impl Playback {
         }
     }
 
-    fn hear(&mut self, word: FromPage, server: &Server) {
+    fn hear(&mut self, word: FromPage, server: &Server) -> Result<(), RecordingError> {
         match word {
             FromPage::Opened(client) => {
                 self.pages.insert(client);
                 server.send_scene(Some(client), self.scene.clone());
-                if let Some(rows) = &self.rows {
-                    server.say(Some(client), rows.clone());
-                }
+                server.say(Some(client), self.figures.clone());
+                server.say(Some(client), self.orders.clone());
                 self.is_new = true;
             }
             FromPage::Closed(client) => {
@@ -159,12 +169,25 @@ impl Playback {
                     self.tick = tick.clamp(self.first, self.last);
                     self.is_new = true;
                 }
-                Ok(Wanted::Seen { frames }) => return server.seen(client, frames),
+                Ok(Wanted::Seen { frames }) => {
+                    server.seen(client, frames);
+                    return Ok(());
+                }
+                Ok(Wanted::Trail { mut ticks }) => {
+                    ticks.truncate(TRAIL);
+                    let mut frames = Vec::new();
+                    for tick in ticks {
+                        frames.push((tick, self.reader.frame_bytes(tick)?.to_vec()));
+                    }
+                    server.say(Some(client), trail(None, frames.iter().map(|(tick, frame)| (*tick, &frame[..]))));
+                    return Ok(());
+                }
                 Ok(Wanted::Other) => {}
                 Err(_) => server.dismiss(client),
             },
         }
         self.tell(server);
+        Ok(())
     }
 
     fn show(&mut self, server: &Server) -> Result<(), RecordingError> {
@@ -194,14 +217,15 @@ impl Playback {
         server.say(None, state.to_string());
     }
 
-    fn rows(&mut self) -> Result<Option<String>, RecordingError> {
-        let every = ((self.last - self.first) / ROWS).max(1);
-        let mut rows = Vec::new();
+    fn figures(&mut self) -> Result<String, RecordingError> {
+        let every = (self.last - self.first).div_ceil(FIGURES).max(1);
+        let (mut series, mut before) = (Series::default(), None);
         for tick in (self.first..=self.last).step_by(every as usize) {
-            if let Ok((tick, figures)) = FrameData::figures_of(self.reader.frame_bytes(tick)?) {
-                rows.push(json!([tick, figures]));
+            let Ok((tick, figures)) = FrameData::figures_of(self.reader.frame_bytes(tick)?) else { continue };
+            if before.replace(tick) != Some(tick) {
+                series.put(tick, &figures);
             }
         }
-        Ok((rows.len() > 1).then(|| json!({ "type": "figures", "rows": rows }).to_string()))
+        Ok(series.all())
     }
 }

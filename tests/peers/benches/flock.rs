@@ -2,7 +2,7 @@
 //! threads, and `krabmaga`. Each sample runs equally many steps from one uniform flock.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use staya_lab::boids::Flock;
+use staya_lab::study::boids::Flock;
 use staya_peers::flockers::{Peer, flock, plan};
 use staya_sim::nearby::{Cells, Space};
 use std::time::{Duration, Instant};

@@ -4,8 +4,8 @@
 use core::hint::black_box;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode, criterion_group, criterion_main};
-use staya_lab::boids::Flock;
-use staya_lab::boids::searches::{MidpointTree, MutualPairs, Tree};
+use staya_lab::study::boids::Flock;
+use staya_lab::study::boids::searches::{MidpointTree, MutualPairs, Tree};
 use staya_peers::flockers::{Grid, flock, plan};
 use staya_sim::nearby::{AllPairs, Cells, Query, Search, Space};
 use std::time::Duration;

@@ -10,7 +10,7 @@ use staya_controller::boids::BoidsParams;
 use staya_controller::geom::{Torus, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::robot::{Mode, RobotId};
-use staya_lab::boids::{Flock, Plan};
+use staya_lab::study::boids::{Flock, Parameters};
 use std::any::Any;
 use std::cell::RefCell;
 use std::fmt;
@@ -18,8 +18,8 @@ use std::hash::{Hash, Hasher};
 
 /// The paper's flock, dense enough for boids to align and to turn away.
 #[must_use]
-pub fn plan() -> Plan {
-    Plan::default()
+pub fn plan() -> Parameters {
+    Parameters::default()
 }
 
 /// Creates about `boids` boids at the paper's density. Both sides of the torus are multiples of the
@@ -29,7 +29,7 @@ pub fn flock(boids: u32) -> Flock {
     let plan = plan();
     let side = (boids as f32 * plan.area_per_boid).sqrt();
     let whole = (side / plan.closest).floor().max(3.0) * plan.closest;
-    plan.flock_on(boids, [whole; 2])
+    plan.flock_on(boids, [whole; 2], 1)
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -17,8 +17,6 @@ fn scenario(name: &str) -> String {
     folder.join(name).to_str().expect("a path in UTF-8").to_owned()
 }
 
-const MAPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../maps/");
-
 fn folder() -> (tempfile::TempDir, String) {
     let dir = tempfile::tempdir().expect("temporary folder");
     let path = dir.path().join("out").to_str().expect("UTF-8").to_owned();
@@ -170,10 +168,8 @@ fn invalid_usage_differs_from_failure() {
         &["terrain", "metrics", "a.map", "--crop", "-1,0,2,2"],
         &["terrain", "draw", "a.map"],
         &["terrain", "generate"],
-        &["experiment", "route", "--radius", "x"],
-        &["experiment", "route", "--radius", "0"],
+        &["experiment", "route", "--seeds", "x"],
         &["experiment", "formation", "--seeds", "0"],
-        &["experiment", "movingai"],
     ] {
         let ended = staya(arguments).output().expect("staya starts");
         assert_eq!(ended.status.code(), Some(2), "{arguments:?}");
@@ -187,10 +183,14 @@ fn invalid_usage_differs_from_failure() {
 #[test]
 fn numbers_out_of_range_are_errors_with_a_remedy() {
     for (arguments, expected) in [
-        (&["route", "--runs", "0"][..], "make 1 or more"),
-        (&["route", "--runs", "4294967295"], "4294967295 runs; make at most"),
-        (&["route", "--obstacles", "99999999"], "give fewer obstacles"),
-        (&["route", "--size", "65535"], "its side must be 4..=2000"),
+        (&["route", "--set", "obstacles=99999999"][..], "obstacles"),
+        (&["route", "--set", "terrain.natural.width=65535"], "each side must be"),
+        (&["route", "--set", "route.radius=0"], "route.radius"),
+        (&["route", "--seeds", "1000000"], "more than a million runs"),
+        (&["boids", "--set", "boids=0"], "study.boids: 0 is out of range"),
+        (&["movingai", "--set", "study.visits=5"], "give 16, 64, 256 or 1024"),
+        (&["flock", "--set", "study.knows=none"], "unknown value `none`"),
+        (&["goals-tuned", "--set", "study.particles=1"], "study.particles: 1 is out of range"),
         (&["formation", "--set", "radio.loss=-1"], "radio.loss: -1 is not a probability"),
         (&["formation", "--set", "formation.rho=0"], "formation.rho: with rho = 0 no robot knows its neighbours"),
         (&["formation", "--set", "formation.halt_cells=-1"], "formation.halt_cells: -1"),
@@ -204,12 +204,11 @@ fn numbers_out_of_range_are_errors_with_a_remedy() {
 fn an_unreadable_file_is_named_once_with_a_remedy() {
     let (dir, _) = folder();
     let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
-    let kinds: [(&[&str], &str); 5] = [
+    let kinds: [(&[&str], &str); 4] = [
         (&["run"], "toml"),
         (&["terrain", "metrics"], "map"),
         (&["terrain", "metrics"], "asc"),
         (&["terrain", "metrics"], "yaml"),
-        (&["experiment", "movingai"], "scen"),
     ];
     for (command, extension) in kinds {
         let refused = |name: &str| {
@@ -237,8 +236,8 @@ fn experiments_check_their_output_folder_first() {
     let in_the_way = dir.path().join("file");
     fs::write(&in_the_way, "mine").expect("write");
     let way = in_the_way.to_str().expect("UTF-8");
-    // A million runs would take hours.
-    for many in [&["route", "--runs", "1000000"][..], &["formation", "--set", "obstacles=9", "--seeds", "100000"]] {
+    // A hundred thousand runs would take hours.
+    for many in [&["flock", "--seeds", "100000"][..], &["formation", "--set", "obstacles=9", "--seeds", "100000"]] {
         let refused = refusal(&[&["experiment"], many, &["--out", way]].concat());
         assert!(refused.contains(way) && refused.contains("choose another output directory"), "{refused}");
         assert_eq!(refused.matches("os error").count(), 1, "{refused}");
@@ -254,16 +253,16 @@ fn every_json_command_prints_one_object_and_leaves_no_probe_file() {
     let (dir, out) = folder();
     let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
     let (land, picture, answers) = (path("land.yaml"), path("land.png"), path("answers"));
-    let scen = format!("{MAPS}random-32-32-20-random-1.scen");
-    let small = ["--runs", "2", "--obstacles", "5", "--size", "30", "--out", &out];
+    let route = "experiment route --seeds 2 --set obstacles=5 --set scenario=natural";
+    let movingai = "experiment movingai --set scen=../../../maps/random-32-32-20-random-1.scen";
     let (formation, figure) = ("experiment formation --quick --set scenario=staya --set obstacles=5", path("figure"));
     let commands: [Vec<&str>; 6] = [
         vec!["terrain", "generate", "--out", &land],
         vec!["terrain", "metrics", &land],
         vec!["terrain", "draw", &land, "--out", &picture],
-        [&["experiment", "route"], &small[..]].concat(),
+        route.split(' ').chain(["--out", &out]).collect(),
         formation.split(' ').chain(["--out", &figure]).collect(),
-        vec!["experiment", "movingai", &scen, "--out", &answers],
+        movingai.split(' ').chain(["--out", &answers]).collect(),
     ];
     for command in commands {
         let ended = staya(&[&command[..], &["--json"]].concat()).output();
@@ -275,8 +274,8 @@ fn every_json_command_prints_one_object_and_leaves_no_probe_file() {
     for file in fs::read_dir(&out).expect("the folder of the experiments") {
         let name = file.expect("an entry").file_name();
         let name = name.to_str().expect("UTF-8");
-        let is_table = ["rows.csv", "rows.schema.json", "aggregates.csv", "shards", "times"].contains(&name);
-        assert!(is_table || name.ends_with(".png") || name.ends_with(".svg"), "{name}");
+        let known = ["rows.csv", "rows.schema.json", "aggregates.csv", "shards", "times", "plots", "pictures"];
+        assert!(known.contains(&name), "{name}");
     }
 }
 
@@ -414,36 +413,26 @@ fn a_swap_in_the_plane_runs_at_the_command_line() {
 }
 
 #[test]
-fn flock_experiments_print_tables_and_json_and_write_pictures() {
+fn studies_print_tables_and_json_and_write_pictures() {
     let (dir, out) = folder();
-    let json = |arguments: &[&str]| -> Value {
-        let output = staya(arguments).output().expect("staya starts");
+    let json = |line: &str| -> Value {
+        let output = staya(&line.split(' ').collect::<Vec<_>>()).args(["--json", "--quiet", "--out", &out]).output();
+        let output = output.expect("staya starts");
         assert!(output.status.success(), "{}", text(&output.stderr));
         serde_json::from_slice(&output.stdout).expect("one JSON object")
     };
-    let small = ["--seeds", "1", "--json", "--quiet", "--out", &out];
-    let flock = "experiment flock --case free,squeeze --robots 10 --seconds 3 --safety orca";
-    let report = json(&[flock.split(' ').collect::<Vec<_>>(), small.to_vec()].concat());
-    assert_eq!(report["cases"][0]["case"], "free");
-    assert_eq!(report["cases"][1]["each"][0]["inside"], 0);
-    assert_eq!(report["pictures"].as_array().map(Vec::len), Some(15));
-    assert_eq!(report["cases"][2]["reference"], "static");
-    assert!(dir.path().join("out/squeeze-static-measures.csv").exists());
-
-    let closing = "experiment flock --closing --speeds 8";
-    let report = json(&[closing.split(' ').collect::<Vec<_>>(), small.to_vec()].concat());
-    assert_eq!(report["lines"].as_array().map(Vec::len), Some(6));
-
-    let goals = "experiment goals --k1 50 --neighborhood 40 --robots 10 --seconds 3";
-    let report = json(&[goals.split(' ').collect::<Vec<_>>(), small.to_vec()].concat());
-    assert_eq!(report["points"][1]["k1_over_k2"], 1.0);
-    assert!(dir.path().join("out/order.png").exists());
-
-    let table = staya(&["experiment", "goals", "--k1", "5", "--robots", "5", "--seconds", "1"])
-        .args(["--out", &out, "--quiet"])
-        .output()
-        .expect("staya starts");
-    assert!(text(&table.stdout).contains("R_nbh   K1/K2"));
-    let refused = refusal(&["experiment", "flock", "--spacing", "0"]);
-    assert!(refused.contains("0.1 to 50"), "{refused}");
+    let flock = "experiment flock --seeds 1 --set plane.robots.cloud.count=10 --set ticks=100";
+    let report = json(flock);
+    assert_eq!(report["points"].as_array().map(Vec::len), Some(7));
+    assert_eq!(report["points"][4]["figures"]["flock.inside"]["max"], 0.0);
+    let name = "pictures/flock-free-10-100";
+    for picture in [format!("{name}.png"), format!("{name}-flock.svg")] {
+        assert!(dir.path().join("out").join(&picture).exists(), "{picture}: {report}");
+    }
+    let goals = "experiment goals --seeds 1 --set plane.robots.cloud.count=5 --set ticks=60 --set neighborhood_m=40";
+    let report = json(&format!("{goals} --axis k2=0,50 --restart"));
+    assert_eq!(report["gains"].as_array().map(Vec::len), Some(2));
+    assert_eq!(report["gains"][0]["gains"][0][1], 0.0);
+    let boids = "experiment boids --restart --axis search=cells,tree --set boids=20 --set study.steps=3";
+    assert_eq!(json(boids)["points"][1]["figures"]["equal"]["min"], 1.0);
 }

@@ -1,4 +1,4 @@
-//! What a robot knows of the land around it: cells that are closed.
+//! A robot's knowledge of the land around it: cells that are closed.
 
 use crate::grid::{Cell, Dir};
 use serde::{Deserialize, Serialize};

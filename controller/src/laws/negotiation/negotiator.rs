@@ -58,7 +58,7 @@ pub struct Report {
     /// Where it is.
     #[serde(with = "fixint")]
     pub cell: Cell,
-    /// What it sees.
+    /// The land that it sees.
     pub sight: Sight,
     /// The nearest robots that it heard in this step: the lowest byte of the number, and the
     /// offsets to the east and to the north plus 8, in the low and in the high four bits. Before
@@ -77,8 +77,8 @@ struct Known {
     lost: u8,
     /// It does not move in this step.
     holds: bool,
-    /// As in [`Member::ways`].
-    ways: u8,
+    /// As in [`Member::leaves_by`].
+    leaves_by: Option<Dir>,
 }
 
 /// A robot that plans with the robots near it: at most `N` with itself, and distances of `F` goals.
@@ -108,8 +108,8 @@ pub struct Negotiator<const N: usize, const F: usize> {
     /// How it behaves by what it saw in this step, and how it promised to behave.
     manners: Manners,
     promised: Option<Manners>,
-    /// As in [`Member::ways`], in this step.
-    ways: u8,
+    /// As in [`Member::leaves_by`], in this step.
+    leaves_by: Option<Dir>,
     /// Whether anything of this step came, and whether it saw its cell in this step.
     has_begun: bool,
     has_seen: bool,
@@ -139,7 +139,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             barred: (cell, 0),
             manners,
             promised: None,
-            ways: 0,
+            leaves_by: None,
             has_begun: false,
             has_seen: false,
             area: Area::new(cell),
@@ -230,7 +230,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             other.age = other.age.saturating_add(1);
             other.lost = other.lost.saturating_add(1);
             other.holds = false;
-            other.ways = 0;
+            other.leaves_by = None;
             let said = &mut other.said;
             said.step = said.step.wrapping_add(1);
             said.waiting = waiting(said.cell == said.goal, said.waiting);
@@ -274,7 +274,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     }
 
     fn note(&mut self, id: RobotId, said: &Said) {
-        let known = Known { id, said: *said, age: 0, lost: 0, holds: false, ways: 0 };
+        let known = Known { id, said: *said, age: 0, lost: 0, holds: false, leaves_by: None };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = known,
             None => {
@@ -298,6 +298,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             self.hold(id);
             self.area.block(said.cell, true);
         }
+    }
+
+    /// It does not get into this cell, so that counts as blocked until a robot is heard there.
+    pub fn close(&mut self, cell: Cell) {
+        self.area.block(cell, false);
     }
 
     /// A robot in this cell moves, so nothing blocks it.
@@ -329,13 +334,13 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// A robot, or this one, shares its cell with one that is nearer to the centre, and can leave
-    /// it only by these moves: bits of [`Dir::index`].
-    pub fn share(&mut self, id: RobotId, ways: u8) {
+    /// A robot, or this one, shares its cell with one that is nearer to the centre, and leaves
+    /// it by this move.
+    pub fn share(&mut self, id: RobotId, by: Dir) {
         if id == self.id {
-            self.ways = ways;
+            self.leaves_by = Some(by);
         } else if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
-            other.ways = ways;
+            other.leaves_by = Some(by);
         }
     }
 
@@ -419,15 +424,16 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         };
         self.known.retain(|other| other.said.cell.chebyshev(own.cell) <= RANGE);
         let mut members: Vec<Member, N> = Vec::new();
-        let _ = members.push(Member { ways: core::mem::take(&mut self.ways), ..member(self.id, &own, true, false) });
+        let _ = members.push(Member { leaves_by: self.leaves_by.take(), ..member(self.id, &own, true, false) });
         // The newest news of a cell counts.
         list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
-        let known = self
-            .known
-            .iter()
-            .map(|other| Member { ways: other.ways, ..member(other.id, &other.said, other.age == 0, other.holds) });
+        let known = self.known.iter().map(|other| Member {
+            leaves_by: other.leaves_by,
+            ..member(other.id, &other.said, other.age == 0, other.holds)
+        });
         for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
-            let is_same = |other: &Member| other.cell == member.cell && (other.ways == 0) == (member.ways == 0);
+            let is_same =
+                |other: &Member| other.cell == member.cell && (member.leaves_by, other.leaves_by) == (None, None);
             if !members.iter().any(is_same) {
                 let _ = members.push(member);
             }
@@ -478,11 +484,11 @@ const fn waiting(is_at_goal: bool, before: u16) -> u16 {
 
 fn member(id: RobotId, said: &Said, is_heard: bool, holds: bool) -> Member {
     let Said { cell, goal, waiting, wish, step, manners } = *said;
-    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish), holds, ways: 0 }
+    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish), holds, leaves_by: None }
 }
 
 /// A robot of which only the cell is known.
 fn stranger(cell: Cell) -> Member {
     let (id, manners) = (RobotId::NONE, Manners::default());
-    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false, ways: 0 }
+    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false, leaves_by: None }
 }

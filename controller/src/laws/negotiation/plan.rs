@@ -111,9 +111,8 @@ pub struct Member {
     pub wish: Option<Wish>,
     /// It does not move in this step.
     pub holds: bool,
-    /// If another robot is in its cell too, nearer to the centre: the moves that it can make, as
-    /// bits of [`Dir::index`]; otherwise 0.
-    pub ways: u8,
+    /// If another robot is in its cell too, nearer to the centre: the only move that it can make.
+    pub leaves_by: Option<Dir>,
 }
 
 /// A robot's place in the chain of those that ask each other to move.
@@ -201,8 +200,8 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves };
         // Where two robots share a cell, one has to leave it, whoever else has to make way.
         let shares = |member: &Member| {
-            let is_guest_here = |other: &Member| other.ways != 0 && other.cell == member.cell;
-            (member.ways != 0, members.iter().any(is_guest_here))
+            let is_guest_here = |other: &Member| other.leaves_by.is_some() && other.cell == member.cell;
+            (member.leaves_by.is_some(), members.iter().any(is_guest_here))
         };
         let mut order: Vec<((bool, bool), u16, u32, u8), N> = Vec::new();
         for (index, member) in members.iter().enumerate() {
@@ -239,7 +238,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             manners: Manners::default(),
             wish: None,
             holds: false,
-            ways: 0,
+            leaves_by: None,
         };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
     }
@@ -259,7 +258,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let mut there = None;
         for (member, index) in self.members.iter().zip(0_u8..).filter(|(member, _)| member.cell == cell) {
             there = Some(index);
-            if member.ways == 0 {
+            if member.leaves_by.is_none() {
                 break;
             }
         }
@@ -348,7 +347,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let member = self.member(index);
         let Member { id, cell, .. } = member;
         let mut order: Vec<(u8, u32, Dir), 9> = Vec::new();
-        let can = |dir: &&Dir| member.ways == 0 || (**dir != Dir::Stay && member.ways >> dir.index() & 1 == 1);
+        let can = |dir: &&Dir| member.leaves_by.is_none_or(|by| by == **dir);
         for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]).filter(can) {
             if let Some(rank) = self.rank(&member, dir) {
                 let to = cell + dir.offset();
@@ -359,7 +358,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
         list::sort_by_key(&mut order, |&(rank, tie, dir)| (rank, tie, dir.index()));
         let best = order.first().map_or(Dir::Stay, |&(_, _, dir)| dir);
-        let swaps = if best == Dir::Stay || member.manners.keeps_on || member.ways != 0 {
+        let swaps = if best == Dir::Stay || member.manners.keeps_on || member.leaves_by.is_some() {
             None
         } else {
             self.swap(index, cell + best.offset())

@@ -170,7 +170,7 @@ fn plans_never_collide() {
                     manners,
                     wish: None,
                     holds: false,
-                    ways: 0,
+                    leaves_by: None,
                 });
             }
         }
@@ -202,7 +202,7 @@ fn plans_never_collide() {
 fn a_robot_in_the_cell_of_another_leaves_it_and_others_make_way() {
     let mut area = Area::new(Cell::new(4, 1));
     (0..9).flat_map(|x| [(x, 0), (x, 2)]).for_each(|(x, y)| area.close(Cell::new(x, y)));
-    let member = |id: u32, x: i16, ways: u8| Member {
+    let member = |id: u32, x: i16, leaves_by: Option<Dir>| Member {
         id: RobotId(id),
         cell: Cell::new(x, 1),
         goal: Cell::new(8, 1),
@@ -211,19 +211,34 @@ fn a_robot_in_the_cell_of_another_leaves_it_and_others_make_way() {
         manners: Manners::default(),
         wish: None,
         holds: false,
-        ways,
+        leaves_by,
     };
-    let west = 1 << Dir::West.index();
+    let west = Some(Dir::West);
     let next = |members: &[Member]| -> Vec<i16> {
         let mut fields: Fields<4> = Fields::new();
         let plan: Plan<'_, 8, 4> = Plan::new(members, &area, &mut fields, Moves::FOUR);
         (0..members.len()).map(|index| plan.next(index as u8).unwrap().x).collect()
     };
-    let moves = next(&[member(1, 4, 0), member(2, 4, west), member(3, 3, 0)]);
+    let moves = next(&[member(1, 4, None), member(2, 4, west), member(3, 3, None)]);
     assert_eq!(moves[1..], [3, 2], "{moves:?}");
     // Where it cannot leave, the other one does.
-    let blocked = Member { holds: true, ..member(3, 3, 0) };
-    assert_eq!(next(&[member(1, 4, 0), member(2, 4, west), blocked]), [5, 4, 3]);
+    let blocked = Member { holds: true, ..member(3, 3, None) };
+    assert_eq!(next(&[member(1, 4, None), member(2, 4, west), blocked]), [5, 4, 3]);
+}
+
+/// Robots 2 and 3 are in the cell of robot 1; each leaves it to its side.
+#[test]
+fn all_robots_that_share_a_cell_leave_it() {
+    let cell = Cell::new(4, 1);
+    let mut robot: Negotiator<8, 4> = Negotiator::new(RobotId(1), cell, Moves::FOUR);
+    let said = robot.see(cell, &Sight::new(cell, |_| false));
+    for (id, by) in [(2, Dir::West), (3, Dir::East)] {
+        robot.hear(RobotId(id), &said);
+        robot.share(RobotId(id), by);
+    }
+    robot.decide(Sensed::Nothing);
+    let expected = [2, 3].map(|id| robot.expects(RobotId(id)));
+    assert_eq!(expected, [Some(Cell::new(3, 1)), Some(Cell::new(5, 1))]);
 }
 
 const CORRIDOR: &str = "

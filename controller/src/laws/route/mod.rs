@@ -82,7 +82,8 @@ impl Default for RouteParams {
     /// r = 5, best exit, Euclidean, no corner cutting, a = (1, 2, 3, 3).
     ///
     /// On random natural land a3 = 3 loses almost the least time against the optimum
-    /// (`staya experiment route --sweep a3`); a1 and a2 hardly matter there unless they are 0.
+    /// (`staya experiment route --axis route.a3=1,2,3`); a1 and a2 hardly matter there unless they
+    /// are 0.
     fn default() -> Self {
         Self {
             radius: 5,

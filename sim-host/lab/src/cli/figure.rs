@@ -1,12 +1,13 @@
-//! `staya experiment` for figures that are data.
+//! `staya experiment`.
 
-use crate::experiment::rows::RowRetention;
+use super::RowArgs;
 use crate::figure::{self, Figure};
 use crate::sweep::Plan;
 use crate::sweep::plan::{Change, Changes};
-use crate::sweep::report::Report;
+use crate::sweep::report::{ROWS, Report};
+use crate::sweep::shard::Existing;
 use anyhow::{Context as _, Result, ensure};
-use clap::{Args, Subcommand as _};
+use clap::Args;
 use staya_console::{Ended, Global, Stop, print, print_json};
 use staya_sim::record::prepare_dir;
 use std::fmt::Write as _;
@@ -38,12 +39,15 @@ pub struct FigureArgs {
     /// Folder for rows and pictures [default: out/ and the short name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    rows: RowArgs,
 }
 
 impl FigureArgs {
-    pub fn run(&self, keeping: &RowRetention, global: &Global, stop: &Stop) -> Result<Ended> {
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let stop = &Stop::on_ctrl_c()?;
         if self.all {
-            return self.run_all(keeping, global, stop);
+            return self.run_all(global, stop);
         }
         let Some(name) = &self.name else {
             return list(global);
@@ -51,7 +55,7 @@ impl FigureArgs {
         let figure = figure::find(name)?;
         let out = self.out.clone().unwrap_or_else(|| figure.out());
         let plan = self.plan(&figure)?;
-        let report = self.make(&plan, &out, keeping, global, stop)?;
+        let report = self.make(&plan, &out, global, stop)?;
         report.print(global)?;
         report.judge()?;
         Ok(if report.is_partial() { Ended::by(stop) } else { Ended::Done })
@@ -63,24 +67,21 @@ impl FigureArgs {
         Ok(Plan::load(&figure.path, &changes)?)
     }
 
-    fn make<'a>(
-        &self,
-        plan: &'a Plan,
-        out: &'a Path,
-        keeping: &RowRetention,
-        global: &Global,
-        stop: &Stop,
-    ) -> Result<Report<'a>> {
+    /// Rows of a completed figure are replaced like any results. Rows of an interrupted one may be
+    /// hours of work, so they are kept.
+    fn make<'a>(&self, plan: &'a Plan, out: &'a Path, global: &Global, stop: &Stop) -> Result<Report<'a>> {
         prepare_dir(out).context("results have no place")?;
-        Report::make(plan, out, (keeping.shard, keeping.existing(out)), global, stop)
+        let is_complete = self.rows.shard.is_whole() && out.join(ROWS).is_file();
+        let usual = if is_complete { Existing::Forget } else { Existing::Refuse };
+        Report::make(plan, out, (self.rows.shard, self.rows.existing(usual)), global, stop)
     }
 
-    fn run_all(&self, keeping: &RowRetention, global: &Global, stop: &Stop) -> Result<Ended> {
+    fn run_all(&self, global: &Global, stop: &Stop) -> Result<Ended> {
         let (figures, mut broken, mut reports) = (figure::all()?, Vec::new(), Vec::new());
         for figure in &figures {
             let out = if self.quick { Path::new("out/quick").join(&figure.name) } else { figure.out() };
             let plan = self.plan(figure)?;
-            let report = self.make(&plan, &out, keeping, global, stop)?;
+            let report = self.make(&plan, &out, global, stop)?;
             if global.json {
                 reports.push(serde_json::to_value(&report)?);
             } else {
@@ -107,12 +108,7 @@ fn list(global: &Global) -> Result<Ended> {
         let verdict = figure.verdict().unwrap_or_else(|| "not run".to_owned());
         [figure.name.clone(), figure.place.clone(), verdict, figure.title.clone()]
     };
-    let mut rows: Vec<_> = figures.iter().map(row).collect();
-    let studies = super::Experiment::augment_subcommands(clap::Command::new("experiment"));
-    rows.extend(studies.get_subcommands().map(|study| {
-        let about = study.get_about().map_or(String::new(), ToString::to_string);
-        [study.get_name().to_owned(), String::new(), String::new(), about]
-    }));
+    let rows: Vec<_> = figures.iter().map(row).collect();
     if global.json {
         let object = |[name, place, verdict, title]: &[String; 4]| serde_json::json!({ "name": name, "place": place, "verdict": verdict, "title": title });
         print_json(&serde_json::json!({ "experiments": rows.iter().map(object).collect::<Vec<_>>() }))?;

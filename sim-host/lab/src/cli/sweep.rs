@@ -1,12 +1,14 @@
 //! `staya sweep PLAN`.
 
+use super::RowArgs;
+use crate::error::SweepError;
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Changes, PlotTable};
 use crate::sweep::report::{ROWS, Report};
 use crate::sweep::run::estimate;
 use crate::sweep::script::{self, Job};
 use crate::sweep::shard::{Existing, files};
-use crate::sweep::{Plan, Shard, SweepError, pictures};
+use crate::sweep::{Plan, pictures};
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global, Stop, print, print_json};
@@ -24,15 +26,8 @@ pub struct SweepArgs {
     /// Show number, duration and size of the runs, and try three of them.
     #[arg(long)]
     dry_run: bool,
-    /// Make one of N equal parts only, as in 3/8; `staya sweep merge` merges the parts.
-    #[arg(long, value_name = "I/N", default_value_t = Shard::default())]
-    shard: Shard,
-    /// Make the missing runs.
-    #[arg(long)]
-    resume: bool,
-    /// Replace existing rows.
-    #[arg(long, conflicts_with = "resume")]
-    restart: bool,
+    #[command(flatten)]
+    rows: RowArgs,
 }
 
 #[derive(Args, Clone, Debug)]
@@ -184,12 +179,8 @@ impl SweepArgs {
     fn perform(&self, global: &Global) -> Result<Ended> {
         let (plan, out) = self.target.load()?;
         let stop = Stop::on_ctrl_c()?;
-        let existing = match (self.resume, self.restart) {
-            (true, _) => Existing::Resume,
-            (_, true) => Existing::Forget,
-            _ => Existing::Refuse,
-        };
-        let report = Report::make(&plan, &out, (self.shard, existing), global, &stop)?;
+        let rows = (self.rows.shard, self.rows.existing(Existing::Refuse));
+        let report = Report::make(&plan, &out, rows, global, &stop)?;
         report.print(global)?;
         report.judge()?;
         Ok(if report.is_partial() { Ended::by(&stop) } else { Ended::Done })
@@ -223,7 +214,8 @@ impl MergeArgs {
 impl PlotArgs {
     fn run(&self, global: &Global) -> Result<Ended> {
         let (plan, out) = self.target.load()?;
-        let plot = PlotTable { figure: self.figure.clone(), over: self.over.clone(), and: self.and.clone() };
+        let plot =
+            PlotTable { figure: self.figure.clone(), over: self.over.clone(), and: self.and.clone(), log: false };
         plan.check_plot(&plot)
             .map_err(|(field, what, remedy)| SweepError::new(format_args!("--{field}"), what, remedy))?;
         let merged = Merged::reread(&plan, &out.join(ROWS))?;

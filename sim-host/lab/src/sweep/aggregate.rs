@@ -1,27 +1,14 @@
 //! Means, medians and intervals over the runs of each point.
 
-use crate::sweep::design::Design;
 use crate::sweep::merge::Merged;
-use crate::sweep::value::Figure;
+use crate::sweep::plan::Plan;
+use crate::sweep::value::{Figure, Point};
 use staya_stats::Summary;
-
-/// Figures of one point.
-#[derive(Clone, Debug)]
-pub struct Point {
-    /// Number of the point.
-    pub number: u64,
-    /// Values of the parameters.
-    pub values: Vec<String>,
-    /// Number of available runs.
-    pub runs: usize,
-    /// Summary of each measure; `None` if no run has a value or one is infinite.
-    pub figures: Vec<Option<Summary>>,
-}
 
 /// Aggregates all points that have runs, in order. O(rows).
 #[must_use]
-pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
-    let seeds = plan.runs_per_point();
+pub fn points(plan: &Plan, merged: &Merged) -> Vec<Point> {
+    let seeds = plan.seeds();
     let by_point = merged.rows.chunk_by(|a, b| a.run / seeds == b.run / seeds);
     let point = |rows: &[crate::sweep::row::Row]| {
         let run = rows[0].run;
@@ -29,8 +16,8 @@ pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
             let values: Vec<f64> = rows.iter().filter_map(|row| row.figures[index].0).collect();
             Summary::of(&values)
         };
-        let figures = (0..plan.figures().len()).map(figure).collect();
-        Point { number: run / seeds, values: plan.values(run), runs: rows.len(), figures }
+        let figures = (0..plan.measures().len()).map(figure).collect();
+        Point { number: run / seeds, values: plan.values_of(run), runs: rows.len(), figures }
     };
     by_point.map(point).collect()
 }
@@ -38,13 +25,13 @@ pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
 /// Formats points as CSV, one line per point and figure; `low95` and `high95` are the ends of the
 /// mean's 95 % interval (Student).
 #[must_use]
-pub fn text(plan: &dyn Design, points: &[Point]) -> String {
+pub fn text(plan: &Plan, points: &[Point]) -> String {
     let statistics = "figure,runs,values,mean,low95,high95,median,deviation,min,max";
     let mut names = vec!["point".to_owned()];
-    names.extend(plan.parameters());
+    names.extend(plan.axes().map(str::to_owned));
     names.push(statistics.to_owned());
     let mut text = names.join(",") + "\n";
-    let figures = plan.figures();
+    let figures = plan.measures();
     for point in points {
         for (name, summary) in figures.iter().zip(&point.figures) {
             let mut cells = vec![point.number.to_string()];

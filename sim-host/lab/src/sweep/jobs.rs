@@ -6,14 +6,13 @@ use std::sync::{Mutex, PoisonError};
 
 /// Executes the jobs `0..count` in order, on as many threads as rayon has here, at most `at_once`.
 ///
-/// The contents of a thread's scratch memory must not affect results. Surplus threads are available
-/// for parallel work inside jobs. `take` receives one result at a time, as soon as it is available.
-/// After it returns `Break`, no further job starts, and jobs in progress are finished and
-/// delivered, so that finished jobs form a prefix.
-pub fn each<S: Default, T: Send>(
+/// Surplus threads are available for parallel work inside jobs. `take` receives one result at a
+/// time, as soon as it is available. After it returns `Break`, no further job starts, and jobs in
+/// progress are finished and delivered, so that finished jobs form a prefix.
+pub fn each<T: Send>(
     count: usize,
     at_once: usize,
-    job: impl Fn(&mut S, usize) -> T + Sync,
+    job: impl Fn(usize) -> T + Sync,
     take: impl FnMut(usize, T) -> ControlFlow<()> + Send,
 ) {
     let threads = rayon::current_num_threads();
@@ -24,13 +23,12 @@ pub fn each<S: Default, T: Send>(
         // If its own pool cannot be created (out of memory), a job uses the slower global one.
         let inner = rayon::ThreadPoolBuilder::new().num_threads(threads / workers).use_current_thread();
         let _inner = inner.build();
-        let mut scratch = S::default();
         while !is_over.load(Ordering::Relaxed) {
             let index = next.fetch_add(1, Ordering::Relaxed);
             if index >= count {
                 break;
             }
-            let result = job(&mut scratch, index);
+            let result = job(index);
             let mut take = take.lock().unwrap_or_else(PoisonError::into_inner);
             if take(index, result).is_break() {
                 is_over.store(true, Ordering::Relaxed);
@@ -60,7 +58,7 @@ mod tests {
                 each(
                     count,
                     usize::MAX,
-                    |(): &mut (), index| 2 * index,
+                    |index| 2 * index,
                     |index, double| {
                         assert_eq!(double, 2 * index);
                         seen[index] += 1;
@@ -80,7 +78,7 @@ mod tests {
                 done.push(index);
                 if done.len() < 10 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
             };
-            within(threads, || each(1000, usize::MAX, |(): &mut (), _| (), take));
+            within(threads, || each(1000, usize::MAX, |_| (), take));
             done.sort_unstable();
             assert!((10..10 + threads).contains(&done.len()), "{done:?}");
             assert_eq!(done, (0..done.len()).collect::<Vec<_>>());
@@ -97,7 +95,7 @@ mod tests {
                 each(
                     jobs,
                     at_once,
-                    |(): &mut (), _| rayon::current_num_threads(),
+                    |_| rayon::current_num_threads(),
                     |_, n| {
                         inside.push(n);
                         ControlFlow::Continue(())

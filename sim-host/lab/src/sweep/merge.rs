@@ -1,7 +1,7 @@
 //! Merges the rows of all shards.
 
-use crate::sweep::SweepError;
-use crate::sweep::design::Design;
+use crate::error::SweepError;
+use crate::sweep::plan::Plan;
 use crate::sweep::row::{Outcome, Row, header};
 use crate::sweep::shard::{Rows, read_rows};
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ impl Merged {
     /// # Errors
     /// A file cannot be read, a row is damaged or belongs to another plan or version, or two rows
     /// of one run differ.
-    pub fn read(plan: &dyn Design, files: &[PathBuf]) -> Result<Self, SweepError> {
+    pub fn read(plan: &Plan, files: &[PathBuf]) -> Result<Self, SweepError> {
         let mut rows: BTreeMap<u64, (Row, &Path, usize)> = BTreeMap::new();
         let mut doubles = 0;
         for file in files {
@@ -65,7 +65,7 @@ impl Merged {
     ///
     /// # Errors
     /// As for [`Merged::read`], and if a run is missing, out of order or duplicated.
-    pub fn reread(plan: &dyn Design, file: &Path) -> Result<Self, SweepError> {
+    pub fn reread(plan: &Plan, file: &Path) -> Result<Self, SweepError> {
         let again = "merge the shards again: `staya sweep merge`";
         let Rows { rows, .. } = read_rows(plan, file).map_err(|error| match error {
             SweepError::Other { place, what, .. } => SweepError::new(place, what, again),
@@ -92,7 +92,7 @@ impl Merged {
     ///
     /// # Errors
     /// A run is missing.
-    pub fn whole(self, plan: &dyn Design, place: &Path, remedy: &str) -> Result<Self, SweepError> {
+    pub fn whole(self, plan: &Plan, place: &Path, remedy: &str) -> Result<Self, SweepError> {
         let count: u64 = self.missing.iter().map(|(first, last)| last - first + 1).sum();
         if count == 0 {
             return Ok(self);
@@ -111,7 +111,7 @@ impl Merged {
 
     /// Formats the rows as a file.
     #[must_use]
-    pub fn text(&self, plan: &dyn Design) -> String {
+    pub fn text(&self, plan: &Plan) -> String {
         let lines = self.rows.iter().map(|row| row.line(plan));
         [header(plan)].into_iter().chain(lines).map(|line| line + "\n").collect()
     }

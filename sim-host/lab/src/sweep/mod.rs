@@ -2,27 +2,24 @@
 //!
 //! | module | contents |
 //! | --- | --- |
-//! | [`design`] | numbered runs: sweep plans and experiments |
 //! | [`plan`] | varied fields, values, seeds and measures |
 //! | [`run`] | one run, a function of plan and number only |
-//! | [`probe`] | observers that measure more than the summary |
 //! | [`report`] | table, verdicts and files of a complete plan |
 //! | [`row`] | the record of a run |
 //! | [`shard`] | the part of a plan that one process does, and its file of rows |
 //! | [`merge`] | the rows of all shards in order, and their consistency |
+//! | [`gain`] | differences of means over an axis |
 //! | [`aggregate`] | means, medians and intervals over the seeds |
 //! | [`pictures`] | charts of a figure over one or two axes |
 //! | [`script`] | scripts for clusters: Slurm, GNU parallel |
-//! | [`jobs`] | parallel jobs, for sweeps and experiments |
+//! | [`jobs`] | parallel jobs |
 
 pub mod aggregate;
-pub mod design;
-mod error;
+pub mod gain;
 pub mod jobs;
 pub mod merge;
 pub mod pictures;
 pub mod plan;
-pub mod probe;
 pub mod report;
 pub mod row;
 pub mod run;
@@ -32,7 +29,6 @@ pub mod script;
 pub mod shard;
 mod value;
 
-pub use error::SweepError;
 pub use plan::Plan;
 pub use schema::schema;
 pub use shard::Shard;

@@ -3,9 +3,9 @@
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Plan, PlotTable};
 use crate::sweep::value::{Figure, Value};
-use staya_plot::{Chart, HeatMap, Series};
+use staya_plot::{Chart, HeatMap, Panels, Series};
 use staya_sim::record::Error;
-use staya_stats::Summary;
+use staya_stats::{Goodness, Histogram, NortonRice, Summary};
 use std::path::{Path, PathBuf};
 
 const MOST: usize = 24;
@@ -14,19 +14,40 @@ const PARTS: [usize; 2] = [4, 12];
 const RUNS: usize = 4;
 const CURVES: usize = 6;
 const UNASKED: usize = 8;
+const BINS: usize = 30;
+/// Ends of names of fields and figures, and their units.
+const UNITS: [(&str, &str); 8] = [
+    ("s", "s"),
+    ("seconds", "s"),
+    ("ms", "ms"),
+    ("m", "m"),
+    ("mps", "m/s"),
+    ("mps2", "m/s²"),
+    ("percent", "%"),
+    ("cells", "cells"),
+];
 
-/// Pictures that a plan requests; by default its first figures over its first two axes.
+/// Pictures that a plan requests, also over axes of the command line; by default its first figures
+/// over its first two axes.
 #[must_use]
 pub fn plots(plan: &Plan) -> Vec<PlotTable> {
     if !plan.plots.is_empty() {
-        return plan.plots.clone();
+        let mut plots = plan.plots.clone();
+        for (axis, plot) in plan.added().flat_map(|axis| plan.plots.iter().map(move |plot| (axis, plot))) {
+            let (figure, and) = (plot.figure.clone(), Some(plot.over.clone()));
+            let plot = PlotTable { figure, over: axis.to_owned(), and, log: false };
+            if !plots.contains(&plot) {
+                plots.push(plot);
+            }
+        }
+        return plots;
     }
     let varies = |axis: &&str| plan.values(axis).is_some_and(|values| values.iter().any(|value| value != &values[0]));
     let mut axes = plan.axes().filter(varies).map(str::to_owned);
     let (Some(over), and) = (axes.next(), axes.next()) else {
         return Vec::new();
     };
-    let plot = |figure: &String| PlotTable { figure: figure.clone(), over: over.clone(), and: and.clone() };
+    let plot = |figure: &String| PlotTable { figure: figure.clone(), over: over.clone(), and: and.clone(), log: false };
     if plan.measures().len() <= UNASKED {
         return plan.measures().iter().map(plot).collect();
     }
@@ -58,7 +79,7 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
     let parts = if and.is_some() { (rows.len() / RUNS).isqrt() } else { rows.len() / RUNS };
     let levels = |axis| Levels::new(plan, axis, parts.clamp(PARTS[0], PARTS[1]));
     let (x, y) = (levels(over), and.map(levels));
-    let picture = Picture { plan, plot, rows, x, y };
+    let picture = Picture { plan, plot, rows, x, y, reference: reference(plan, merged, &plot.figure, over) };
     let stem = folder.join(picture.file_name());
     match &picture.y {
         Some(y) if y.is_parts || y.names.len() > CURVES || picture.x.numbers.is_none() => {
@@ -66,6 +87,62 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
         }
         _ => picture.chart().write(&stem),
     }
+}
+
+/// Values of a paper over an axis of numbers, with the first values of the other axes.
+fn reference(plan: &Plan, merged: &Merged, figure: &str, over: usize) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for row in &merged.rows {
+        let value = plan.reference.as_ref().and_then(|it| it.value(&plan.values_of(row.run), figure));
+        let Some((x, y)) = plan.run(row.run).values[over].number().zip(value) else { continue };
+        if points.iter().all(|point| point[0] != x) {
+            points.push([x, y]);
+        }
+    }
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points
+}
+
+/// Draws the distribution of a figure over the runs of each chosen point, with the Norton-Rice law
+/// of largest likelihood and its chi-square test (KUZ, figure 4).
+///
+/// # Errors
+/// A file cannot be written.
+pub fn histograms(plan: &Plan, merged: &Merged, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for (name, choice) in &plan.histograms {
+        let Some(figure) = plan.measures().iter().position(|it| it == name) else { continue };
+        let seeds = plan.seeds();
+        for rows in merged.rows.chunk_by(|a, b| a.run / seeds == b.run / seeds) {
+            let point = plan.values_of(rows[0].run);
+            let values: Vec<f64> = rows.iter().filter_map(|row| row.figures[figure].0).collect();
+            if let Some(chart) = Some(&point).filter(|point| choice.has(point)).and_then(|_| histogram(name, &values)) {
+                let stem = format!("{name}-{}", point.join("-"));
+                files.extend(Panels::new(point.join(", ")).with(chart).write(&folder.join(stem))?);
+            }
+        }
+    }
+    Ok(files)
+}
+
+fn histogram(name: &str, values: &[f64]) -> Option<Chart> {
+    let Histogram { low, width, counts } = Histogram::new(values, BINS)?;
+    let edge = |bin: usize| low + bin as f64 * width;
+    let bars = counts.iter().enumerate().map(|(bin, &count)| [edge(bin), edge(bin + 1), count as f64]);
+    let mut chart = Chart::new(name, name, "runs").with(Series::bars("runs", bars));
+    let Ok(law) = NortonRice::fit(values) else { return Some(chart) };
+    let area = values.len() as f64 * width;
+    let curve = (0..=200).map(|i| {
+        let x = low + (edge(counts.len()) - low) * f64::from(i) / 200.0;
+        [x, area * law.pdf(x)]
+    });
+    chart = chart.with(Series::line("Norton-Rice law", curve));
+    if let Some(Goodness { chi2, freedom, p_value, .. }) = law.goodness(values) {
+        let [m, alpha, beta] = [law.m(), law.alpha(), law.beta()];
+        let test = format!("chi-square {chi2:.1} with {freedom} degrees of freedom, p = {p_value:.3}");
+        chart = chart.note(format!("m = {m:.2}, alpha = {alpha:.2}, beta = {beta:.2}; {test}"));
+    }
+    Some(chart)
 }
 
 struct Levels {
@@ -80,7 +157,6 @@ impl Levels {
     fn new(plan: &Plan, axis: usize, parts: usize) -> Self {
         let name = plan.axes().nth(axis).unwrap_or_default();
         let mut values: Vec<Value> = plan.values(name).unwrap_or_default().to_vec();
-        let is_log = plan.is_log(axis);
         let numbers: Option<Vec<f64>> = values.iter().map(Value::number).collect();
         let Some(mut numbers) = numbers else {
             let mut names: Vec<String> = Vec::new();
@@ -93,6 +169,7 @@ impl Levels {
         };
         numbers.sort_by(f64::total_cmp);
         numbers.dedup();
+        let is_log = plan.is_log(axis) || is_crowded(&numbers);
         let ends = [numbers[0], numbers[numbers.len() - 1]];
         let is_parts = numbers.len() > MOST;
         if is_parts {
@@ -121,6 +198,30 @@ impl Levels {
     }
 }
 
+/// Whether most of these sorted numbers would be in the first quarter of a linear axis.
+fn is_crowded(numbers: &[f64]) -> bool {
+    let [low, .., high] = numbers else { return false };
+    *low > 0.0 && numbers.len() > 3 && numbers[numbers.len() / 2] < low + (high - low) / 4.0
+}
+
+/// The words and the unit of a field or figure: "orca horizon (s)" of `plane.orca.horizon_s`.
+fn worded(path: &str) -> String {
+    let parts: Vec<&str> = path.split('.').collect();
+    let joined = parts[parts.len().saturating_sub(2)..].join("_");
+    let mut words: Vec<&str> = joined.split(['_', '[', ']']).filter(|word| !word.is_empty()).collect();
+    if let ["arrival", which, "seconds"] = words[..] {
+        words = vec![which, "arrival", "s"];
+    }
+    let unit = words.last().and_then(|last| UNITS.iter().find(|(end, _)| end == last));
+    match unit {
+        Some((_, unit)) if words.len() > 1 && words[words.len() - 2] != "per" => {
+            words.pop();
+            format!("{} ({unit})", words.join(" "))
+        }
+        _ => words.join(" "),
+    }
+}
+
 fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.2e}").parse().unwrap_or(number);
     Figure(Some(rounded)).to_string()
@@ -132,19 +233,20 @@ struct Picture<'a> {
     rows: Vec<(Value, Option<Value>, f64)>,
     x: Levels,
     y: Option<Levels>,
+    reference: Vec<[f64; 2]>,
 }
 
 impl Picture<'_> {
     fn file_name(&self) -> String {
-        let PlotTable { figure, over, and } = self.plot;
+        let PlotTable { figure, over, and, .. } = self.plot;
         let and = and.as_ref().map_or(String::new(), |and| format!("-and-{and}"));
         format!("{figure}-over-{over}{and}").replace('[', ".").replace(']', "")
     }
 
     fn title(&self) -> String {
-        let PlotTable { figure, over, and } = self.plot;
-        let and = and.as_ref().map_or(String::new(), |and| format!(" and {and}"));
-        format!("{}: {figure} over {over}{and}", self.plan.name)
+        let PlotTable { figure, over, and, .. } = self.plot;
+        let and = and.as_ref().map_or(String::new(), |and| format!(" and {}", worded(and)));
+        format!("{}: {} over {}{and}", self.plan.name, worded(figure), worded(over))
     }
 
     fn note(&self, what: &str) -> String {
@@ -152,7 +254,14 @@ impl Picture<'_> {
         let others: Vec<_> = others.collect();
         let over =
             if others.is_empty() { String::new() } else { format!(", over all values of {}", others.join(", ")) };
-        format!("{what} of {} runs{over}", self.rows.len())
+        let points = self.x.names.len() * self.y.as_ref().map_or(1, |levels| levels.names.len());
+        let runs = match self.rows.len() {
+            1 => "1 run".to_owned(),
+            runs if runs == points => format!("{runs} runs"),
+            runs if runs.is_multiple_of(points) => format!("{} runs each", runs / points),
+            runs => format!("{runs} runs in all"),
+        };
+        format!("{what} of {runs}{over}")
     }
 
     fn summary(&self, x: usize, y: Option<usize>) -> Option<Summary> {
@@ -165,14 +274,21 @@ impl Picture<'_> {
     }
 
     fn chart(&self) -> Chart {
-        let PlotTable { figure, over, and } = self.plot;
-        let mut chart = Chart::new(self.title(), over, figure).note(self.note("means with 95 % intervals"));
-        if self.x.is_log {
+        let PlotTable { figure, over, and, .. } = self.plot;
+        let mut chart =
+            Chart::new(self.title(), worded(over), worded(figure)).note(self.note("means with 95 % intervals"));
+        if self.x.is_log || self.plot.log {
             chart = chart.log_x();
         }
+        if self.plot.log {
+            chart = chart.log_y();
+        }
+        // The interval of a count ends at 0.
+        let is_positive = self.rows.iter().all(|(.., figure)| *figure >= 0.0);
+        let least = if is_positive { 0.0 } else { f64::NEG_INFINITY };
         let point = |at: f64, summary: &Summary| {
             let [low, high] = summary.mean_interval95();
-            [at, summary.mean, low, high]
+            [at, summary.mean, low.max(least), high]
         };
         let Some(numbers) = &self.x.numbers else {
             for (index, name) in self.x.names.iter().enumerate() {
@@ -188,7 +304,7 @@ impl Picture<'_> {
         match (&self.y, and) {
             (Some(levels), Some(and)) => {
                 for (y, name) in levels.names.iter().enumerate() {
-                    chart = chart.with(Series::intervals(format!("{and} = {name}"), curve(Some(y))).joined());
+                    chart = chart.with(Series::intervals(format!("{} = {name}", worded(and)), curve(Some(y))).joined());
                 }
             }
             _ => {
@@ -201,6 +317,9 @@ impl Picture<'_> {
                 );
             }
         }
+        if !self.reference.is_empty() {
+            chart = chart.with(Series::reference("paper", self.reference.iter().copied()));
+        }
         chart
     }
 
@@ -210,11 +329,38 @@ impl Picture<'_> {
         HeatMap {
             title: self.title(),
             note: self.note("means"),
-            x_label: self.plot.over.clone(),
-            y_label: self.plot.and.clone().unwrap_or_default(),
+            x_label: worded(&self.plot.over),
+            y_label: self.plot.and.as_deref().map_or(String::new(), worded),
             columns: self.x.names.clone(),
             rows: levels.names.clone(),
             values: (0..columns * levels.names.len()).map(value).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_fields_and_figures_become_words_and_units() {
+        let words = [
+            ("plane.orca.horizon_s", "orca horizon (s)"),
+            ("arrival_last_seconds", "last arrival (s)"),
+            ("flow.per_s", "flow per s"),
+            ("terrain.change[0].drift.share", "drift share"),
+            ("collisions", "collisions"),
+        ];
+        for (path, text) in words {
+            assert_eq!(worded(path), text, "{path}");
+        }
+    }
+
+    #[test]
+    fn an_axis_of_powers_is_logarithmic() {
+        assert!(is_crowded(&[0.5, 1.0, 2.0, 4.0, 8.0]));
+        for even in [&[1.0, 2.0, 3.0, 4.0][..], &[0.0, 0.1, 1.0, 10.0], &[1.0, 10.0, 100.0]] {
+            assert!(!is_crowded(even), "{even:?}");
         }
     }
 }

@@ -5,9 +5,10 @@ mod axes;
 mod check;
 mod table;
 
-use crate::sweep::SweepError;
-use crate::sweep::design::Design;
-use crate::sweep::probe;
+use crate::error::SweepError;
+use crate::measure::{Job, by_engine};
+use crate::probe;
+use crate::study::{self, Given, Study};
 use crate::sweep::value::Value;
 use accept::Choice;
 pub use accept::{Acceptance, Reference, Verdict};
@@ -15,11 +16,12 @@ pub use axes::Change;
 use axes::{Axis, SCENARIO};
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
-use staya_sim::scenario::{Field, Overrides, Read as _, Scenario, ScenarioError, Source, nearest};
+use staya_sim::scenario::{Field, Read as _, ScenarioError, Source, nearest};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-pub use table::PlotTable;
-use table::{Files, PlanFile, SeedRange, Seeds};
+use table::{Files, HistogramTable, PlanFile, SeedRange, Seeds};
+pub use table::{GainTable, PlotTable};
+use toml::Spanned;
 use toml::de::DeValue;
 
 const LIST: &str = "docs/sweeps.md";
@@ -36,6 +38,7 @@ pub struct Plan {
     /// Description in one line; may be empty.
     pub title: String,
     path: PathBuf,
+    study: Option<&'static dyn Study>,
     bases: Vec<Base>,
     axes: Vec<Axis>,
     /// Axes that advance together, as ranges of `axes`; groups are crossed with each other.
@@ -47,6 +50,10 @@ pub struct Plan {
     /// Requested pictures; empty for the default.
     pub plots: Vec<PlotTable>,
     pictures: Vec<Choice>,
+    /// Measures with the points whose distribution is drawn.
+    pub(crate) histograms: Vec<(String, Choice)>,
+    /// Gains over axes.
+    pub gains: Vec<GainTable>,
     /// Values of a paper.
     pub reference: Option<Reference>,
     /// Conditions on the measures.
@@ -83,6 +90,8 @@ pub struct Run<'a> {
     pub point: u64,
     /// Value of each axis, in order.
     pub values: Vec<&'a Value>,
+    /// The same as TOML.
+    texts: Vec<String>,
     /// Seed of the run.
     pub seed: u64,
 }
@@ -119,9 +128,12 @@ impl Plan {
             let what = format!("{:?} cannot name a folder of results", file.name);
             return Err(source.error("name", what, "use 1 to 100 letters, digits, - and _").into());
         }
+        let study = file.study.as_deref().map(|name| find_study(&source, name)).transpose()?;
         let bases = match &file.scenario {
-            Files::One(name) => vec![Base::read(&source, "scenario", name)?],
-            Files::List(names) => (0..)
+            None if study.is_some() => vec![Base { path: path.to_owned(), text: String::new() }],
+            None => Vec::new(),
+            Some(Files::One(name)) => vec![Base::read(&source, "scenario", name)?],
+            Some(Files::List(names)) => (0..)
                 .zip(names)
                 .map(|(index, name): (usize, _)| Base::read(&source, &format!("scenario[{index}]"), name))
                 .collect::<Result<_, _>>()?,
@@ -146,6 +158,7 @@ impl Plan {
             name: file.name,
             title: file.title,
             path: path.to_owned(),
+            study,
             bases,
             axes,
             groups,
@@ -154,6 +167,8 @@ impl Plan {
             measures: Vec::new(),
             plots: Vec::new(),
             pictures: Vec::new(),
+            histograms: Vec::new(),
+            gains: Vec::new(),
             reference: None,
             accept: Vec::new(),
             fingerprint: 0,
@@ -165,18 +180,26 @@ impl Plan {
                 .into());
         }
         let known = check::check(&plan, &source)?;
-        plan.measures = check_measures(&source, file.measures, known)?;
+        plan.measures = check_measures(&source, file.measures, known, study)?;
         plan.plots = check_plots(&source, &plan, file.plot)?;
         let reference = file.reference.map(|name| Reference::load(&plan, &source.file(&name)));
         plan.reference = reference.transpose()?;
+        plan.gains = check_gains(&source, &plan, file.gain)?;
+        let choice = |field: String| match Choice::read(&plan, &source, &field) {
+            Ok(choice) => Ok(Some(choice)),
+            // The point is not among those of a changed plan.
+            Err(_) if !changes.fields.is_empty() => Ok(None),
+            Err(error) => Err(error),
+        };
+        let (mut pictures, mut histograms) = (Vec::new(), Vec::new());
         for index in 0..file.picture.len() {
-            match Choice::read(&plan, &source, &format!("picture[{index}].where")) {
-                Ok(choice) => plan.pictures.push(choice),
-                // The point is not among those of a changed plan.
-                Err(_) if !changes.fields.is_empty() => {}
-                Err(error) => return Err(error.into()),
-            }
+            pictures.extend(choice(format!("picture[{index}].where"))?);
         }
+        for (index, HistogramTable { figure, .. }) in file.histogram.into_iter().enumerate() {
+            check_measured(&source, &plan, &format!("histogram[{index}].figure"), &figure)?;
+            histograms.extend(choice(format!("histogram[{index}].where"))?.map(|choice| (figure, choice)));
+        }
+        (plan.pictures, plan.histograms) = (pictures, histograms);
         // Limits are those of the unchanged plan; a changed one is another study.
         if changes.fields.is_empty() {
             for (index, accept) in file.accept.into_iter().enumerate() {
@@ -220,6 +243,11 @@ impl Plan {
     #[must_use]
     pub fn values(&self, axis: &str) -> Option<&[Value]> {
         self.find(axis).map(|index| &self.axes[index].values[..])
+    }
+
+    /// Axes that the command line adds to those of the file.
+    pub(crate) fn added(&self) -> impl Iterator<Item = &str> {
+        self.axes.iter().filter(|axis| axis.is_added() && axis.values.len() > 1).map(|axis| axis.field.name())
     }
 
     /// Index of an axis, by its name or the end of it after a dot.
@@ -307,17 +335,56 @@ impl Plan {
                 values[index] = &self.axes[index].values[at];
             }
         }
-        Run { number, point, values, seed: self.seeds[(number % self.seeds()) as usize] }
+        let texts = values.iter().map(|value| value.toml()).collect();
+        Run { number, point, values, texts, seed: self.seeds[(number % self.seeds()) as usize] }
     }
 
-    pub(crate) fn scenario(&self, run: &Run<'_>) -> Result<Scenario, ScenarioError> {
-        let values: Vec<String> = run.values.iter().map(|value| value.toml()).collect();
+    /// Most parallel runs on a machine; 1 for timed runs, which need it for themselves.
+    #[must_use]
+    pub fn at_once(&self) -> usize {
+        let is_timed = self.measures.iter().any(|name| name.starts_with("cost."));
+        if is_timed || self.study.is_some_and(Study::is_timed) { 1 } else { usize::MAX }
+    }
+
+    /// Meaning of a figure.
+    #[must_use]
+    pub fn meaning(&self, figure: &str) -> &'static str {
+        let of_study = self.study.map_or(Vec::new(), Study::measures);
+        let found = of_study.into_iter().chain(probe::measures()).find(|(name, _)| name == figure);
+        found.map_or("a figure of summary.json", |(_, meaning)| meaning)
+    }
+
+    /// Kind of run instead of runs of the scenario.
+    pub(crate) fn study(&self) -> Option<&'static dyn Study> {
+        self.study
+    }
+
+    /// Fields of a run, not checked.
+    pub(crate) fn given<'a>(&'a self, run: &'a Run<'_>) -> Result<Given<'a>, ScenarioError> {
         let mut source = self.base(run).source(&self.path, &self.set)?;
-        for (axis, value) in self.axes.iter().zip(&values).filter(|(axis, _)| axis.field.name() != SCENARIO) {
+        for (axis, value) in self.axes.iter().zip(&run.texts).filter(|(axis, _)| axis.field.name() != SCENARIO) {
             source.set(&axis.field, value).map_err(|what| obstructed(&self.path, axis.line, &axis.field, what))?;
         }
-        Scenario::read(source, &Overrides { seed: Some(run.seed), ticks: None })
-            .map_err(|error| self.said_of_plan(run, error))
+        Ok(Given { source, measures: &self.measures, seed: run.seed })
+    }
+
+    /// A run whose fields are checked.
+    pub(crate) fn job(&self, run: &Run<'_>) -> Result<Job, SweepError> {
+        let given = self.given(run)?;
+        if let Some(study) = self.study.filter(|study| !study.takes_scenario())
+            && let Some(field) = given.source.root().keys().map(Spanned::get_ref).find(|field| *field != "study")
+        {
+            let what = format!("{field} is given, but there is no scenario in study {}", study.name());
+            return Err(SweepError::new(self.path.display(), what, "give fields of study.* only"));
+        }
+        let job = match self.study {
+            Some(study) => study.read(&given),
+            None => given.scenario().map(|scenario| by_engine(scenario, &self.measures)).map_err(SweepError::Plan),
+        };
+        job.map_err(|error| match error {
+            SweepError::Plan(error) => self.said_of_plan(run, error).into(),
+            other => other,
+        })
     }
 
     fn base(&self, run: &Run<'_>) -> &Base {
@@ -326,7 +393,7 @@ impl Plan {
     }
 
     /// Converts an error of a generated scenario to places in the user's files.
-    fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
+    pub(super) fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
         let ScenarioError::Field { path, line, field, what, remedy } = error else {
             return error;
         };
@@ -345,7 +412,8 @@ impl Plan {
     /// Covers everything that rows depend on: fields, values, seeds, figures, the scenario's files.
     fn digest(&self) -> u64 {
         let text = |base: &Base| base.source(&self.path, &self.set).map(|source| source.written()).unwrap_or_default();
-        let mut all = self.bases.iter().fold(FORMAT, |all, base| chained(all, digest(text(base).as_bytes())));
+        let format = self.study.map_or(FORMAT, |study| chained(FORMAT, digest(study.name().as_bytes())));
+        let mut all = self.bases.iter().fold(format, |all, base| chained(all, digest(text(base).as_bytes())));
         let mut add = |bytes: &[u8]| all = chained(all, digest(bytes));
         for (axis, index) in self.axes.iter().zip(0u64..) {
             add(axis.field.name().as_bytes());
@@ -424,48 +492,11 @@ impl Changes {
     }
 }
 
-impl Design for Plan {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn fingerprint(&self) -> String {
-        self.fingerprint()
-    }
-
-    fn runs(&self) -> u64 {
-        self.runs()
-    }
-
-    fn runs_per_point(&self) -> u64 {
-        self.seeds()
-    }
-
-    fn parameters(&self) -> Vec<String> {
-        self.axes().map(str::to_owned).collect()
-    }
-
-    fn values(&self, run: u64) -> Vec<String> {
-        self.values_of(run)
-    }
-
-    fn seed(&self, run: u64) -> u64 {
-        self.run(run).seed
-    }
-
-    fn figures(&self) -> Vec<String> {
-        self.measures.clone()
-    }
-
-    /// Times are measured on a machine that does nothing else.
-    fn at_once(&self) -> usize {
-        if self.measures.iter().any(|name| name.starts_with("cost.")) { 1 } else { usize::MAX }
-    }
-
-    fn meaning(&self, figure: &str) -> String {
-        let of_probe = probe::measures().find(|(name, _)| name == figure);
-        of_probe.map_or("a figure of summary.json", |(_, meaning)| meaning).to_owned()
-    }
+fn find_study(source: &Source<'_>, name: &str) -> Result<&'static dyn Study, ScenarioError> {
+    study::ALL.into_iter().find(|study| study.name() == name).ok_or_else(|| {
+        let names = study::ALL.map(Study::name);
+        source.error("study", format!("there is no study {name}"), format!("give one of {}", names.join(", ")))
+    })
 }
 
 fn obstructed(plan: &Path, line: usize, field: &Field, what: String) -> ScenarioError {
@@ -506,16 +537,22 @@ fn check_seeds(source: &Source<'_>, seeds: &Seeds) -> Result<Vec<u64>, ScenarioE
 fn check_measures(
     source: &Source<'_>,
     measures: Option<Vec<String>>,
-    known: Vec<String>,
+    mut known: Vec<String>,
+    study: Option<&dyn Study>,
 ) -> Result<Vec<String>, ScenarioError> {
     let Some(measures) = measures else {
         return Ok(known.into_iter().filter(|name| !name.starts_with("waits.")).collect());
     };
-    let known: Vec<String> = known.into_iter().chain(probe::measures().map(|(name, _)| name)).collect();
+    if study.is_none() {
+        known.extend(probe::measures().map(|(name, _)| name));
+    }
     for (index, name) in measures.iter().enumerate() {
         let field = format!("measures[{index}]");
         if !known.contains(name) {
-            let what = format!("{name} is neither a figure of summary.json nor of a probe");
+            let what = match study {
+                Some(study) => format!("{name} is not a measure of study {}", study.name()),
+                None => format!("{name} is neither a figure of summary.json nor of a probe"),
+            };
             let remedy = match nearest(name, known.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("give some of {}", known.join(", ")),
@@ -538,6 +575,25 @@ fn check_plots(source: &Source<'_>, plan: &Plan, plots: Vec<PlotTable>) -> Resul
             .map_err(|(field, what, remedy)| source.error(&format!("plot[{index}].{field}"), what, remedy))?;
     }
     Ok(plots)
+}
+
+fn check_measured(source: &Source<'_>, plan: &Plan, field: &str, figure: &String) -> Result<(), ScenarioError> {
+    if plan.measures.contains(figure) {
+        return Ok(());
+    }
+    Err(source.error(field, format!("{figure} is not measured"), format!("give one of {}", plan.measures.join(", "))))
+}
+
+fn check_gains(source: &Source<'_>, plan: &Plan, gains: Vec<GainTable>) -> Result<Vec<GainTable>, ScenarioError> {
+    for (index, GainTable { figure, over, .. }) in gains.iter().enumerate() {
+        check_measured(source, plan, &format!("gain[{index}].figure"), figure)?;
+        if plan.find(over).is_none() {
+            let what = format!("{over} is not an axis of the plan");
+            let axes: Vec<_> = plan.axes().collect();
+            return Err(source.error(&format!("gain[{index}].over"), what, format!("give one of {}", axes.join(", "))));
+        }
+    }
+    Ok(gains)
 }
 
 #[cfg(test)]

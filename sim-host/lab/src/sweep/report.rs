@@ -1,11 +1,13 @@
 //! Carries out a plan and reports it: rows, summaries of points, verdicts, pictures.
 
-use crate::sweep::aggregate::{self, Point};
+use crate::sweep::aggregate;
+use crate::sweep::gain::{self, Gain, gains};
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Plan, Verdict};
-use crate::sweep::run::{perform, picture};
+use crate::sweep::run::{draw, perform};
 use crate::sweep::shard::{Existing, files, perform_shard};
-use crate::sweep::{Shard, pictures, schema, value::short};
+use crate::sweep::value::{Point, short};
+use crate::sweep::{Shard, pictures, schema};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use staya_console::{Global, Progress, Stop, print, print_json};
@@ -46,6 +48,8 @@ pub struct Report<'a> {
     wall_seconds: Option<f64>,
     points: Vec<PointFigures>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    gains: Vec<Gain>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     verdicts: Vec<Verdict>,
     files: Vec<PathBuf>,
     #[serde(skip)]
@@ -81,6 +85,7 @@ impl<'a> Report<'a> {
             interrupted: false,
             wall_seconds: None,
             points: Vec::new(),
+            gains: Vec::new(),
             verdicts: Vec::new(),
             files: Vec::new(),
             out,
@@ -106,7 +111,7 @@ impl<'a> Report<'a> {
             bar.set(done, String::new);
         };
         let may_continue = || !stop.is_requested();
-        let job = |(): &mut (), run| perform(plan, run, may_continue);
+        let job = |run| perform(plan, run, may_continue);
         let course = perform_shard(plan, shard, out, existing, job, progress);
         bar.finish();
         let course = course?;
@@ -148,13 +153,16 @@ impl<'a> Report<'a> {
         for plot in pictures::plots(plan) {
             self.files.extend(pictures::draw(plan, merged, &plot, &out.join("plots"))?);
         }
+        self.files.extend(pictures::histograms(plan, merged, &out.join("plots"))?);
         for run in plan.pictured().map(|point| point * plan.seeds()) {
-            if let Some(sheet) = picture(plan, run) {
-                let name = plan.values_of(run).join("-");
-                let name = name.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-");
-                self.files.extend(sheet.draw().write(&out.join("pictures").join(format!("{}-{name}", plan.name)))?);
-            }
+            let words = plan.values_of(run);
+            // Files without their folders.
+            let words: Vec<&str> = words.iter().filter_map(|word| word.rsplit('/').next()).collect();
+            let name = words.join("-");
+            let name = name.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-");
+            self.files.extend(draw(plan, run, &out.join("pictures").join(format!("{}-{name}", plan.name)))?);
         }
+        self.gains = plan.gains.iter().flat_map(|table| gains(plan, &points, table)).collect();
         self.verdicts = plan.accept.iter().map(|accept| accept.judge(plan, &points)).collect();
         if !self.verdicts.is_empty() {
             write_atomically(&out.join(VERDICT), self.verdict().as_bytes())?;
@@ -226,6 +234,10 @@ impl<'a> Report<'a> {
         }
         if !self.points.is_empty() && self.points.len() <= SHOWN {
             self.points_table(&mut text)?;
+        }
+        for table in &plan.gains {
+            let own: Vec<_> = self.gains.iter().filter(|gain| gain.figure == table.figure).cloned().collect();
+            text += &gain::text(table, &own);
         }
         if !self.verdicts.is_empty() {
             write!(text, "accepted: {}", self.verdict())?;

@@ -1,7 +1,7 @@
 //! Record of a run: a line of CSV, identical on every machine. The last cell is the CRC-32 of the
 //! cells before it, so that a damaged row is not merged.
 
-use crate::sweep::design::Design;
+use crate::sweep::plan::Plan;
 use crate::sweep::value::Figure;
 use staya_console::VERSION;
 
@@ -52,26 +52,26 @@ impl Outcome {
 
 /// Header line of a file of rows, without line end.
 #[must_use]
-pub fn header(plan: &dyn Design) -> String {
+pub fn header(plan: &Plan) -> String {
     let own = |name: &str| name.to_owned();
     let mut names = vec![own("run")];
-    names.extend(plan.parameters());
+    names.extend(plan.axes().map(str::to_owned));
     names.extend(["seed", "outcome"].map(own));
-    names.extend(plan.figures());
+    names.extend(plan.measures().iter().cloned());
     names.extend(["trace_hash", "plan", "version", CHECKSUM].map(own));
     names.join(",")
 }
 
 /// Whether `line` is the header of rows without checksums.
 #[must_use]
-pub fn is_older_header(plan: &dyn Design, line: &str) -> bool {
+pub fn is_older_header(plan: &Plan, line: &str) -> bool {
     header(plan) == format!("{line},{CHECKSUM}")
 }
 
 impl Row {
     /// Formats the row as a line, without line end.
     #[must_use]
-    pub fn line(&self, plan: &dyn Design) -> String {
+    pub fn line(&self, plan: &Plan) -> String {
         let mut cells = beginning(plan, self.run);
         cells.push(self.outcome.name().to_owned());
         cells.extend(self.figures.iter().map(ToString::to_string));
@@ -83,7 +83,7 @@ impl Row {
     ///
     /// # Errors
     /// The line is damaged, or belongs to another plan or version. Returns cause and remedy.
-    pub fn read(plan: &dyn Design, line: &str) -> Result<Self, (String, String)> {
+    pub fn read(plan: &Plan, line: &str) -> Result<Self, (String, String)> {
         let cells = line.rsplit_once(',').map(|(cells, _)| cells).filter(|cells| checked(cells) == line);
         let cells: Vec<&str> = cells.ok_or_else(|| damaged("its checksum is wrong"))?.split(',').collect();
         let [start @ .., hash, fingerprint, version] = &cells[..] else {
@@ -107,7 +107,7 @@ impl Row {
         }
         let outcome = [Outcome::Done, Outcome::Impossible].into_iter().find(|known| known.name() == *outcome);
         let outcome = outcome.ok_or_else(|| damaged("its outcome is unknown"))?;
-        if figures.len() != plan.figures().len() {
+        if figures.len() != plan.measures().len() {
             return Err(damaged("it has not as many figures as the plan"));
         }
         let figures = figures.iter().map(|cell| Figure::read(cell)).collect::<Option<Vec<_>>>();
@@ -121,9 +121,9 @@ pub(super) fn checked(cells: &str) -> String {
     format!("{cells},{:08x}", crc32fast::hash(cells.as_bytes()))
 }
 
-fn beginning(plan: &dyn Design, run: u64) -> Vec<String> {
-    let (number, seed) = (run.to_string(), plan.seed(run).to_string());
-    [number].into_iter().chain(plan.values(run)).chain([seed]).collect()
+fn beginning(plan: &Plan, run: u64) -> Vec<String> {
+    let (number, seed) = (run.to_string(), plan.run(run).seed.to_string());
+    [number].into_iter().chain(plan.values_of(run)).chain([seed]).collect()
 }
 
 fn damaged(what: &str) -> (String, String) {

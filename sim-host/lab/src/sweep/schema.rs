@@ -1,17 +1,17 @@
 //! Description of the columns of rows.
 
-use crate::sweep::design::Design;
+use crate::sweep::plan::Plan;
 
 /// Contents of `rows.schema.json`: name, unit and meaning of each column, like `trace.schema.json`.
 #[must_use]
-pub fn schema(design: &dyn Design) -> String {
+pub fn schema(plan: &Plan) -> String {
     let column = |name: &str, kind: &str, unit: &str, meaning: &str| serde_json::json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning });
     let mut columns = vec![column("run", "integer", "1", "number of the run")];
-    columns.extend(design.parameters().iter().map(|name| column(name, "value", unit(name), "a parameter")));
+    columns.extend(plan.axes().map(|name| column(name, "value", unit(name), "a parameter")));
     columns.push(column("seed", "integer", "1", "seed of the run"));
     columns.push(column("outcome", "string", "", "done, or impossible: then there are no figures"));
-    let figures = design.figures();
-    columns.extend(figures.iter().map(|name| column(name, "number", unit(name), &design.meaning(name))));
+    let figures = plan.measures();
+    columns.extend(figures.iter().map(|name| column(name, "number", unit(name), plan.meaning(name))));
     for (name, meaning) in [
         ("trace_hash", "fingerprint of all bytes and movements of the run; empty: there are none"),
         ("plan", "fingerprint of the plan: rows of one plan go together"),

@@ -1,7 +1,7 @@
 //! Scripts that run a sweep with Slurm or GNU parallel. Each task makes the missing runs of a
 //! shard; a restarted task loses at most the run in progress.
 
-use crate::sweep::SweepError;
+use crate::error::SweepError;
 use crate::sweep::plan::Plan;
 use std::fmt::Write as _;
 use std::path::Path;

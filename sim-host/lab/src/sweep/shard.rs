@@ -3,9 +3,9 @@
 //! Whole lines are appended to the file, so a crash or a full disk damages only the last line. The
 //! next process makes the missing runs.
 
-use crate::sweep::SweepError;
-use crate::sweep::design::Design;
+use crate::error::SweepError;
 use crate::sweep::jobs;
+use crate::sweep::plan::Plan;
 use crate::sweep::row::{Finished, Outcome, Row, header, is_older_header};
 use staya_sim::file::{MAP, read};
 use staya_sim::record::{Error, make_dir};
@@ -101,7 +101,7 @@ pub struct Rows {
 /// # Errors
 /// The file cannot be read, or a line is damaged or belongs to another plan or version. Names file
 /// and line.
-pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
+pub fn read_rows(plan: &Plan, path: &Path) -> Result<Rows, SweepError> {
     let unreadable = |error: std::io::Error| {
         let remedy = staya_sim::file::read_remedy(&error);
         SweepError::new(path.display(), error.to_string(), remedy)
@@ -164,7 +164,7 @@ struct Appended {
 }
 
 impl Appended {
-    fn open(plan: &dyn Design, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
+    fn open(plan: &Plan, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
         let path = out.join(FOLDER).join(shard.file_name());
         make_dir(&out.join(FOLDER))?;
         make_dir(&out.join(TIMES))?;
@@ -236,12 +236,12 @@ impl Course {
 /// # Errors
 /// Existing rows belong to another plan or version or must not be replaced, or a file cannot be
 /// written. Finished rows are kept.
-pub fn perform_shard<S: Default>(
-    plan: &dyn Design,
+pub fn perform_shard(
+    plan: &Plan,
     shard: Shard,
     out: &Path,
     existing: Existing,
-    job: impl Fn(&mut S, u64) -> Option<Finished> + Sync,
+    job: impl Fn(u64) -> Option<Finished> + Sync,
     mut progress: impl FnMut(u64, u64) + Send,
 ) -> Result<Course, SweepError> {
     if existing == Existing::Forget && shard.is_whole() {
@@ -264,8 +264,7 @@ pub fn perform_shard<S: Default>(
         there.extend(done.map(|(_, row)| row.run));
     }
     let (mut file, torn) = Appended::open(plan, out, shard, existing)?;
-    let mut mine: Vec<u64> = (0..plan.runs()).filter(|&run| shard.has(run)).collect();
-    mine.sort_by_key(|&run| plan.turn(run));
+    let mine: Vec<u64> = (0..plan.runs()).filter(|&run| shard.has(run)).collect();
     let missing: Vec<u64> = mine.iter().copied().filter(|run| !there.contains(run)).collect();
     let mut course =
         Course { runs: mine.len() as u64, found: (mine.len() - missing.len()) as u64, torn, ..Course::default() };
@@ -288,7 +287,7 @@ pub fn perform_shard<S: Default>(
         progress(course.done, missing.len() as u64);
         ControlFlow::Continue(())
     };
-    jobs::each(missing.len(), plan.at_once(), |scratch, index| job(scratch, missing[index]), take);
+    jobs::each(missing.len(), plan.at_once(), |index| job(missing[index]), take);
     file.sync()?;
     match failed {
         Some(error) => Err(error.into()),

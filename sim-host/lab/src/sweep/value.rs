@@ -1,6 +1,7 @@
-//! Values of scenario fields.
+//! Values of scenario fields, and figures of runs.
 
 use staya_sim::scenario::inline;
+use staya_stats::Summary;
 use std::fmt::{self, Display, Formatter};
 use toml::de::DeValue;
 
@@ -142,6 +143,19 @@ impl Display for Figure {
 #[must_use]
 pub fn short(number: f64) -> String {
     Figure(format!("{number:.4}").parse().ok()).to_string()
+}
+
+/// Figures of one point.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Number of the point.
+    pub number: u64,
+    /// Values of the parameters.
+    pub values: Vec<String>,
+    /// Number of available runs.
+    pub runs: usize,
+    /// Summary of each measure; `None` if no run has a value or one is infinite.
+    pub figures: Vec<Option<Summary>>,
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 use super::{assert_readable, assert_texts_apart, decode};
 use crate::colour::PALETTE;
-use crate::{run, run_pictures, trajectories};
+use crate::run::on_map;
+use crate::{run, trajectories};
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::rand::Rng;
 use staya_controller::robot::Mode;
@@ -58,7 +59,7 @@ fn land(side: u16) -> Terrain {
 }
 
 fn names(terrain: &Terrain, history: &History, edges: &[(u32, u32)], dir: &Path) -> Vec<String> {
-    let files = run_pictures(terrain, &[], history, edges, dir).unwrap();
+    let files = on_map("r", terrain, &[], history, edges, dir).unwrap();
     assert_readable(&files);
     let names = files.iter().map(|path| {
         assert_eq!(path.parent(), Some(dir));
@@ -78,8 +79,8 @@ fn runs_of_any_length_have_their_pictures() {
         let history = history(robots, ticks, 0.5, nan);
         let ways = if history.frames().is_empty() { 2 } else { 0 };
         assert_eq!(names(&land(40), &history, &[], &out), WITHOUT_FORMATION[ways..]);
-        assert_texts_apart(&trajectories::draw(&land(40), &[], &history, &[]).unwrap());
-        assert_texts_apart(&run::packets(&history).draw());
+        assert_texts_apart(&trajectories::draw("r", &land(40), &[], &history, &[]).unwrap());
+        assert_texts_apart(&run::packets("r", &history).draw());
     }
     let out = dir.path().join("formation");
     let files = names(&land(40), &history(3, 5, 1.0, 0.25), &[(1, 2), (2, 3), (3, 99)], &out);
@@ -92,7 +93,7 @@ fn equal_runs_give_equal_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let history = history(6, 50, 0.6, 0.5);
     let draw = |name: &str| {
-        let files = run_pictures(&land(60), &[], &history, &[(1, 2)], &dir.path().join(name)).unwrap();
+        let files = on_map("r", &land(60), &[], &history, &[(1, 2)], &dir.path().join(name)).unwrap();
         let bytes = files.iter().map(|path| std::fs::read(path).unwrap());
         bytes.collect::<Vec<_>>()
     };
@@ -104,11 +105,11 @@ fn an_unwritable_directory_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("taken");
     std::fs::write(&file, "").unwrap();
-    let error = run_pictures(&land(4), &[], &history(1, 2, 1.0, 1.0), &[], &file).unwrap_err();
+    let error = on_map("r", &land(4), &[], &history(1, 2, 1.0, 1.0), &[], &file).unwrap_err();
     assert!(error.to_string().contains("taken"), "{error}");
     let out = dir.path().join("out");
     std::fs::create_dir_all(out.join("packets.svg")).unwrap();
-    let error = run_pictures(&land(4), &[], &history(1, 2, 1.0, 1.0), &[], &out).unwrap_err();
+    let error = on_map("r", &land(4), &[], &history(1, 2, 1.0, 1.0), &[], &out).unwrap_err();
     assert_eq!(error.path(), out.join("packets.svg"));
 }
 
@@ -127,13 +128,13 @@ fn missing_values_leave_gaps_and_an_empty_chart_is_skipped() {
     assert_eq!(names(&land(30), &history, &[(1, 1)], dir.path()).len(), 6);
     let text = std::fs::read_to_string(dir.path().join("formation.svg")).unwrap();
     assert!(text.contains("Formation error per agent") && !text.contains("Graph distance"));
-    assert!(run::formation(super::runs::history(1, 9, 1.0, f64::NAN).series()).is_none());
+    assert!(run::formation("r", super::runs::history(1, 9, 1.0, f64::NAN).series()).is_none());
 }
 
 #[test]
 fn packets_are_counted_per_second() {
     for ticks in [2, 3, 101, 250, 1000] {
-        let canvas = run::packets(&history(1, ticks, 0.0, 1.0)).draw();
+        let canvas = run::packets("r", &history(1, ticks, 0.0, 1.0)).draw();
         let dir = tempfile::tempdir().unwrap();
         let files = canvas.write(&dir.path().join("p")).unwrap();
         let text = std::fs::read_to_string(&files[0]).unwrap();
@@ -147,7 +148,7 @@ fn packets_are_counted_per_second() {
         heights.dedup();
         assert_eq!(heights.len(), 1, "{ticks}: {heights:?}");
     }
-    let one = run::packets(&history(1, 1, 0.0, 1.0)).draw();
+    let one = run::packets("r", &history(1, 1, 0.0, 1.0)).draw();
     assert!(format!("{one:?}").contains("packets per tick"));
 }
 
@@ -162,7 +163,7 @@ fn north_is_up_walls_are_dark_and_paths_have_their_colours() {
         recorder.tick(&tick(now, f64::NAN), robots.into_iter()).unwrap();
     }
     let history = recorder.finish().unwrap();
-    let canvas = trajectories::draw(&terrain, &[], &history, &[]).unwrap();
+    let canvas = trajectories::draw("r", &terrain, &[], &history, &[]).unwrap();
     let dir = tempfile::tempdir().unwrap();
     let files = canvas.write(&dir.path().join("t")).unwrap();
     let (width, _, bytes) = decode(&files[1]);
@@ -185,7 +186,7 @@ fn north_is_up_walls_are_dark_and_paths_have_their_colours() {
 
 #[test]
 fn only_the_used_part_of_a_large_map_is_shown() {
-    let text = |side: u16| format!("{:?}", trajectories::draw(&land(side), &[], &history(2, 20, 1.0, 1.0), &[]));
+    let text = |side: u16| format!("{:?}", trajectories::draw("r", &land(side), &[], &history(2, 20, 1.0, 1.0), &[]));
     assert!(text(300).contains("part of a map of 300 × 300"));
     assert!(!text(30).contains("part of"));
 }
@@ -197,7 +198,7 @@ fn large_swarms_and_noisy_terrain_give_small_files() {
     for robots in [6, 200, 201, 2000, 100_000] {
         let dir = tempfile::tempdir().unwrap();
         let history = history(robots, 12, 3.0, f64::NAN);
-        for path in run_pictures(&terrain, &[], &history, &[(1, 2)], dir.path()).unwrap() {
+        for path in on_map("r", &terrain, &[], &history, &[(1, 2)], dir.path()).unwrap() {
             let bytes = std::fs::metadata(&path).unwrap().len();
             assert!(bytes < 2_000_000, "{robots} robots: {} {bytes}", path.display());
         }
@@ -217,7 +218,7 @@ fn long_paths_give_small_files() {
     }
     let history = recorder.finish().unwrap();
     let dir = tempfile::tempdir().unwrap();
-    let files = run_pictures(&land(256), &[], &history, &[], dir.path()).unwrap();
+    let files = on_map("r", &land(256), &[], &history, &[], dir.path()).unwrap();
     assert_readable(&files);
     assert!(std::fs::metadata(&files[0]).unwrap().len() < 5_000_000);
 }

@@ -30,6 +30,7 @@ const SCENE: u8 = 1;
 const FRAMES: u8 = 2;
 const ORDERS: u8 = 3;
 const END: u8 = 4;
+const MINDS: u8 = 5;
 
 /// Why a recording cannot be read or written.
 #[derive(Debug, thiserror::Error)]

@@ -1,5 +1,5 @@
 use super::{
-    BLOCK_HEAD, END, FILE_HEAD, FRAMES, MAGIC, MOST_PACKED_BY, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION,
+    BLOCK_HEAD, END, FILE_HEAD, FRAMES, MAGIC, MINDS, MOST_PACKED_BY, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION,
 };
 use crate::frame::{self, FrameData};
 use crate::scene::Scene;
@@ -290,7 +290,7 @@ fn index(
             return Err(RecordingError::damage(path, at, what));
         }
         let is_possible = u64::from(raw) <= u64::from(packed) * MOST_PACKED_BY;
-        if !(SCENE..=END).contains(&kind) || !is_possible {
+        if !(SCENE..=MINDS).contains(&kind) || !is_possible {
             let what = format!("invalid block header (kind {kind}, {raw} bytes in {packed})");
             return Err(RecordingError::damage(path, at, what));
         }

@@ -23,6 +23,8 @@ pub struct RunRecorder<W: Sink> {
     rules: Vec<LandChange>,
     seen: u32,
     orders: Vec<Value>,
+    /// Minds at the tick of `frame`, while it is not written.
+    minds: Vec<Value>,
 }
 
 impl<W: Sink> RunRecorder<W> {
@@ -31,7 +33,14 @@ impl<W: Sink> RunRecorder<W> {
     /// # Errors
     /// `out` cannot be written.
     pub fn new(out: W, path: &Path, scenario: &Scenario, every: u32) -> Result<Self, RecordingError> {
-        let scene = Scene::new(scenario, Mode::Recording);
+        Self::of(Scene::new(scenario, Mode::Recording), out, path, scenario, every)
+    }
+
+    /// As [`RunRecorder::new`], with the scene.
+    ///
+    /// # Errors
+    /// `out` cannot be written.
+    pub fn of(scene: Scene, out: W, path: &Path, scenario: &Scenario, every: u32) -> Result<Self, RecordingError> {
         let interventions = scenario.interventions.iter();
         let mut changes: Vec<u32> =
             interventions.clone().filter(|(_, what)| changes_scene(what)).map(|(tick, _)| *tick).collect();
@@ -48,6 +57,7 @@ impl<W: Sink> RunRecorder<W> {
             rules: scenario.changes.clone(),
             seen: 0,
             orders,
+            minds: Vec::new(),
         })
     }
 
@@ -69,9 +79,19 @@ impl<W: Sink> RunRecorder<W> {
             self.scene.solids = scene::solids(moment.solids, self.scene.kind == scene::Kind::Space, origin_m);
             self.writer.scene(&self.scene)?;
         }
+        self.minds.clear();
         self.framer.fill(&mut self.frame, moment, robots);
         self.is_written = tick.is_multiple_of(self.every);
         if self.is_written { self.writer.frame(&self.frame) } else { Ok(()) }
+    }
+
+    /// Records a robot's [`mind`](crate::mind::recorded) at the tick of the last moment.
+    pub fn mind(&mut self, mind: Value) {
+        if self.is_written {
+            self.writer.mind(&mind);
+        } else {
+            self.minds.push(mind);
+        }
     }
 
     /// Records an intervention before the next tick.
@@ -94,6 +114,7 @@ impl<W: Sink> RunRecorder<W> {
     pub fn finish(mut self, summary: &impl Serialize) -> Result<W, RecordingError> {
         if !self.is_written {
             self.writer.frame(&self.frame)?;
+            self.minds.iter().for_each(|mind| self.writer.mind(mind));
         }
         self.writer.finish(&self.orders, summary)
     }

@@ -1,13 +1,15 @@
-use super::{BLOCK_HEAD, END, FRAMES, MAGIC, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION};
+use super::{BLOCK_HEAD, END, FRAMES, MAGIC, MINDS, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION};
 use crate::frame::FrameData;
 use crate::scene::Scene;
 use serde::Serialize;
+use serde_json::Value;
 use staya_sim::record::Output;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// A page unpacks one block to show one moment.
 const BLOCK: usize = 1 << 18;
+const MINDS_BLOCK: usize = 1 << 20;
 /// Packs within a few per cent of the slower levels.
 const LEVEL: u8 = 6;
 
@@ -36,6 +38,8 @@ pub struct Writer<W: Sink> {
     path: PathBuf,
     written: u64,
     raw: Vec<u8>,
+    /// JSON, without the last bracket.
+    minds: Vec<u8>,
     /// The previous frame, for the XOR.
     before: Vec<u8>,
     frame: Vec<u8>,
@@ -47,8 +51,15 @@ impl<W: Sink> Writer<W> {
     /// # Errors
     /// `out` cannot be written.
     pub fn new(out: W, path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
-        let mut this =
-            Self { out, path: path.to_owned(), written: 0, raw: Vec::new(), before: Vec::new(), frame: Vec::new() };
+        let mut this = Self {
+            out,
+            path: path.to_owned(),
+            written: 0,
+            raw: Vec::new(),
+            minds: Vec::new(),
+            before: Vec::new(),
+            frame: Vec::new(),
+        };
         let head: Vec<u8> = MAGIC.into_iter().chain(VERSION.to_le_bytes()).collect();
         this.write(&head)?;
         this.scene(scene)?;
@@ -71,7 +82,7 @@ impl<W: Sink> Writer<W> {
     pub fn frame(&mut self, frame: &FrameData) -> Result<(), RecordingError> {
         frame.encode(&mut self.frame);
         let fits = self.raw.len() + self.frame.len() + 4 <= MOST_RAW as usize;
-        if !fits || self.raw.len() >= BLOCK {
+        if !fits || self.raw.len() >= BLOCK || self.minds.len() >= MINDS_BLOCK {
             self.flush()?;
         }
         self.raw.extend((self.frame.len() as u32).to_le_bytes());
@@ -83,7 +94,13 @@ impl<W: Sink> Writer<W> {
         Ok(())
     }
 
-    /// Writes the buffered frames.
+    /// Adds the message `robot` about a robot at the tick of the last frame.
+    pub fn mind(&mut self, mind: &Value) {
+        self.minds.push(if self.minds.is_empty() { b'[' } else { b',' });
+        self.minds.extend(mind.to_string().bytes());
+    }
+
+    /// Writes the buffered frames and minds.
     ///
     /// # Errors
     /// The recording cannot be written.
@@ -96,7 +113,12 @@ impl<W: Sink> Writer<W> {
         let done = self.block(FRAMES, &raw);
         self.raw = raw;
         self.raw.clear();
-        done
+        let mut minds = std::mem::take(&mut self.minds);
+        if minds.is_empty() {
+            return done;
+        }
+        minds.push(b']');
+        done.and_then(|()| self.block(MINDS, &minds))
     }
 
     /// Writes the buffered frames, if possible, and returns the output.

@@ -171,7 +171,8 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
         (None, None, Some(t), None) => {
             let plan = plan(t.width, t.height, t.classes, t.seed);
             let made = generate::natural_by(&plan, t.obstacles, t.norm, t.hills);
-            ("terrain.natural", made)
+            let order = |land| if t.shuffled { generate::shuffled(&land, plan.seed) } else { Ok(land) };
+            ("terrain.natural", made.and_then(order))
         }
         (None, None, None, Some(t)) => {
             let plan = plan(t.width, t.height, t.classes, t.seed);

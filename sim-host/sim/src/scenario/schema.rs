@@ -174,6 +174,9 @@ table! {
         pub norm: Norm = Default::default();
         /// Slopes of hills: `"even"` (the default), `"rounded"`, `"wide"`, `"added"` or `"rough"`.
         pub hills: Hills = Default::default();
+        /// Whether the cells are then put in random order: equal entropy without hills. Default:
+        /// false.
+        pub shuffled: bool = false;
     }
 }
 

@@ -42,7 +42,7 @@ fn prefix(field: &str) -> String {
 }
 
 /// Text of a settings file and the position of each field in it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Source<'a> {
     path: &'a Path,
     text: &'a str,
@@ -66,6 +66,12 @@ impl<'a> Source<'a> {
                 remedy: "this is not TOML; strings need quotes, tables [brackets]".to_owned(),
             }),
         }
+    }
+
+    /// Path of the text.
+    #[must_use]
+    pub const fn path(&self) -> &'a Path {
+        self.path
     }
 
     /// Path of a file that the text names, relative to the folder of the text. Adds it to
@@ -143,6 +149,18 @@ impl<'a> Source<'a> {
         T::read(&self.root).map_err(|wrong| self.refuse(wrong, list))
     }
 
+    /// Reads a table of the file, which may be absent, like [`read`](Self::read).
+    ///
+    /// # Errors
+    /// See [`read`](Self::read).
+    pub fn read_table<T: Read>(&self, name: &str, list: &str) -> Result<T, ScenarioError> {
+        let read = match self.root().get(name) {
+            Some(node) => T::read(node),
+            None => T::read(&Spanned::new(0..0, DeValue::Table(DeTable::new()))),
+        };
+        read.map_err(|wrong| self.refuse(wrong.under(name), list))
+    }
+
     fn refuse(&self, wrong: Wrong, list: &str) -> ScenarioError {
         let remedy = match wrong.remedy {
             Some(remedy) if wrong.is_listed => format!("{remedy} ({list} lists all fields)"),
@@ -167,6 +185,11 @@ impl<'a> Source<'a> {
     pub fn get(&self, field: &str) -> Option<&Node<'a>> {
         let (deepest, is_field) = self.find(field);
         deepest.filter(|_| is_field)
+    }
+
+    /// Removes a field or table at the top of the file.
+    pub fn remove(&mut self, name: &str) {
+        self.root_mut().remove(name);
     }
 
     /// Whether this field or table is there.

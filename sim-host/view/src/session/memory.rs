@@ -1,9 +1,11 @@
-const MOST: usize = 256 << 20;
+use std::sync::Arc;
+
+pub(super) const MOST: usize = 256 << 20;
 
 /// Frames by tick. Above the limit every second one is dropped, and added from then on.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Memory {
-    frames: Vec<(u32, Box<[u8]>)>,
+    frames: Vec<(u32, Arc<[u8]>)>,
     bytes: usize,
     most: usize,
     every: u32,
@@ -49,10 +51,9 @@ impl Memory {
         self.frames.get(behind.checked_sub(1)?).map(|(_, frame)| &**frame)
     }
 
-    /// Evenly spaced, oldest first.
-    pub fn some(&self, most: usize) -> impl Iterator<Item = &[u8]> {
-        let every = self.frames.len().div_ceil(most.max(1)).max(1);
-        self.frames.iter().step_by(every).map(|(_, frame)| &**frame)
+    /// Size of the stored frames.
+    pub const fn bytes(&self) -> usize {
+        self.bytes
     }
 }
 
@@ -71,7 +72,6 @@ mod tests {
         let ticks: Vec<u32> = memory.frames.iter().map(|(tick, _)| *tick).collect();
         assert!(ticks.len() > 40 && ticks[0] == 0 && ticks.windows(2).all(|pair| pair[1] - pair[0] == memory.every));
         assert_eq!(memory.at(999).map(|frame| frame[0]), ticks.last().map(|tick| *tick as u8));
-        assert!(memory.some(7).count() <= 7);
         memory.forget_from(500);
         assert!(memory.frames.iter().all(|(tick, _)| *tick < 500));
         memory.put(512, &[7; 10]);

@@ -1,20 +1,16 @@
 //! JSON messages between a session and its pages (`PROTOCOL.md`).
 
 use super::Session;
+use super::branch::Branch;
 use crate::frame::FrameData;
+use crate::mind;
 use crate::scene::{self, Mode, Scene};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use staya_controller::agent::Event;
-use staya_controller::robot::RobotId;
-use staya_sim::engine::{Choice, Inspection, Permitted, SeenLand};
-use staya_sim::radio::Reception;
 use staya_sim::scenario::{Intervention, Scenario};
 use staya_sim::world::plane::Shape;
-
-const LINKS: usize = 20_000;
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
@@ -26,6 +22,9 @@ pub(super) enum Wanted {
     Seek { tick: u32 },
     Select { robot: Option<usize> },
     Links { on: bool },
+    Trail { ticks: Vec<u32>, branch: Option<u32> },
+    Branch { number: u32 },
+    Undo,
     Seen { frames: u64 },
     Save,
     Restart { seed: Option<u64> },
@@ -53,7 +52,7 @@ impl Wanted {
 
     /// Whether the request needs the engine at the shown moment.
     pub const fn needs_the_run(&self) -> bool {
-        !matches!(self, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Seen { .. })
+        !matches!(self, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Trail { .. } | Wanted::Seen { .. })
     }
 }
 
@@ -99,25 +98,19 @@ pub(super) fn error(text: &str) -> String {
     json!({ "type": "error", "text": text }).to_string()
 }
 
-pub(super) fn saved(name: &str, text: &str) -> String {
-    json!({ "type": "saved", "name": format!("{name}-by-hand.toml"), "text": text }).to_string()
+pub(super) fn saved(name: &str, branch: &Branch, text: &str) -> String {
+    let number = branch.number;
+    let file = if number > 1 { format!("{name}-branch-{number}.toml") } else { format!("{name}-by-hand.toml") };
+    json!({ "type": "saved", "name": file, "branch": number, "orders": branch.done.len(), "text": text }).to_string()
 }
 
-pub(super) fn event(event: &Event) -> String {
-    match event {
-        Event::ModeChanged { from, to } => format!("{from:?} → {to:?}").to_lowercase(),
-        Event::NoRoute => "no open route".to_owned(),
-        Event::TargetMoved { from, to } => format!("target ({}, {}) → ({}, {})", from.x, from.y, to.x, to.y),
-        Event::MessageExpired(id) => format!("no answer from robot {id}"),
-        Event::NeighborFound(id) => format!("robot {id} found"),
-        Event::NeighborLost(id) => format!("robot {id} lost"),
-        Event::NeighborEvicted(id) => format!("no room for robot {id}"),
-        Event::NeighborRebooted(id) => format!("robot {id} restarted"),
-        Event::ContactLost => "contact to all robots lost".to_owned(),
-        Event::DuplicateId(id) => format!("two robots use number {id}"),
-        Event::Implausible { id, claim } => format!("robot {id} reports implausible {claim}"),
-        Event::Muted => "cannot send: counters or timestamps used up; give a new key".to_owned(),
-    }
+/// The positions of frames, each with the tick for which a page asked.
+pub(crate) fn trail<'a>(branch: Option<u32>, frames: impl Iterator<Item = (u32, &'a [u8])>) -> String {
+    let rows = frames.filter_map(|(tick, frame)| {
+        let (_, positions) = FrameData::positions_of(frame).ok()?;
+        Some(json!([tick, BASE64_STANDARD.encode(positions)]))
+    });
+    json!({ "type": "trail", "branch": branch, "rows": rows.collect::<Vec<_>>() }).to_string()
 }
 
 impl Session {
@@ -142,6 +135,7 @@ impl Session {
             solids: scene::solids(self.engine.view().solids, is_in_space, origin_m),
             parameters,
             radio: self.radio(),
+            description: scene::description(&self.text),
             ..Scene::new(&self.scenario, Mode::Live)
         };
         json!(scene).to_string()
@@ -150,7 +144,7 @@ impl Session {
     fn radio(&self) -> scene::Radio {
         let mut radio = scene::Radio::of(&self.scenario);
         let planned = self.scenario.interventions.iter().filter(|(tick, _)| *tick < self.tick);
-        for (_, what) in planned.chain(self.done.iter().filter(|(tick, _)| *tick <= self.tick)) {
+        for (_, what) in planned.chain(self.branch.done.iter().filter(|(tick, _)| *tick <= self.tick)) {
             if let Intervention::Radio { loss, range_m } = what {
                 radio.loss = loss.unwrap_or(radio.loss);
                 if let Some(range_m) = range_m {
@@ -162,9 +156,15 @@ impl Session {
     }
 
     pub(super) fn state(&self) -> String {
+        let mut branches: Vec<&Branch> = self.branches.iter().chain([&self.branch]).collect();
+        branches.sort_unstable_by_key(|branch| branch.number);
+        let branches = branches.iter().map(|branch| {
+            let last = branch.memory.last().unwrap_or_default();
+            json!({ "number": branch.number, "from": branch.from, "last": last, "orders": branch.done.len() })
+        });
         json!({
             "type": "state",
-            "paused": self.pace.is_paused(),
+            "paused": self.pace.is_paused() && self.runs_on_to.is_none(),
             "speed": self.pace.speed(),
             "tick": self.catches_up_to.unwrap_or(self.tick),
             "first": 0,
@@ -172,141 +172,35 @@ impl Session {
             "clients": self.pages.len(),
             "at_end": self.is_over,
             "radio": self.radio(),
+            "branch": self.branch.number,
+            "branches": branches.collect::<Vec<_>>(),
         })
         .to_string()
     }
 
-    /// `None` before the first tick.
-    pub(super) fn rows(&self, most: usize) -> Option<String> {
-        let frames = self.memory.some(most).filter_map(|bytes| FrameData::figures_of(bytes).ok());
-        let rows: Vec<_> = frames.map(|(tick, figures)| json!([tick, figures])).collect();
-        (rows.len() > 1).then(|| json!({ "type": "figures", "rows": rows }).to_string())
+    /// The planned orders and those of pages.
+    pub(super) fn orders(&self) -> String {
+        let orders = self.scenario.interventions.iter().chain(&self.branch.done).map(|(tick, what)| {
+            let kind = serde_json::to_value(what).map(|mut what| what["kind"].take());
+            json!({ "tick": tick, "order": { "kind": kind.unwrap_or_default() } })
+        });
+        json!({ "type": "orders", "orders": orders.collect::<Vec<_>>() }).to_string()
+    }
+
+    /// Past positions, of another branch by its number.
+    pub(super) fn trail(&self, ticks: &[u32], branch: Option<u32>) -> String {
+        let other = branch.and_then(|number| self.branches.iter().find(|branch| branch.number == number));
+        let memory = &other.unwrap_or(&self.branch).memory;
+        trail(branch, ticks.iter().filter_map(|&tick| Some((tick, memory.at(tick)?))))
     }
 
     pub(super) fn links(&self) -> String {
-        let robots = &self.scenario.robots;
-        let index_of = |id: RobotId| robots.binary_search_by_key(&id, |robot| robot.id).ok();
-        let mut pairs = Vec::new();
-        for to in 0..robots.len() {
-            for (sender, reception) in self.engine.receptions(to) {
-                let Some(from) = index_of(*sender) else { continue };
-                let fate = match reception {
-                    Reception::Delivered => 0,
-                    Reception::Lost => 1,
-                    Reception::Damaged => 2,
-                };
-                pairs.extend((from as u32).to_le_bytes());
-                pairs.extend(((to as u32) << 2 | fate).to_le_bytes());
-                if pairs.len() >= LINKS * 8 {
-                    break;
-                }
-            }
-        }
-        json!({ "type": "links", "tick": self.tick, "pairs": BASE64_STANDARD.encode(pairs) }).to_string()
+        let pairs = mind::links(&self.engine, &self.scenario, None);
+        json!({ "type": "links", "tick": self.tick, "pairs": pairs }).to_string()
     }
 
     pub(super) fn robot(&self, index: usize) -> String {
-        let observation = self.engine.observation(index);
-        let Inspection { known, plan, land, choice, parameters, sent_bytes, heard_bytes } = self.engine.inspect(index);
         let origin_m = self.framer.origin_m();
-        let robots = &self.scenario.robots;
-        let index_of = |id: RobotId| robots.binary_search_by_key(&id, |robot| robot.id).ok();
-        let neighbors = known.iter().map(|known| {
-            let other = index_of(known.id);
-            let error_m = other.map(|other| {
-                let truth_m = self.engine.observation(other).motion.position_m;
-                let off = [0, 1, 2].map(|axis| known.position_m[axis] - truth_m[axis]);
-                libm::sqrt(off.iter().map(|x| x * x).sum())
-            });
-            let position_m = [0, 1, 2].map(|axis| known.position_m[axis] - origin_m[axis]);
-            json!({
-                "id": known.id.0, "index": other, "position_m": position_m, "velocity_mps": known.velocity_mps,
-                "age_s": known.age_s, "error_m": error_m,
-            })
-        });
-        let plan =
-            plan.iter().filter_map(|&(id, cell)| Some(json!({ "index": index_of(id)?, "cell": [cell.x, cell.y] })));
-        let parameters = parameters.iter().map(|(parameter, value)| (parameter.name.to_owned(), json!(value)));
-        let events = self.events.get(&index).into_iter().flatten();
-        let status = observation.status;
-        json!({
-            "type": "robot",
-            "index": index,
-            "id": robots[index].id.0,
-            "tick": self.tick,
-            "mode": status.mode as u8,
-            "wait": status.wait.map(|wait| wait as u8),
-            "leader": index_of(status.leader),
-            "boot": observation.boot,
-            "up": observation.is_up,
-            "wish": choice.as_ref().map(|choice| choice.wish_mps),
-            "neighbors": neighbors.collect::<Vec<_>>(),
-            "plan": plan.collect::<Vec<_>>(),
-            "window": land.map(|land| window(&land)),
-            "orca": choice.map(|choice| orca(&choice)),
-            "events": events.map(|(tick, text)| json!({ "tick": tick, "text": text })).collect::<Vec<_>>(),
-            "sent": sent_bytes,
-            "heard": heard_bytes,
-            "parameters": parameters.collect::<serde_json::Map<_, _>>(),
-            "device": null,
-        })
-        .to_string()
-    }
-}
-
-fn window(land: &SeenLand) -> Value {
-    let costs: Vec<u8> = land.costs.iter().flat_map(|cost| cost.to_le_bytes()).collect();
-    json!({
-        "corner": [land.corner.x, land.corner.y],
-        "side": land.width,
-        "cells": BASE64_STANDARD.encode(&land.cells),
-        "costs": BASE64_STANDARD.encode(costs),
-    })
-}
-
-/// In space, the section at the chosen vertical velocity.
-fn orca(choice: &Choice) -> Value {
-    let flat = |v: [f32; 3]| [v[0], v[1]];
-    let lines = choice.permitted.iter().filter_map(|permitted| {
-        let (point, normal) = section(permitted, choice.chosen_mps[2])?;
-        Some(json!({ "point": point, "normal": normal, "hard": permitted.is_of_obstacle }))
-    });
-    json!({
-        "preferred_mps": flat(choice.wish_mps),
-        "chosen_mps": flat(choice.chosen_mps),
-        "max_speed_mps": choice.max_speed_mps,
-        "lines": lines.collect::<Vec<_>>(),
-    })
-}
-
-/// A point of the border and the unit vector into the half-space; `None` without a border there.
-fn section(permitted: &Permitted, climb_mps: f32) -> Option<([f32; 2], [f32; 2])> {
-    let Permitted { point_mps: [px, py, pz], normal: [nx, ny, nz], .. } = *permitted;
-    let length = libm::hypotf(nx, ny);
-    let is_level = length < 1e-3;
-    let off = nz * (pz - climb_mps) / length;
-    (!is_level).then(|| {
-        let normal = [nx / length, ny / length];
-        ([px + normal[0] * off, py + normal[1] * off], normal)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_section_equals_the_half_space_at_its_climb() {
-        let plane = Permitted { point_mps: [0.3, -0.2, 0.0], normal: [0.6, 0.8, 0.0], is_of_obstacle: false };
-        assert_eq!(section(&plane, 0.7), Some(([0.3, -0.2], [0.6, 0.8])));
-        let space = Permitted { point_mps: [0.1, 0.2, 0.3], normal: [0.48, 0.36, 0.8], is_of_obstacle: false };
-        for climb in [-0.5, 0.0, 0.3, 1.0] {
-            let (point, normal) = section(&space, climb).expect("it cuts");
-            assert!((libm::hypotf(normal[0], normal[1]) - 1.0).abs() < 1e-6);
-            let off = (point[0] - 0.1) * 0.48 + (point[1] - 0.2) * 0.36 + (climb - 0.3) * 0.8;
-            assert!(off.abs() < 1e-6, "{off}");
-        }
-        let floor = Permitted { point_mps: [0.0; 3], normal: [0.0, 0.0, 1.0], is_of_obstacle: true };
-        assert_eq!(section(&floor, 1.0), None);
+        mind::robot(&self.engine, &self.scenario, origin_m, &self.events, (self.tick, index)).to_string()
     }
 }

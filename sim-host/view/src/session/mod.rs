@@ -1,33 +1,38 @@
 //! An interactive run; [`Session::run`] is its loop.
 //!
 //! The engine runs in the calling thread and never waits for pages. Each action of a page is an
-//! [`Intervention`] before the next tick, so the run is reproducible bit for bit: to go back in
-//! time, the engine restarts and repeats all ticks.
+//! [`Intervention`](staya_sim::scenario::Intervention) before the next tick, so the run is
+//! reproducible bit for bit: to go back in time, the engine restarts and repeats all ticks. An
+//! action in the past makes a new branch; the old one keeps its later actions and frames.
 
+mod branch;
 mod memory;
 mod message;
 mod text;
 
+pub(crate) use message::trail;
 pub use text::Configuration;
 
 use crate::frame::{FrameData, Framer};
+use crate::mind::Events;
 use crate::pace::{Pace, SLICE};
 use crate::server::{Client, FromPage, Server, WORDS};
-use memory::Memory;
+use branch::{Branch, Branches, changes_scene};
 use message::Wanted;
 use staya_sim::engine::{Engine, operated};
 use staya_sim::file::{TEXT, read_text};
-use staya_sim::scenario::{Intervention, Overrides, Scenario, ScenarioError};
+use staya_sim::scenario::{Overrides, Scenario, ScenarioError};
 use staya_sim::world::Misplaced;
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 const FRAME: Duration = Duration::from_millis(16);
 const STATE: Duration = Duration::from_millis(500);
 const SCENE: Duration = Duration::from_millis(250);
-const EVENTS: usize = 20;
-const ROWS: usize = 2000;
+const FIGURES: Duration = Duration::from_millis(100);
+/// Ticks of one request for past positions.
+const TRAIL: usize = 240;
 /// Limit of deferred requests; the page that sends another one is disconnected.
 const DEFERRED: usize = 256;
 
@@ -58,12 +63,14 @@ pub struct Session {
     framer: Framer,
     frame: FrameData,
     bytes: Vec<u8>,
-    memory: Memory,
-    done: Vec<(u32, Intervention)>,
-    events: HashMap<usize, VecDeque<(u32, String)>>,
+    branch: Branch,
+    branches: Branches,
+    events: Events,
     pace: Pace,
     /// The engine repeats the run up to this tick after a seek.
     catches_up_to: Option<u32>,
+    /// The engine runs on to this tick without regard to the clock.
+    runs_on_to: Option<u32>,
     /// Requests that wait for the end of the repetition.
     deferred: VecDeque<(Client, Wanted)>,
     /// Without any distance to go, only the last tick ends the run.
@@ -72,9 +79,11 @@ pub struct Session {
     pages: BTreeMap<Client, Looks>,
     is_new: bool,
     has_new_land: bool,
+    logs_links: bool,
     scene_told: Instant,
     shown: Instant,
     told: Instant,
+    figures_told: Instant,
 }
 
 impl Session {
@@ -105,19 +114,22 @@ impl Session {
             tick: 0,
             frame: FrameData::default(),
             bytes: Vec::new(),
-            memory: Memory::default(),
-            done: Vec::new(),
-            events: HashMap::new(),
+            branch: Branch::default(),
+            branches: Branches::default(),
+            events: Events::default(),
             catches_up_to: None,
+            runs_on_to: None,
             deferred: VecDeque::new(),
             has_work: false,
             is_over: false,
             pages: BTreeMap::new(),
             is_new: true,
             has_new_land: false,
+            logs_links: false,
             scene_told: now,
             shown: now,
             told: now,
+            figures_told: now,
         };
         session.take_frame();
         Ok(session)
@@ -138,7 +150,8 @@ impl Session {
     pub fn run(mut self, server: &Server, stop: &dyn Fn() -> bool) {
         while !stop() {
             let now = Instant::now();
-            let rest = if self.catches_up_to.is_some() { Some(Duration::ZERO) } else { self.pace.until_due(now) };
+            let is_busy = self.catches_up_to.is_some() || self.runs_on_to.is_some();
+            let rest = if is_busy { Some(Duration::ZERO) } else { self.pace.until_due(now) };
             let mut patience = rest.unwrap_or(STATE).min(STATE / 10);
             for _ in 0..WORDS {
                 let Some(word) = server.next(patience) else { break };
@@ -160,6 +173,14 @@ impl Session {
                 self.repeat(goal, server);
                 continue;
             }
+            if let Some(goal) = self.runs_on_to {
+                self.advance(server);
+                if self.tick >= goal || self.is_over {
+                    self.runs_on_to = None;
+                    self.tell(server);
+                }
+                continue;
+            }
             let now = Instant::now();
             if self.pace.until_due(now) != Some(Duration::ZERO) {
                 return;
@@ -170,11 +191,8 @@ impl Session {
     }
 
     fn advance(&mut self, server: &Server) {
-        let tick = self.tick;
-        self.done.retain(|(at, _)| *at <= tick);
-        self.memory.forget_from(tick + 1);
         self.step();
-        self.take_frame();
+        self.take_frame_if_new();
         let is_over = self.is_at_end();
         if is_over && !self.is_over {
             self.pace.pause();
@@ -191,29 +209,31 @@ impl Session {
         self.has_new_land |= self.scenario.changes.iter().any(|rule| rule.is_due(self.tick));
         self.engine.step();
         self.tick += 1;
+        self.repeat_orders();
         self.has_work |= !self.engine.is_over();
         for index in 0..self.scenario.robots.len() {
-            for event in self.engine.events(index) {
-                let events = self.events.entry(index).or_default();
-                if events.len() >= EVENTS {
-                    events.pop_front();
-                }
-                events.push_back((self.tick, message::event(event)));
-            }
+            self.events.add(&self.engine, index, self.tick);
+        }
+    }
+
+    /// Applies the orders that were given at this tick before.
+    fn repeat_orders(&mut self) {
+        for (_, what) in self.branch.done.iter().filter(|(tick, _)| *tick == self.tick) {
+            let _ = self.engine.intervene(what);
+            self.has_new_land |= changes_scene(what);
         }
     }
 
     fn repeat(&mut self, goal: u32, server: &Server) {
-        for (_, what) in self.done.iter().filter(|(tick, _)| *tick == self.tick) {
-            let _ = self.engine.intervene(what);
+        if self.tick + 1 >= goal {
+            self.log_links();
         }
         if self.tick < goal {
             return self.step();
         }
         self.catches_up_to = None;
         self.is_over = self.is_at_end();
-        self.engine.log_receptions(self.wants_links());
-        self.take_frame_of_past();
+        self.take_frame_if_new();
         self.send_scene(None, server);
         while let Some((client, asked)) = self.deferred.pop_front() {
             self.answer(client, asked, server);
@@ -223,24 +243,35 @@ impl Session {
         }
     }
 
-    fn go_back_to(&mut self, tick: u32) {
+    fn go_to(&mut self, tick: u32) {
         if tick < self.tick {
-            match operated(&self.scenario) {
-                Ok(engine) => (self.engine, self.tick, self.has_work) = (engine, 0, false),
-                Err(_) => return,
-            }
-            self.events.clear();
-        } else if tick > self.tick {
-            self.step();
-        } else {
-            return;
+            self.start_again(tick);
+        } else if tick > self.tick || self.catches_up_to.is_some() {
+            self.catches_up_to = Some(tick);
         }
+    }
+
+    /// Repeats the run from its start up to `tick`.
+    fn start_again(&mut self, tick: u32) {
+        let Ok(engine) = operated(&self.scenario) else { return };
+        (self.engine, self.tick, self.has_work, self.logs_links) = (engine, 0, false, false);
+        self.events.clear();
+        self.repeat_orders();
         self.catches_up_to = Some(tick);
+    }
+
+    fn take_frame_if_new(&mut self) {
+        if self.branch.memory.last() < Some(self.tick) {
+            self.take_frame();
+        } else {
+            self.take_frame_of_past();
+        }
     }
 
     fn take_frame(&mut self) {
         self.take_frame_of_past();
-        self.memory.put(self.tick, &self.bytes);
+        self.branch.memory.put(self.tick, &self.bytes);
+        self.branch.series.put(self.tick, &self.frame.figures);
     }
 
     /// The present frame, while later ones are stored.
@@ -255,6 +286,9 @@ impl Session {
         let now = Instant::now();
         if now.duration_since(self.told) >= STATE {
             self.tell(server);
+        }
+        if now.duration_since(self.figures_told) >= FIGURES {
+            self.tell_figures(server);
         }
         if self.has_new_land && self.catches_up_to.is_none() && now.duration_since(self.scene_told) >= SCENE {
             (self.has_new_land, self.scene_told) = (false, now);
@@ -285,8 +319,15 @@ impl Session {
         }
     }
 
-    fn wants_links(&self) -> bool {
-        self.pages.values().any(|looks| looks.links)
+    /// Logs the links of the next ticks if a page wants them. Returns whether they were not logged.
+    fn log_links(&mut self) -> bool {
+        let wants_links = self.pages.values().any(|looks| looks.links);
+        let is_new = wants_links && !self.logs_links;
+        if wants_links != self.logs_links {
+            self.logs_links = wants_links;
+            self.engine.log_receptions(wants_links);
+        }
+        is_new
     }
 
     fn hear(&mut self, word: FromPage, server: &Server) {
@@ -294,13 +335,17 @@ impl Session {
             FromPage::Opened(client) => {
                 self.pages.insert(client, Looks::default());
                 self.send_scene(Some(client), server);
+                server.say(Some(client), self.orders());
                 self.tell(server);
+                server.say(Some(client), self.branch.series.all());
             }
             FromPage::Closed(client) => {
                 self.pages.remove(&client);
-                self.engine.log_receptions(self.wants_links());
+                self.log_links();
             }
             FromPage::Said(client, text) => match Wanted::read(&text) {
+                // A later seek replaces the one that is under way.
+                Ok(asked @ Wanted::Seek { .. }) if self.deferred.is_empty() => self.answer(client, asked, server),
                 Ok(asked) if self.catches_up_to.is_some() && asked.needs_the_run() => {
                     if self.deferred.len() < DEFERRED {
                         self.deferred.push_back((client, asked));
@@ -317,6 +362,9 @@ impl Session {
 
     fn answer(&mut self, client: Client, asked: Wanted, server: &Server) {
         let error = |text: &str| server.say(Some(client), message::error(text));
+        if asked.needs_the_run() {
+            self.runs_on_to = None;
+        }
         match asked {
             Wanted::Pause => self.pace.pause(),
             Wanted::Play => self.pace.play(),
@@ -327,11 +375,10 @@ impl Session {
             Wanted::Speed { x } => self.pace.set_speed(x),
             Wanted::Seek { tick } => {
                 self.pace.pause();
-                self.go_back_to(tick.min(self.last_tick()));
-                if let Some(frame) = self.memory.at(tick) {
-                    self.bytes = frame.to_vec();
-                    self.is_new = true;
-                }
+                let known = tick.min(self.last_tick());
+                self.runs_on_to = (tick > known).then_some(tick);
+                self.show_past(known);
+                self.go_to(known);
             }
             Wanted::Select { robot } => {
                 let robot = robot.filter(|robot| *robot < self.scenario.robots.len());
@@ -344,13 +391,33 @@ impl Session {
                 if let Some(looks) = self.pages.get_mut(&client) {
                     looks.links = on;
                 }
-                self.engine.log_receptions(self.wants_links());
+                // The links of the last tick are known only if they were logged before it.
+                if self.log_links() && self.pace.is_paused() && self.catches_up_to.is_none() {
+                    self.start_again(self.tick);
+                }
+                self.is_new = true;
             }
+            Wanted::Trail { ticks, branch } => {
+                let trail = self.trail(&ticks[..ticks.len().min(TRAIL)], branch);
+                return server.say(Some(client), trail);
+            }
+            Wanted::Branch { number } => match self.branches.take(number) {
+                Some(branch) => {
+                    let old = std::mem::replace(&mut self.branch, branch);
+                    self.branches.put(old);
+                    self.show_branch(self.tick.min(self.last_stored()), server);
+                }
+                None => error(&format!("there is no branch {number}; reload the page")),
+            },
+            Wanted::Undo => match self.branches.undo(&mut self.branch) {
+                Some(tick) => self.show_branch(tick, server),
+                None => error("there is no change to undo"),
+            },
             Wanted::Seen { frames } => server.seen(client, frames),
             Wanted::Save => {
                 let hash = &self.frame.figures.hash;
-                let text = text::saved(&self.text, &self.scenario, &self.done, self.tick, hash);
-                server.say(Some(client), message::saved(&self.scenario.name, &text));
+                let text = text::saved(&self.text, &self.scenario, &self.branch, self.tick, hash);
+                server.say(Some(client), message::saved(&self.scenario.name, &self.branch, &text));
             }
             Wanted::Restart { seed } => {
                 let seed = seed.unwrap_or(self.scenario.seed);
@@ -380,25 +447,6 @@ impl Session {
         self.tell(server);
     }
 
-    fn note(&mut self, what: Intervention, server: &Server) {
-        let tick = self.tick;
-        self.done.retain(|(at, _)| *at <= tick);
-        self.memory.forget_from(tick + 1);
-        let changes_scene = !matches!(
-            what,
-            Intervention::Goal { .. }
-                | Intervention::Waypoint { .. }
-                | Intervention::Down { .. }
-                | Intervention::Radio { .. }
-        );
-        self.done.push((tick, what));
-        self.is_over = false;
-        self.take_frame();
-        if changes_scene {
-            self.send_scene(None, server);
-        }
-    }
-
     fn replace(
         &mut self,
         text: String,
@@ -410,20 +458,22 @@ impl Session {
         fresh.pages = self.pages.keys().map(|client| (*client, Looks::default())).collect();
         *self = fresh;
         self.send_scene(None, server);
+        server.say(None, self.orders());
         Ok(())
     }
 
+    fn last_stored(&self) -> u32 {
+        self.branch.memory.last().unwrap_or_default()
+    }
+
     fn last_tick(&self) -> u32 {
-        self.memory.last().map_or(self.tick, |last| last.max(self.tick))
+        self.last_stored().max(self.tick)
     }
 
     /// Frames have no meaning without scene and state.
     fn send_scene(&mut self, to: Option<Client>, server: &Server) {
         server.send_scene(to, self.scene());
         self.has_new_land &= to.is_some();
-        if let Some(rows) = self.rows(ROWS) {
-            server.say(to, rows);
-        }
         self.is_new = true;
         // The next frame comes soon rather than after the usual interval.
         self.shown = self.shown.checked_sub(FRAME).unwrap_or(self.shown);
@@ -432,6 +482,14 @@ impl Session {
     fn tell(&mut self, server: &Server) {
         self.told = Instant::now();
         server.say(None, self.state());
+        self.tell_figures(server);
+    }
+
+    fn tell_figures(&mut self, server: &Server) {
+        self.figures_told = Instant::now();
+        if self.branch.series.has_unsent() {
+            server.say(None, self.branch.series.unsent());
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 use super::*;
 use crate::frame::FrameData;
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 use staya_sim::engine::simulate;
 use std::net::{SocketAddr, TcpStream};
@@ -156,11 +158,81 @@ fn a_saved_scenario_repeats_the_actions_of_a_page() {
     assert_ne!(hash(text), hash(IN_PLANE));
     run.say(&json!({ "do": "seek", "tick": 5 }));
     run.state(|state| state["tick"] == 5);
+    // Playing from the past repeats the later orders.
     run.last = None;
     run.say(&json!({ "do": "play" }));
-    let state = run.state(|state| state["at_end"] == true && state["tick"].as_u64() > Some(5));
+    let again = run.state(|state| state["at_end"] == true && state["tick"].as_u64() > Some(5));
+    assert_eq!(again["tick"], last);
+    assert_eq!(run.frame(u32::try_from(last).expect("small")).figures.hash, hash(text));
+    // All six orders undone.
+    for left in (0..6).rev() {
+        run.say(&json!({ "do": "undo" }));
+        run.state(|state| {
+            let branches = state["branches"].as_array().expect("a list").iter();
+            branches.clone().any(|each| each["number"] == state["branch"] && each["orders"] == left)
+        });
+    }
+    run.last = None;
+    run.say(&json!({ "do": "play" }));
+    let state = run.state(|state| state["at_end"] == true && state["paused"] == true && state["tick"] != last);
     let last = u32::try_from(state["tick"].as_u64().expect("a number")).expect("small");
     assert_eq!(run.frame(last).figures.hash, hash(IN_PLANE));
+}
+
+#[test]
+fn an_order_in_the_past_makes_a_branch_and_the_old_future_stays() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    run.say(&json!({ "do": "seek", "tick": 40 }));
+    let end = run.frame(40).figures.hash;
+    run.state(|state| state["tick"] == 40 && state["last"] == 40);
+    run.say(&json!({ "do": "seek", "tick": 10 }));
+    run.state(|state| state["tick"] == 10);
+    run.say(&json!({ "do": "order", "order": { "kind": "goal", "robot": 0, "place_m": [3, 3, 0] } }));
+    let state = run.state(|state| state["branch"] == 2);
+    assert_eq!((&state["last"], &state["branches"][0]["last"]), (&json!(10), &json!(40)));
+    assert_eq!(state["branches"][1], json!({ "number": 2, "from": 10, "last": 10, "orders": 1 }));
+    run.say(&json!({ "do": "seek", "tick": 40 }));
+    run.state(|state| state["tick"] == 40 && state["last"] == 40);
+    run.say(&json!({ "do": "branch", "number": 1 }));
+    run.until(|message| message.err().filter(|frame| frame.tick == 40 && frame.figures.hash == end));
+    run.state(|state| state["branch"] == 1 && state["last"] == 40);
+    for wrong in [json!({ "do": "branch", "number": 1 }), json!({ "do": "undo" })] {
+        run.say(&wrong);
+        assert!(run.text("error")["text"].is_string(), "{wrong}");
+    }
+}
+
+#[test]
+fn a_later_seek_replaces_the_one_under_way() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    run.say(&json!({ "do": "seek", "tick": 60 }));
+    run.state(|state| state["tick"] == 60 && state["paused"] == true);
+    // More than the number of requests that may wait.
+    for tick in (0..2 * DEFERRED).map(|at| at % 60) {
+        run.say(&json!({ "do": "seek", "tick": tick }));
+    }
+    run.say(&json!({ "do": "seek", "tick": 17 }));
+    run.say(&json!({ "do": "order", "order": { "kind": "goal", "robot": 0, "place_m": [3, 3, 0] } }));
+    let state = run.state(|state| state["branch"] == 2);
+    assert_eq!((&state["tick"], &state["branches"][1]["from"]), (&json!(17), &json!(17)));
+}
+
+#[test]
+fn past_positions_and_all_figures_are_sent() {
+    let mut run = Running::new(IN_PLANE);
+    run.text("scene");
+    run.say(&json!({ "do": "seek", "tick": 12 }));
+    let frame = run.frame(12);
+    run.say(&json!({ "do": "trail", "ticks": [0, 5, 12] }));
+    let trail = run.text("trail");
+    let rows = trail["rows"].as_array().expect("a list");
+    assert_eq!(rows.iter().map(|row| row[0].as_u64()).collect::<Vec<_>>(), [Some(0), Some(5), Some(12)]);
+    let bytes = BASE64_STANDARD.decode(rows[2][1].as_str().expect("a text")).expect("base64");
+    let columns = [0, 1].into_iter().flat_map(|axis| frame.position_m.iter().map(move |at| at[axis]));
+    assert_eq!(trail["branch"], Value::Null);
+    assert_eq!(bytes, columns.flat_map(f32::to_le_bytes).collect::<Vec<_>>());
 }
 
 #[test]

@@ -1,5 +1,6 @@
+use super::branch::Branch;
 use staya_controller::rand::Rng;
-use staya_sim::scenario::{Intervention, Scenario, with_interventions};
+use staya_sim::scenario::{Scenario, with_interventions};
 use std::fmt::Write as _;
 
 const RANDOM: u32 = u32::from_be_bytes(*b"view");
@@ -16,14 +17,20 @@ pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)], tick: u32, hash: &str) -> String {
+pub(super) fn saved(text: &str, scenario: &Scenario, branch: &Branch, tick: u32, hash: &str) -> String {
+    let Branch { number, from, done, .. } = branch;
     let text = with_top_field(text, "seed", &scenario.seed.to_string());
     // No event of the file may be after the end.
-    let ticks = scenario.ticks.max(tick).max(scenario.last_event());
+    let last_change = done.last().map_or(0, |(tick, _)| *tick);
+    let ticks = scenario.ticks.max(tick).max(scenario.last_event()).max(last_change);
     let text = with_top_field(&text, "ticks", &ticks.to_string());
+    let (changes, from_s) = (done.len(), f64::from(*from) * scenario.tick_s());
+    let unit = if changes == 1 { "change" } else { "changes" };
+    let origin = if *number > 1 { format!(", which begins at {from_s} s") } else { String::new() };
     let head = format!(
-        "# Saved from a view. Relative paths refer to the folder of the original scenario.\n\
-         # Trace hash after tick {tick}: {hash}\n"
+        "# Saved from a view: branch {number}{origin}, with {changes} {unit} by pages.\n\
+         # Trace hash after tick {tick}: {hash}\n\
+         # Relative paths refer to the folder of the original scenario.\n"
     );
     head + &with_interventions(&text, scenario.tick_us, done)
 }
@@ -103,7 +110,7 @@ mod tests {
                     start_m = [0, 0]\ngoal_m = [6, 0]\n[[fault]]\nrobot = 1\nat_s = 70\n";
         let (path, shorter) = (Path::new("t.toml"), Overrides { seed: None, ticks: Some(20) });
         let scenario = Scenario::parse_with(text, path, &shorter, &[]).expect("good");
-        let saved = saved(text, &scenario, &[], 30, "");
+        let saved = saved(text, &scenario, &Branch::default(), 30, "");
         let read = Scenario::parse_with(&saved, path, &Overrides::default(), &[]).expect("good");
         assert_eq!(read.ticks, 70);
     }

@@ -81,7 +81,8 @@ impl From<Beat> for u8 {
 ///
 /// *Claims:* a robot takes its move back if another one has said that it stays in that cell, or
 /// that it enters the cell and has waited longer. A robot half a cell from its path is late: it
-/// stays in the next step. A robot that is late for long begins again in the cell that it is in.
+/// stays in the next step. A robot that is late for long begins again in the cell that it is in,
+/// and counts the cell that it did not get into as blocked.
 /// Where robots share a cell, those farther from the centre leave it first, to their side of it,
 /// and others make way for them.
 ///
@@ -185,13 +186,14 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
     }
 }
 
-/// The moves to the side of a cell on which a body is, as bits of [`Dir::index`].
-fn ways<S: Scalar>(off_m: Vec2<S>) -> u8 {
-    let leads = |dir: &&Dir| {
+/// The move to the side of its cell on which a body is.
+fn outwards<S: Scalar>(off_m: Vec2<S>) -> Dir {
+    let along = |dir: Dir| {
         let Cell { x, y } = dir.offset();
-        off_m.x * S::from_i32(x.into()) + off_m.y * S::from_i32(y.into()) >= S::ZERO
+        off_m.x * S::from_i32(x.into()) + off_m.y * S::from_i32(y.into())
     };
-    Moves::FOUR.dirs().iter().filter(leads).fold(0, |ways, dir| ways | 1 << dir.index())
+    let farthest = |a: Dir, b: &Dir| if along(*b) > along(a) { *b } else { a };
+    Moves::FOUR.dirs().iter().fold(Dir::North, farthest)
 }
 
 /// The time of a step: a body turns a corner in it. `None` if it is not a minute at most.
@@ -233,6 +235,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
             self.before = self.from;
             self.from = self.from + self.by.offset();
             self.late = if self.is_late { self.late.saturating_add(1) } else { 0 };
+            let refused = (self.late >= GIVES_UP).then_some(self.from).filter(|&cell| cell != under);
             if self.late >= GIVES_UP {
                 (self.before, self.from, self.late) = (under, under, 0);
             }
@@ -242,6 +245,9 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
                 robot.set_goal(goal);
             }
             robot.set_step(self.step);
+            if let Some(cell) = refused {
+                robot.close(cell);
+            }
             robot.see(self.from, &sight(self.from, under, &window));
             for (other, InStepPayload { said, by, beat }) in view.peers() {
                 // A robot whose step began already was there when it began.
@@ -270,7 +276,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
                     its == cell && (its_m.norm(), other.0) < (off_m.norm(), id.0)
                 };
                 if bodies.iter().any(is_nearer) {
-                    robot.share(id, ways(off_m));
+                    robot.share(id, outwards(off_m));
                 }
             }
             let was_late = self.is_late;

@@ -30,7 +30,7 @@ impl Protocol for Negotiation {
     type Order = GridOrder;
 }
 
-/// What a robot that negotiates says in its beacon; 16 bytes at most on the air.
+/// The payload of a robot that negotiates; 16 bytes at most on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NegotiationPayload {
     /// Where it is, or goes to in this tick.

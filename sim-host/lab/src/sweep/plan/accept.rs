@@ -2,9 +2,8 @@
 
 use super::table::AcceptTable;
 use super::{LIST, Plan};
-use crate::sweep::SweepError;
-use crate::sweep::aggregate::Point;
-use crate::sweep::value::{Figure, Value, short};
+use crate::error::SweepError;
+use crate::sweep::value::{Figure, Point, Value, short};
 use serde::Serialize;
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{ScenarioError, Source, fields};

@@ -1,7 +1,7 @@
 //! Fields and their values: `axes`, `zip`, `sample` and `set` of a plan.
 
 use super::table::{PlanFile, RangeTable, SampleTable};
-use crate::sweep::SweepError;
+use crate::error::SweepError;
 use crate::sweep::sample::shares;
 use crate::sweep::value::Value;
 use staya_sim::scenario::{Field, Node, Read as _, ScenarioError, Source};
@@ -23,6 +23,13 @@ pub struct Axis {
     /// Values come from a range, which is invalid for text fields.
     pub is_range: bool,
     span: Range<usize>,
+}
+
+impl Axis {
+    /// Whether the axis is not one of the plan's file.
+    pub fn is_added(&self) -> bool {
+        self.line == 0 && self.span == (0..0)
+    }
 }
 
 /// Fields that a plan varies or sets.

@@ -1,6 +1,7 @@
 //! Checks the runs of a plan before the first one starts.
 
 use super::Plan;
+use crate::error::SweepError;
 use crate::sweep::jobs;
 use staya_sim::engine::simulate;
 use staya_sim::scenario::{ScenarioError, Source};
@@ -10,15 +11,18 @@ use std::ops::ControlFlow;
 
 const MOST: u64 = 500;
 
-/// Checks points with the scenario's parser and returns the names of all figures.
-pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
-    let mut known = figures(plan, source)?;
+/// Checks points with the reader of the scenario or study and returns the names of all figures.
+pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, SweepError> {
+    let known = match plan.study {
+        Some(study) => study.measures().into_iter().map(|(name, _)| name).collect(),
+        None => figures(plan, source)?,
+    };
     let points: Vec<u64> = points(plan).into_iter().collect();
     let mut wrong = None;
     jobs::each(
         points.len(),
         usize::MAX,
-        |(): &mut (), index| plan.scenario(&plan.run(points[index] * plan.seeds())).map(drop),
+        |index| plan.job(&plan.run(points[index] * plan.seeds())).map(drop),
         |index, read| match read {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => {
@@ -32,12 +36,14 @@ pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioEr
     );
     match wrong {
         Some((_, error)) => Err(error),
-        None => Ok(std::mem::take(&mut known)),
+        None => Ok(known),
     }
 }
 
 fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
-    let scenario = plan.scenario(&plan.run(0))?;
+    let run = plan.run(0);
+    let given = plan.given(&run)?;
+    let scenario = given.scenario().map_err(|error| plan.said_of_plan(&run, error))?;
     let outcome = simulate(&scenario, |_, _| ControlFlow::Break(())).map_err(|error| {
         source.error(
             "scenario",

@@ -13,8 +13,10 @@ table! {
         pub name: String;
         /// One line.
         pub title: String = String::new();
-        /// Several scenarios are the first axis.
-        pub scenario: Files;
+        /// Several scenarios are the first axis. Required without `study`.
+        pub scenario: Option<Files>;
+        /// Kind of run instead of runs of the scenario.
+        pub study: Option<String>;
         /// Default: the scenario's own seed.
         pub seeds: Option<Seeds>;
         /// Figures of `summary.json`. Default: all except the reasons for waiting.
@@ -31,6 +33,10 @@ table! {
         pub plot: Vec<PlotTable> = Vec::new();
         /// Points of which the first run is drawn.
         pub picture: Vec<PictureTable> = Vec::new();
+        /// Distributions of figures over the runs of some points.
+        pub histogram: Vec<HistogramTable> = Vec::new();
+        /// Means of figures minus those at one value of an axis.
+        pub gain: Vec<GainTable> = Vec::new();
         /// A CSV file with values of a paper: columns of axes, then of measures.
         pub reference: Option<PathBuf>;
         /// Conditions on the measures.
@@ -130,6 +136,8 @@ table! {
         pub over: String;
         /// The second axis: curves if it has a few values, else a map.
         pub and: Option<String>;
+        /// Whether the axes of curves are logarithmic. Default: false.
+        pub log: bool = false;
     }
 }
 
@@ -138,6 +146,29 @@ table! {
     pub struct PictureTable {
         /// Values of axes; a list for several. Default: all points.
         pub r#where: AnyTable = AnyTable;
+    }
+}
+
+table! {
+    /// `[[histogram]]`: the distribution of a figure, with its Norton-Rice law.
+    pub struct HistogramTable {
+        /// A figure that the plan records.
+        pub figure: String;
+        /// Values of axes; a list for several. Default: all points.
+        pub r#where: AnyTable = AnyTable;
+    }
+}
+
+table! {
+    /// `[[gain]]`: means of a figure minus those at one value of an axis.
+    #[derive(PartialEq)]
+    pub struct GainTable {
+        /// A figure that the plan records.
+        pub figure: String;
+        /// The axis.
+        pub over: String;
+        /// Its value without gain.
+        pub from: f64;
     }
 }
 

@@ -52,10 +52,23 @@ fn axes_are_crossed_in_the_order_of_the_file_and_seeds_change_first() {
 }
 
 #[test]
+fn axes_of_the_command_line_are_plotted_too() {
+    let folder = folder();
+    let text = "name = 'p'\nscenario = 'duel.toml'\n[axes]\nradio.loss = [0, 1]\n\
+        [[plot]]\nfigure = 'arrived'\nover = 'radio.loss'\n";
+    let fields = ["radio.delay_ms=1,2", "radio.loss=0,0.5", "ticks=5"].map(|change| change.parse().unwrap()).to_vec();
+    let changes = Changes { fields, ..Changes::default() };
+    let plan = Plan::parse(text, &folder.path().join("plan.toml"), &changes).unwrap();
+    let plots = crate::sweep::pictures::plots(&plan);
+    let axes: Vec<_> = plots.iter().map(|plot| (&*plot.over, plot.and.as_deref())).collect();
+    assert_eq!(axes, [("radio.loss", None), ("radio.delay_ms", Some("radio.loss"))]);
+}
+
+#[test]
 fn run_is_the_scenario_with_the_values_of_its_point() {
     let plan =
         plan("seeds = { from = 40, count = 2 }\n[set]\nticks = 33\n[axes]\nplane.robots.circle.count = [2, 6]\n");
-    let scenario = plan.scenario(&plan.run(3)).expect("a scenario");
+    let scenario = plan.given(&plan.run(3)).unwrap().scenario().expect("a scenario");
     assert_eq!((scenario.robots.len(), scenario.seed, scenario.ticks), (6, 41, 33));
     let folder = folder();
     let plan = parse(&folder, "[axes]\nradio.loss = [0, 1]\n").expect("a plan");
@@ -356,7 +369,7 @@ fn several_scenarios_are_the_first_axis() {
     let load = |changes: &Changes| Plan::parse(text, &folder.path().join("plan.toml"), changes).expect("a plan");
     let plan = load(&Changes::default());
     assert_eq!((plan.runs(), plan.values_of(3)), (4, vec!["six".into(), "0.5".into()]));
-    let robots = |plan: &Plan, run| plan.scenario(&plan.run(run)).expect("a scenario").robots.len();
+    let robots = |plan: &Plan, run| plan.given(&plan.run(run)).unwrap().scenario().expect("a scenario").robots.len();
     assert_eq!((robots(&plan, 0), robots(&plan, 3)), (4, 6));
     assert_eq!(robots(&load(&fields(&["scenario=six"])), 0), 6);
 }

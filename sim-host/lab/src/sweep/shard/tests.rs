@@ -33,7 +33,7 @@ fn done(
     existing: Existing,
     may_continue: &(dyn Fn() -> bool + Sync),
 ) -> Result<Course, SweepError> {
-    perform_shard(plan, shard, out, existing, |(): &mut (), run| perform(plan, run, may_continue), |_, _| {})
+    perform_shard(plan, shard, out, existing, |run| perform(plan, run, may_continue), |_, _| {})
 }
 
 fn perform_all(plan: &Plan, out: &Path, shards: &[&str], existing: Existing) -> Course {
