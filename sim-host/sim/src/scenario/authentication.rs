@@ -123,15 +123,11 @@ fn attack(
         return Err(source.error(field, "kind = \"insider\" requires lies, and no other kind has them", remedy));
     }
     let has_ghosts = table.lies.contains(&Lie::Ghosts);
-    let ghosts = table.ghosts.unwrap_or(16);
-    if table.ghosts.is_some() && !has_ghosts || !(1..=100).contains(&ghosts) {
-        let remedy = "give 1 to 100, with lies = [\"ghosts\"]";
-        return Err(source.error(
-            &format!("{field}.ghosts"),
-            "the number of ghosts is out of range, or lies does not contain \"ghosts\"",
-            remedy,
-        ));
+    if table.ghosts.is_some() && !has_ghosts {
+        let what = "lies does not contain \"ghosts\"";
+        return Err(source.error(&format!("{field}.ghosts"), what, "give lies = [\"ghosts\"], or leave it out"));
     }
+    let ghosts = table.ghosts.unwrap_or(16);
     let lure_m = match (table.kind, table.lure_m, table.delay_s) {
         (AttackKind::Replay, None, _) => [0.0; 2],
         (AttackKind::Forge | AttackKind::Unsigned | AttackKind::Insider, Some(lure_m), None) => lure_m,
@@ -162,11 +158,8 @@ fn attack(
     }
     if has_ghosts && claims.0.max(last.0) + u32::from(ghosts) > most.0 {
         let remedy = format!("give fewer; numbers end at {}", most.0);
-        return Err(source.error(
-            &format!("{field}.ghosts"),
-            format!("there are not enough robot numbers for {ghosts} ghosts"),
-            remedy,
-        ));
+        let what = format!("there are not enough robot numbers for {ghosts} ghosts");
+        return Err(source.error(&format!("{field}.ghosts"), what, remedy));
     }
     let from_tick = tick(table.from_s);
     let to_tick = table.to_s.map_or(u32::MAX, tick);

@@ -4,7 +4,7 @@ use super::intervention::tick;
 use super::params::{FormationLaw, GridTable};
 use super::ranges::{micros, short};
 use super::source::Source;
-use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
+use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable, UniformTable};
 use crate::file::has_memory;
 use crate::radio;
 use crate::terrain::generate::{self, LandPlan};
@@ -17,11 +17,8 @@ use std::path::Path;
 pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if file.name.is_empty() || file.name.len() > 100 || !file.name.chars().all(allowed) {
-        return Err(source.error(
-            "name",
-            format!("{:?} cannot name a folder of results", file.name),
-            "use 1 to 100 letters, digits, - and _",
-        ));
+        let remedy = "use 1 to 100 letters, digits, - and _";
+        return Err(source.error("name", format!("{:?} cannot name a folder of results", file.name), remedy));
     }
     if file.ticks == 0 {
         return Err(source.error("ticks", "a run needs at least one tick", "give 1 or more"));
@@ -75,29 +72,22 @@ pub(super) fn numbers(
 pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let radio = &file.radio;
     if radio.range_m.is_nan() || radio.range_m < 0.0 {
-        return Err(source.error(
-            "radio.range_m",
-            format!("{} is not a distance", short(radio.range_m)),
-            "give metres, 0 or more, or inf",
-        ));
+        let remedy = "give metres, 0 or more, or inf";
+        return Err(source.error("radio.range_m", format!("{} is not a distance", short(radio.range_m)), remedy));
     }
     if let Some(burst) = &radio.burst {
         let least_ms = file.tick_s * 1000.0 / (1.0 - burst.share);
         if !(burst.mean_ms >= least_ms && burst.mean_ms <= 600_000.0) {
-            return Err(source.error(
-                "radio.burst.mean_ms",
-                format!("{} is out of range", short(burst.mean_ms)),
-                format!("with this tick and share, give {least_ms:.1} to 600000 milliseconds"),
-            ));
+            let what = format!("{} is out of range", short(burst.mean_ms));
+            let remedy = format!("with this tick and share, give {least_ms:.1} to 600000 milliseconds");
+            return Err(source.error("radio.burst.mean_ms", what, remedy));
         }
     }
     for (index, [from, to]) in radio.blackout_s.iter().enumerate() {
         if !(*from >= 0.0 && from < to && to.is_finite()) {
-            return Err(source.error(
-                &format!("radio.blackout_s[{index}]"),
-                format!("[{}, {}] is not a time span", short(*from), short(*to)),
-                "give [from, to] in seconds after the start with 0 <= from < to",
-            ));
+            let what = format!("[{}, {}] is not a time span", short(*from), short(*to));
+            let remedy = "give [from, to] in seconds after the start with 0 <= from < to";
+            return Err(source.error(&format!("radio.blackout_s[{index}]"), what, remedy));
         }
     }
     Ok(())
@@ -156,40 +146,31 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
         let remedy = "give terrain.file, or leave it out";
         return Err(source.error("terrain.load", "only map files are converted", remedy));
     }
-    let plan = |width, height, classes, seed: Option<u64>| LandPlan {
-        width,
-        height,
-        classes,
-        seed: seed.unwrap_or(file.seed),
+    let plan = |size: UniformTable| {
+        let UniformTable { width, height, classes, seed } = size;
+        LandPlan { width, height, classes, seed: seed.unwrap_or(file.seed) }
     };
     let (field, made) = match (&table.file, table.uniform, table.natural, table.entropy) {
         (Some(name), None, None, None) => ("terrain.file", load(source, table, name)),
-        (None, Some(t), None, None) => {
-            let plan = plan(t.width, t.height, t.classes, t.seed);
-            ("terrain.uniform", generate::uniform(&plan))
-        }
+        (None, Some(size), None, None) => ("terrain.uniform", generate::uniform(&plan(size))),
         (None, None, Some(t), None) => {
-            let plan = plan(t.width, t.height, t.classes, t.seed);
+            let plan = plan(t.size);
             let made = generate::natural_by(&plan, t.obstacles, t.norm, t.hills);
             let order = |land| if t.shuffled { generate::shuffled(&land, plan.seed) } else { Ok(land) };
             ("terrain.natural", made.and_then(order))
         }
         (None, None, None, Some(t)) => {
-            let plan = plan(t.width, t.height, t.classes, t.seed);
             let wanted = generate::ByMetrics {
                 entropy: t.entropy,
                 entropy_tolerance: t.entropy_tolerance,
                 total_edge: t.total_edge,
                 edge_tolerance: t.edge_tolerance,
             };
-            ("terrain.entropy", generate::by_metrics(&plan, &wanted))
+            ("terrain.entropy", generate::by_metrics(&plan(t.size), &wanted))
         }
         _ => {
-            return Err(source.error(
-                "terrain",
-                "it is not clear what land is meant",
-                "give exactly one of file, uniform, natural, entropy",
-            ));
+            let remedy = "give exactly one of file, uniform, natural, entropy";
+            return Err(source.error("terrain", "it is not clear what land is meant", remedy));
         }
     };
     let made = made.map_err(|error| terrain_error(source, field, &error))?;
@@ -233,19 +214,13 @@ fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> Scen
 pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let in_formation = file.in_formation();
     if !in_formation && source.has("formation") {
-        return Err(source.error(
-            "formation",
-            "these robots keep no formation",
-            "give robots.formation, or leave this table out",
-        ));
+        let remedy = "give robots.formation, or leave this table out";
+        return Err(source.error("formation", "these robots keep no formation", remedy));
     }
     law_only(source, file)?;
     if in_formation && matches!(file.route.replan, Some(Replan::UntilChanged)) {
-        return Err(source.error(
-            "route.replan",
-            "robots in formation search in each cell",
-            "give \"each_cell\", or leave it out",
-        ));
+        let remedy = "give \"each_cell\", or leave it out";
+        return Err(source.error("route.replan", "robots in formation search in each cell", remedy));
     }
     Ok(())
 }
@@ -313,11 +288,9 @@ pub(super) fn faults(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot])
     for (index, fault) in file.fault.iter().enumerate() {
         let robot = RobotId(fault.robot);
         if robots.binary_search_by_key(&robot, |r| r.id).is_err() {
-            return Err(source.error(
-                &format!("fault[{index}].robot"),
-                format!("there is no robot {}", fault.robot),
-                "give the number of a robot of this scenario",
-            ));
+            let what = format!("there is no robot {}", fault.robot);
+            let remedy = "give the number of a robot of this scenario";
+            return Err(source.error(&format!("fault[{index}].robot"), what, remedy));
         }
         let tick = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
         faults.push(Fault { robot, from_tick: tick(fault.at_s), to_tick: tick(fault.at_s + fault.down_s) });

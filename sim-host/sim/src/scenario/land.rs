@@ -57,19 +57,13 @@ impl Entry<'_> {
             }
             (None, None, Some(corners)) => {
                 if corners.len() < 3 || corners.as_flattened().iter().any(|x| !x.is_finite()) {
-                    return Err(self.error(
-                        "polygon_m",
-                        "this is not a polygon",
-                        "give three corners or more, in metres",
-                    ));
+                    let remedy = "give three corners or more, in metres";
+                    return Err(self.error("polygon_m", "this is not a polygon", remedy));
                 }
                 let cells: Vec<Cell> = all().filter(|cell| contains(corners, land.center_m(*cell))).collect();
                 if cells.is_empty() {
-                    return Err(self.error(
-                        "polygon_m",
-                        "no cell has its middle in it",
-                        "give a larger one, on the map",
-                    ));
+                    let remedy = "give a larger one, on the map";
+                    return Err(self.error("polygon_m", "no cell has its middle in it", remedy));
                 }
                 Ok(Some(cells))
             }
@@ -90,11 +84,8 @@ impl Entry<'_> {
         let kind = match (table.class, table.drift) {
             (Some(class), None) => {
                 let Some(cells) = cells else {
-                    return Err(self.error(
-                        "class",
-                        "it is not said of which cells",
-                        "give cells, rectangle or polygon_m",
-                    ));
+                    let remedy = "give cells, rectangle or polygon_m";
+                    return Err(self.error("class", "it is not said of which cells", remedy));
                 };
                 if every.is_some() && lasts.is_none() {
                     return Err(self.error("every_s", "a change without an end cannot repeat", "give for_s, too"));
@@ -105,10 +96,6 @@ impl Entry<'_> {
             (None, Some(drift)) => {
                 if lasts.is_some() {
                     return Err(self.error("for_s", "a drift is never over", "leave it out"));
-                }
-                if drift.step == 0 || drift.classes == Some(0) {
-                    let name = if drift.step == 0 { "drift.step" } else { "drift.classes" };
-                    return Err(self.error(name, "0 ticks change nothing", "give 1 to 255"));
                 }
                 let slowest = land.cells().iter().copied().max().unwrap_or(1);
                 let count = cells.as_ref().map_or(land.cells().len(), Vec::len);
@@ -132,7 +119,7 @@ pub(super) fn changes(
 }
 
 /// Even-odd test: a ray to the east crosses an odd number of the polygon's sides.
-fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+pub(super) fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let before = corners.iter().cycle().skip(corners.len() - 1);
     let sides = before.zip(corners).filter(|([_, from], [_, to])| (*from > y) != (*to > y));
     let crossed = sides.filter(|([x0, y0], [x1, y1])| x < x0 + (x1 - x0) * (y - y0) / (y1 - y0));

@@ -36,7 +36,7 @@ table! {
     #[derive(Copy)]
     pub struct RouteTable {
         /// Sight, cells in each direction, 1 to 16.
-        pub radius: Option<u8>;
+        pub radius: Option<u8>, 1.0..=16.0, "cells";
         /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
         pub exit: Option<ExitRule>;
         /// When to plan: `"each_cell"` or `"until_changed"` (keeps its plan; not in formations).
@@ -118,13 +118,6 @@ pub(super) fn sight(file: &ScenarioFile) -> u8 {
 pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteSetup, ScenarioError> {
     let (table, grid) = (&file.route, &file.grid);
     let mut radius = sight(file);
-    if !(1..=MAX_RADIUS).contains(&radius) {
-        return Err(source.error(
-            "route.radius",
-            format!("a window of radius {radius} is out of range"),
-            format!("give 1 to {MAX_RADIUS} cells"),
-        ));
-    }
     if let Some(scouting) = &file.scouting {
         let wide = scouting.radius.unwrap_or(MAX_RADIUS);
         within(source, "scouting.radius", wide.into(), radius.into(), MAX_RADIUS.into(), "cells")?;

@@ -135,9 +135,9 @@ table! {
         /// Share of the cells that are drawn each time, 0 to 1; at least one cell.
         pub share: f64, 0.0..=1.0, "(a share)";
         /// Change of the crossing time, ticks, 1 to 254. Default: 1.
-        pub step: u8 = 1;
+        pub step: u8 = 1, 1.0..=255.0, "ticks";
         /// Longest crossing time of a cell, ticks. Default: the longest of the map.
-        pub classes: Option<u8>;
+        pub classes: Option<u8>, 1.0..=255.0, "ticks";
     }
 }
 
@@ -160,14 +160,7 @@ table! {
     /// `terrain.natural`.
     #[derive(Copy)]
     pub struct NaturalTable {
-        /// Cells from west to east.
-        pub width: u16;
-        /// Cells from south to north.
-        pub height: u16;
-        /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
-        pub classes: u8 = 9;
-        /// Seed of the terrain. Default: the scenario's seed.
-        pub seed: Option<u64>;
+        part size: UniformTable;
         /// Number of hilltops.
         pub obstacles: u32;
         /// Shape of a hill: `"euclidean"` (round; the default) or `"chebyshev"` (square).
@@ -184,14 +177,7 @@ table! {
     /// `terrain.entropy`.
     #[derive(Copy)]
     pub struct EntropyTable {
-        /// Cells from west to east.
-        pub width: u16;
-        /// Cells from south to north.
-        pub height: u16;
-        /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
-        pub classes: u8 = 9;
-        /// Seed of the terrain. Default: the scenario's seed.
-        pub seed: Option<u64>;
+        part size: UniformTable;
         /// Target configuration entropy S, 0 to ln(classes).
         pub entropy: f64;
         /// Tolerance of S. Default: 0.01.
@@ -215,7 +201,7 @@ table! {
         /// Side of a patch, cells, 1 to 1000. Default: 1.
         pub patch_cells: Option<u16>, 1.0..=1000.0, "cells";
         /// Assumed crossing time of unknown cells, ticks, 1 to 255. Default: the median of the map.
-        pub assumed: Option<u8>;
+        pub assumed: Option<u8>, 1.0..=255.0, "ticks";
         /// Seed of the unknown and wrong patches. Default: the scenario's seed.
         pub seed: Option<u64>;
         /// Planning radius, cells in each direction, 1 to 16, at least `route.radius`. Default: 16.
@@ -346,7 +332,7 @@ table! {
         /// Lies of an `"insider"`: any of `"orders"`, `"radius"`, `"speed"`, `"jump"`, `"ghosts"`.
         pub lies: Vec<Lie> = Vec::new();
         /// Number of invented robots, 1 to 100. Default: 16; only for `"ghosts"`.
-        pub ghosts: Option<u8>;
+        pub ghosts: Option<u8>, 1.0..=100.0, "robots";
     }
 }
 

@@ -26,11 +26,6 @@ pub(super) fn scouting(
         let what = format!("unknown {} and wrong {} add up to more than 1", table.unknown, table.wrong);
         return Err(source.error("scouting.wrong", what, "give shares with a sum of at most 1"));
     }
-    let patch_cells = table.patch_cells.unwrap_or(1);
-    if table.assumed == Some(0) {
-        let what = "0 makes unknown cells impassable";
-        return Err(source.error("scouting.assumed", what, "give 1 to 255 ticks"));
-    }
     let old = match &table.map {
         None => None,
         Some(name) => Some(super::check::map(source, file, name)?),
@@ -44,7 +39,7 @@ pub(super) fn scouting(
     let scouted = Scouted {
         unknown: table.unknown,
         wrong: table.wrong,
-        patch_cells,
+        patch_cells: table.patch_cells.unwrap_or(1),
         assumed: table.assumed.unwrap_or_else(|| usual_class(old)),
         seed: table.seed.unwrap_or(file.seed),
     };

@@ -177,7 +177,7 @@ impl<'a> Source<'a> {
     /// Says what is in the way.
     pub fn set(&mut self, field: &Field, value: &'a str) -> Result<(), String> {
         let parsed = DeValue::parse(value).map(Spanned::into_inner);
-        field.set(self.root_mut(), parsed.unwrap_or_else(|_| DeValue::String(value.into())))
+        field.set(&mut self.root, parsed.unwrap_or_else(|_| DeValue::String(value.into())))
     }
 
     /// The value of a field, if it is there.

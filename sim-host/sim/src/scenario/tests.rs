@@ -344,8 +344,8 @@ fn parameters_of_routes_and_formations_are_checked() {
     assert_eq!((formation.halt_lag, formation.resume_lag), (140, 140));
     assert_eq!((formation.gain, formation.footprint), (Gain::from_int(4095), 16));
     for (rest, expected) in [
-        ("[route]\nradius = 0\n", "route.radius: a window of radius 0 is out of range; give 1 to 16"),
-        ("[route]\nradius = 17\n", "route.radius: a window of radius 17"),
+        ("[route]\nradius = 0\n", "route.radius: 0 is out of range; give 1 to 16 cells"),
+        ("[route]\nradius = 17\n", "route.radius: 17 is out of range"),
         ("[route]\na3 = -1\n", "route.a3: -1 is out of range; give 0 to 4095"),
         ("[route]\na0 = nan\n", "route.a0: NaN is out of range"),
         ("[route]\nexit = \"door\"\n", "route.exit: unknown value `door`"),

@@ -27,7 +27,7 @@ fn an_obstruction_on_the_path_is_named() {
         ("plane.group[2].count", "group has 2 elements, counted from 0"),
         ("plane.radius_m.x", "radius_m is not a table in the scenario"),
         ("ticks[0]", "ticks is not a list in the scenario"),
-        ("plane.order[0]", "order is not in the scenario"),
+        ("plane.order[0]", "order is not a list in the scenario"),
         ("order[0].at_s", "order is not a list in the scenario"),
     ] {
         assert_eq!(set(name).expect_err(name), what);

@@ -33,3 +33,10 @@ fn invalid_interventions_are_refused_with_a_remedy() {
     }
     assert_eq!(Intervention::Goal { robot: Some(3), place_m: [1.0; 3] }.check(&robots), Ok(()));
 }
+
+#[test]
+fn an_unlimited_range_is_written() {
+    let what = Intervention::Radio { loss: None, range_m: Some(f64::INFINITY) };
+    let text = with_interventions("", 1_000_000, &[(3, what)]);
+    assert_eq!(text, "\n\n[[intervention]]\nat_s = 3.000000\ndo = { kind = \"radio\", range_m = inf }\n");
+}

@@ -95,11 +95,8 @@ pub(super) fn in_cells(
             _ => "has no goal",
         };
         let what = format!("robot {} of the group goes from cell to cell and {what}", index + 1);
-        return Err(source.error(
-            &format!("{}.robots", group.table),
-            what,
-            "give each one start and one goal on free land",
-        ));
+        let remedy = "give each one start and one goal on free land";
+        return Err(source.error(&format!("{}.robots", group.table), what, remedy));
     }
     Ok(())
 }

@@ -208,18 +208,12 @@ pub(super) fn build(
     cells: Option<(Vec<Robot>, Vec<Formation>)>,
 ) -> Result<Placed, ScenarioError> {
     if table.body.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
-        return Err(source.error(
-            "plane.guidance",
-            "this guidance goes from cell to cell",
-            "give [terrain] and the top-level [robots], or another guidance",
-        ));
+        let remedy = "give [terrain] and the top-level [robots], or another guidance";
+        return Err(source.error("plane.guidance", "this guidance goes from cell to cell", remedy));
     }
     if (table.body.guidance == GuidanceKind::Formation) != file.cells_in_formation() && cells.is_some() {
-        return Err(source.error(
-            "plane.guidance",
-            "robots.formation and guidance \"formation\" go together",
-            "give both or none of them",
-        ));
+        let remedy = "give both or none of them";
+        return Err(source.error("plane.guidance", "robots.formation and guidance \"formation\" go together", remedy));
     }
     if table.robots.as_ref().is_some_and(|robots| robots.formation.is_some()) {
         let remedy = "give it as the top-level robots.formation, or to a plane.group";
@@ -315,11 +309,8 @@ fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, S
         checks::velocity(source, &field("velocity_mps"), entry.velocity_mps)?;
         if entry.heard && source.has("authentication") {
             let remedy = "give heard = false, or leave [authentication] out";
-            return Err(source.error(
-                &field("heard"),
-                "an intruder does not have the key, so robots reject its beacons",
-                remedy,
-            ));
+            let what = "an intruder does not have the key, so robots reject its beacons";
+            return Err(source.error(&field("heard"), what, remedy));
         }
         intruders.push(Intruder {
             position_m: entry.start_m.0,

@@ -29,6 +29,15 @@ pub(super) fn between(rng: &mut Rng, from: Place, to: Place) -> [f64; 3] {
     place
 }
 
+fn squared(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]) * (a[axis] - b[axis])).sum()
+}
+
+/// Whether a body at `place` touches none of `others` (place, radius).
+pub(super) fn is_clear(place: [f64; 3], radius_m: f64, others: &[([f64; 3], f64)]) -> bool {
+    others.iter().all(|&(other, other_m)| squared(place, other) >= (radius_m + other_m) * (radius_m + other_m))
+}
+
 /// Accepted places, at least `spacing_m` metres apart, with heights divided by `downwash`. O(1) per
 /// place.
 pub(super) struct Taken {
@@ -56,10 +65,7 @@ impl Taken {
         let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
         let around = around.flat_map(|(dx, dy)| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]));
         let mut near = around.filter_map(|at| self.buckets.get(&at)).flatten();
-        !near.any(|other| {
-            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared < self.spacing_m * self.spacing_m
-        })
+        !near.any(|other| squared(place, *other) < self.spacing_m * self.spacing_m)
     }
 
     pub(super) fn take(&mut self, place: [f64; 3]) {
@@ -88,12 +94,6 @@ pub(super) fn starts(
     let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
     let solids = Solids::new(solids.to_vec(), least_m);
     let is_outside = |place| solids.near(place, least_m).all(|solid| solid.distance_m(place) >= least_m);
-    let is_beside = |place: [f64; 3]| {
-        others.iter().all(|(other, other_m)| {
-            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared >= (group.body.radius_m + other_m) * (group.body.radius_m + other_m)
-        })
-    };
     let downwash = group.body.orca.and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
     let (mut taken, mut aims) = (Taken::new(spacing_m, downwash), Taken::new(spacing_m, downwash));
     let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
@@ -101,7 +101,9 @@ pub(super) fn starts(
         let mut rng = Rng::keyed(seed, SCATTERED, first + index, 0);
         let mut draw = |low, high, taken: &mut Taken, is_start: bool| {
             let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
-            let place = places.find(|&at| taken.is_free(at) && is_outside(at) && (!is_start || is_beside(at)));
+            let place = places.find(|&at| {
+                taken.is_free(at) && is_outside(at) && (!is_start || is_clear(at, group.body.radius_m, others))
+            });
             place.inspect(|&place| taken.take(place)).ok_or_else(|| {
                 let what =
                     format!("robot {} finds no free {}", first + index + 1, if is_start { "start" } else { "goal" });

@@ -6,7 +6,7 @@ use super::checks;
 use super::group::Group;
 use super::group::RobotGroup;
 use super::place::{Start, Target};
-use super::scattered::{self, TRIES, Taken, between, unit};
+use super::scattered::{self, TRIES, Taken, between, is_clear, unit};
 use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneRobots};
 use crate::terrain::Terrain;
 use crate::world::plane::Solid;
@@ -144,19 +144,13 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3
         .map(|goal| Target { position_m: goal.0, velocity_mps: cloud.goal_velocity_mps.0 })
         .collect();
     let first = others.len() as u32;
-    let is_clear = |place: [f64; 3]| {
-        others.iter().all(|(other, other_m)| {
-            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared >= (radius_m + other_m) * (radius_m + other_m)
-        })
-    };
     let mut taken = Taken::new(2.0 * radius_m, 1.0);
     (0..cloud.count)
         .map(|index| {
             let mut rng = Rng::keyed(seed, STARTS, first + index, 1);
             let position_m = (0..TRIES)
                 .map(|_| between(&mut rng, cloud.from_m, cloud.to_m))
-                .find(|&place| taken.is_free(place) && is_clear(place))?;
+                .find(|&place| taken.is_free(place) && is_clear(place, radius_m, others))?;
             taken.take(position_m);
             let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
             let velocity_mps = between(&mut rng, from, to);

@@ -107,3 +107,16 @@ fn a_wrong_value_or_key_is_refused_with_its_place() {
     }
     assert!(refused > 1500, "only {refused} were refused");
 }
+
+#[test]
+fn written_fields_are_read_back() {
+    let odd = "\"a b\" = '\"\\'\nc = \"\\u007f\\n\\u00e9\"\nd = [inf, -0.5, 0x1F, 1979-05-27]\n[[e]]\nf.g = 1\n[[e]]\n[h]\ni = [{}]\n";
+    let texts = files().into_iter().map(|path| fs::read_to_string(path).expect("a scenario"));
+    for text in texts.chain([odd.to_owned()]) {
+        let source = Source::new(Path::new("t.toml"), &text).expect("TOML");
+        let written = source.written();
+        let again = Source::new(Path::new("t.toml"), &written).unwrap_or_else(|error| panic!("{error} in {written}"));
+        assert_eq!(again.json(), source.json(), "{written}");
+        assert_eq!(again.written(), written);
+    }
+}
