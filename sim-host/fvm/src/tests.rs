@@ -182,12 +182,12 @@ fn rooms_parse_and_errors_name_the_field() {
     let refused = |text: &str| Room::read(text, Path::new("room.toml")).unwrap_err().to_string();
     assert!(
         refused("outline = [[0.0, 0.0], [1.0, 0.0]]")
-            .contains("room.toml:1: outline: this is not a polygon; give three corners")
+            .contains("room.toml:1:11: outline: this is not a polygon; give three corners")
     );
     let square = "outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]\n";
     assert!(refused(&format!("{square}[[circle]]\ncenter = [0.0, 0.0]\nradius = 0.0")).contains("circle[0].radius"));
     assert!(refused(&format!("{square}[[polygon]]\ncorners = []")).contains("polygon[0].corners"));
-    assert!(refused(&format!("{square}door = 1")).contains("room.toml:2: door: unknown field"));
+    assert!(refused(&format!("{square}door = 1")).contains("room.toml:2:1: door: unknown field"));
 }
 
 #[test]

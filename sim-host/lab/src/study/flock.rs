@@ -122,7 +122,7 @@ impl Squares {
 table! {
     /// Parameters of a run.
     pub struct Parameters {
-        /// What robots know about others. Default: `"packets"`.
+        /// Knowledge of a robot about the others. Default: `"packets"`.
         pub knows: Knowledge = Knowledge::Packets;
         /// Number of nearest robots that each robot knows with exact knowledge.
         pub nearest: usize = usize::MAX;

@@ -16,7 +16,7 @@ pub use axes::Change;
 use axes::{Axis, SCENARIO};
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
-use staya_sim::scenario::{Field, Read as _, ScenarioError, Source, nearest};
+use staya_sim::scenario::{Field, Location, Read as _, ScenarioError, Source, nearest};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use table::{Files, HistogramTable, PlanFile, SeedRange, Seeds};
@@ -43,8 +43,8 @@ pub struct Plan {
     axes: Vec<Axis>,
     /// Axes that advance together, as ranges of `axes`; groups are crossed with each other.
     groups: Vec<Range<usize>>,
-    /// Fields with one value for all runs, as TOML, and their lines in the plan.
-    set: Vec<(Field, String, usize)>,
+    /// Fields with one value for all runs, as TOML, and their places in the plan.
+    set: Vec<(Field, String, Location)>,
     seeds: Vec<u64>,
     measures: Vec<String>,
     /// Requested pictures; empty for the default.
@@ -144,7 +144,7 @@ impl Plan {
         let mut all = axes::read(&source, &file, bases.iter().map(Base::name).collect())?;
         all.change(&changes.fields)?;
         let axes::Axes { axes, groups, set } = all;
-        let set = set.into_iter().map(|(field, value, span)| (field, value.toml(), source.line(span.start)));
+        let set = set.into_iter().map(|(field, value, span)| (field, value.toml(), source.location(span.start)));
         let set: Vec<_> = set.collect();
         let scenarios: Vec<_> = bases.iter().map(|base| base.source(path, &set)).collect::<Result<_, _>>()?;
         for (axis, scenario) in axes.iter().flat_map(|axis| scenarios.iter().map(move |base| (axis, base))) {
@@ -363,7 +363,9 @@ impl Plan {
     pub(crate) fn given<'a>(&'a self, run: &'a Run<'_>) -> Result<Given<'a>, ScenarioError> {
         let mut source = self.base(run).source(&self.path, &self.set)?;
         for (axis, value) in self.axes.iter().zip(&run.texts).filter(|(axis, _)| axis.field.name() != SCENARIO) {
-            source.set(&axis.field, value).map_err(|what| obstructed(&self.path, axis.line, &axis.field, what))?;
+            source
+                .set(&axis.field, value)
+                .map_err(|what| obstructed(&self.path, axis.place.unwrap_or(Location::START), &axis.field, what))?;
         }
         Ok(Given { source, measures: &self.measures, seed: run.seed })
     }
@@ -394,19 +396,20 @@ impl Plan {
 
     /// Converts an error of a generated scenario to places in the user's files.
     pub(super) fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
-        let ScenarioError::Field { path, line, field, what, remedy } = error else {
+        let ScenarioError::Field { path, place, field, what, remedy } = error else {
             return error;
         };
-        if let Some(axis) = self.axes.iter().find(|axis| axis.line > 0 && axis.field.is_about(&field)) {
+        let mut meant = self.axes.iter().filter(|axis| axis.field.is_about(&field));
+        if let Some((axis, place)) = meant.find_map(|axis| Some((axis, axis.place?))) {
             let field = axis.field.name().to_owned();
             let is_word = axis.is_range && what.contains("quotes");
             let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
-            return ScenarioError::Field { path: self.path.clone(), line: axis.line, field, what, remedy };
+            return ScenarioError::Field { path: self.path.clone(), place, field, what, remedy };
         }
         let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
         let values = values.join(", ");
         let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
-        ScenarioError::Field { path, line, field, what, remedy }
+        ScenarioError::Field { path, place, field, what, remedy }
     }
 
     /// Covers everything that rows depend on: fields, values, seeds, figures, the scenario's files.
@@ -464,10 +467,10 @@ impl Base {
     }
 
     /// The fields of the scenario with those that all runs share.
-    fn source<'a>(&'a self, plan: &Path, set: &'a [(Field, String, usize)]) -> Result<Source<'a>, ScenarioError> {
+    fn source<'a>(&'a self, plan: &Path, set: &'a [(Field, String, Location)]) -> Result<Source<'a>, ScenarioError> {
         let mut source = Source::new(&self.path, &self.text)?;
-        for (field, value, line) in set {
-            source.set(field, value).map_err(|what| obstructed(plan, *line, field, what))?;
+        for (field, value, place) in set {
+            source.set(field, value).map_err(|what| obstructed(plan, *place, field, what))?;
         }
         Ok(source)
     }
@@ -499,9 +502,9 @@ fn find_study(source: &Source<'_>, name: &str) -> Result<&'static dyn Study, Sce
     })
 }
 
-fn obstructed(plan: &Path, line: usize, field: &Field, what: String) -> ScenarioError {
+fn obstructed(plan: &Path, place: Location, field: &Field, what: String) -> ScenarioError {
     let (path, field, remedy) = (plan.to_owned(), field.name().to_owned(), "name a field of the scenario".to_owned());
-    ScenarioError::Field { path, line: line.max(1), field, what, remedy }
+    ScenarioError::Field { path, place, field, what, remedy }
 }
 
 fn collect_words(value: &DeValue<'_>, words: &mut Vec<String>) {

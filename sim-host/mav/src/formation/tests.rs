@@ -85,7 +85,7 @@ fn a_file_parses_and_its_errors_are_reported() {
         ("places = [[0, 0], [3, 0]]\nedges = []", "robot 2 is not connected to robot 1"),
         ("places = [[0, 0], [0, 0]]\nedges = [[1, 2]]", "places 1 and 2 would share a cell"),
         ("places = [[0, 0], [40000, 0]]\nedges = [[1, 2]]", "robot 2 would be off any map"),
-        ("places = [[0, 0]]\nedge = []", "v.toml:2: edge: unknown field `edge`"),
+        ("places = [[0, 0]]\nedge = []", "v.toml:2:1: edge: unknown field `edge`"),
     ] {
         let error = Graph::parse(text, Path::new("v.toml")).expect_err(text).to_string();
         assert!(error.contains(piece), "{text}: {error}");

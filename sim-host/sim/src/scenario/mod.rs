@@ -46,8 +46,7 @@ pub use schema::{
     MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, TerrainTable, UniformTable,
 };
 pub use setting::{Setting, text_with, with_settings};
-pub use source::ScenarioError;
-pub use source::Source;
+pub use source::{Location, ScenarioError, Source};
 pub use write::{fields, inline};
 
 use crate::radio::RadioParams;

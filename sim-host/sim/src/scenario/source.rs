@@ -4,6 +4,7 @@ use super::read::{Field as Read, Node, Wrong, json};
 use super::{Field, write};
 use crate::file::read_remedy;
 use std::cell::RefCell;
+use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -22,12 +23,12 @@ pub enum ScenarioError {
         source: std::io::Error,
     },
     /// The content is invalid.
-    #[error("{}:{line}: {}{what}; {remedy}", .path.display(), prefix(.field))]
+    #[error("{}:{place}: {}{what}; {remedy}", .path.display(), prefix(.field))]
     Field {
         /// Path of the file.
         path: PathBuf,
-        /// Line, counted from 1.
-        line: usize,
+        /// Place in the file.
+        place: Location,
         /// Path of the field, such as `radio.loss` or `robots.list[2].start`; empty if unknown.
         field: String,
         /// Cause of the error.
@@ -35,6 +36,32 @@ pub enum ScenarioError {
         /// How to correct it.
         remedy: String,
     },
+}
+
+/// Place in a text. Both are counted from 1; columns are characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Location {
+    /// Line.
+    pub line: usize,
+    /// Column.
+    pub column: usize,
+}
+
+impl Location {
+    /// Begin of a text.
+    pub const START: Self = Self { line: 1, column: 1 };
+
+    fn of(text: &str, byte: usize) -> Self {
+        let before = text.get(..byte).unwrap_or(text);
+        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+        Self { line: 1 + before.matches('\n').count(), column }
+    }
+}
+
+impl Display for Location {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.line, self.column)
+    }
 }
 
 fn prefix(field: &str) -> String {
@@ -60,7 +87,7 @@ impl<'a> Source<'a> {
             }
             Err(error) => Err(ScenarioError::Field {
                 path: path.to_owned(),
-                line: line_of(text, error.span().map_or(0, |span| span.start)),
+                place: Location::of(text, error.span().map_or(0, |span| span.start)),
                 field: String::new(),
                 what: first_line(error.message()),
                 remedy: "this is not TOML; strings need quotes, tables [brackets]".to_owned(),
@@ -94,7 +121,7 @@ impl<'a> Source<'a> {
         self.files.take()
     }
 
-    /// Creates an error about a field. If the field is absent, the line is that of its table.
+    /// Creates an error about a field. If the field is absent, the place is that of its table.
     pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
         self.error_at(self.find(field).0.map_or(0..0, Spanned::span), field, what, remedy)
     }
@@ -109,17 +136,17 @@ impl<'a> Source<'a> {
     ) -> ScenarioError {
         ScenarioError::Field {
             path: self.path.to_owned(),
-            line: self.line(span.start),
+            place: self.location(span.start),
             field: field.to_owned(),
             what: what.into(),
             remedy: remedy.into(),
         }
     }
 
-    /// The line of a byte of the text, counted from 1.
+    /// The place of a byte of the text.
     #[must_use]
-    pub fn line(&self, byte: usize) -> usize {
-        line_of(self.text, byte)
+    pub fn location(&self, byte: usize) -> Location {
+        Location::of(self.text, byte)
     }
 
     /// The parsed fields with their positions.
@@ -218,10 +245,6 @@ impl<'a> Source<'a> {
         }
         (found, found.is_some())
     }
-}
-
-fn line_of(text: &str, byte: usize) -> usize {
-    1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
 }
 
 fn first_line(message: &str) -> String {

@@ -4,7 +4,7 @@ use super::table::{PlanFile, RangeTable, SampleTable};
 use crate::error::SweepError;
 use crate::sweep::sample::shares;
 use crate::sweep::value::Value;
-use staya_sim::scenario::{Field, Node, Read as _, ScenarioError, Source};
+use staya_sim::scenario::{Field, Location, Node, Read as _, ScenarioError, Source};
 use std::ops::Range;
 use std::str::FromStr;
 use toml::de::{DeTable, DeValue};
@@ -17,8 +17,8 @@ const MOST: u32 = 1_000_000;
 pub struct Axis {
     pub field: Field,
     pub values: Vec<Value>,
-    /// Line of the plan; 0 if the values are from the command line.
-    pub line: usize,
+    /// Place in the plan; `None` if the values are from the command line.
+    pub place: Option<Location>,
     pub is_log: bool,
     /// Values come from a range, which is invalid for text fields.
     pub is_range: bool,
@@ -28,7 +28,7 @@ pub struct Axis {
 impl Axis {
     /// Whether the axis is not one of the plan's file.
     pub fn is_added(&self) -> bool {
-        self.line == 0 && self.span == (0..0)
+        self.place.is_none() && self.span == (0..0)
     }
 }
 
@@ -86,11 +86,11 @@ impl Axes {
                         let remedy = format!("give some of {}", names.join(", "));
                         return Err(SweepError::new(place(change), "the plan has no such scenario", remedy));
                     }
-                    (self.axes[index].values, self.axes[index].line) = (values, 0);
+                    (self.axes[index].values, self.axes[index].place) = (values, None);
                 }
                 None => {
                     self.groups.push(self.axes.len()..self.axes.len() + 1);
-                    self.axes.push(Axis { field, values, line: 0, is_log: false, is_range: false, span: 0..0 });
+                    self.axes.push(Axis { field, values, place: None, is_log: false, is_range: false, span: 0..0 });
                 }
             }
         }
@@ -131,7 +131,14 @@ pub fn read(source: &Source<'_>, file: &PlanFile, scenarios: Vec<Value>) -> Resu
     let mut all = Axes::default();
     if let Some(field) = Field::read(SCENARIO).filter(|_| scenarios.len() > 1) {
         all.groups.push(0..1);
-        all.axes.push(Axis { field, values: scenarios, line: 1, is_log: false, is_range: false, span: 0..0 });
+        all.axes.push(Axis {
+            field,
+            values: scenarios,
+            place: Some(Location::START),
+            is_log: false,
+            is_range: false,
+            span: 0..0,
+        });
     }
     for entry in entries(source, "axes")? {
         let axis = axis(source, entry)?;
@@ -261,8 +268,8 @@ fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_, '_>) -> Res
     if values.is_empty() {
         return Err(wrong("there are no values".to_owned(), "give one or more"));
     }
-    let line = source.line(span.start);
-    Ok(Axis { field, values, line, is_log, is_range, span })
+    let place = Some(source.location(span.start));
+    Ok(Axis { field, values, place, is_log, is_range, span })
 }
 
 fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
@@ -352,8 +359,8 @@ fn sampled(
         let at = |share: f64| (share * of.len() as f64) as usize;
         (shares.iter().map(|&share| of[at(share).min(of.len() - 1)].clone()).collect(), false)
     };
-    let line = source.line(span.start);
-    Ok(Axis { field, values, line, is_log, is_range: is_ends, span })
+    let place = Some(source.location(span.start));
+    Ok(Axis { field, values, place, is_log, is_range: is_ends, span })
 }
 
 fn twice(values: &[Value]) -> Option<String> {

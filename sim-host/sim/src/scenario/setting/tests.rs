@@ -23,7 +23,7 @@ fn a_field_is_set_once() {
     assert_eq!((part.radio.loss, part.radio.range_m), (0.3, 2.0));
     for settings in [["radio.loss=0.2", " radio.loss = 0.2"], ["radio.loss=0.2", "radio={ loss = 0.3 }"]] {
         let error = load(&settings).expect_err("twice");
-        assert_eq!(error, "t.toml:8: radio.loss: it is set twice (by --set); give one --set of this field");
+        assert_eq!(error, "t.toml:8:8: radio.loss: it is set twice (by --set); give one --set of this field");
     }
 }
 
@@ -31,7 +31,7 @@ fn a_field_is_set_once() {
 fn errors_name_the_line_and_the_setting() {
     let error = |settings: &[&str]| load(settings).expect_err("wrong");
     let loss = error(&["radio.loss=1.5"]);
-    assert!(loss.starts_with("t.toml:8: radio.loss: ") && loss.contains("(by --set)"), "{loss}");
+    assert!(loss.starts_with("t.toml:8:8: radio.loss: ") && loss.contains("(by --set)"), "{loss}");
     let unknown = error(&["radio.lost=1"]);
     assert!(unknown.contains("lost") && unknown.contains("scenarios/README.md"), "{unknown}");
     let none = error(&["robots.list[1].goal=[1, 1]"]);
@@ -54,7 +54,7 @@ fn text_with_settings_parses_to_the_same_scenario() {
     assert_eq!((read.ticks, read.radio.loss), (7, 0.25));
     let wrong = ["radio.loss=2".parse().expect("a setting")];
     let error = Scenario::parse_with(SCENARIO, path, &none, &wrong).expect_err("wrong").to_string();
-    assert!(error.starts_with("t.toml:8: radio.loss: ") && error.contains("(by --set)"), "{error}");
+    assert!(error.starts_with("t.toml:8:8: radio.loss: ") && error.contains("(by --set)"), "{error}");
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! Scenario files with one wrong value or key. Reading one never panics, and every refusal names
-//! file, line and remedy without a Rust type.
+//! file, line, column and remedy without a Rust type.
 
 use super::*;
 use std::ops::Range;
@@ -75,8 +75,9 @@ fn check(text: &str, path: &Path) -> bool {
     let Err(error) = Scenario::parse(text, path, &Overrides::default()) else { return false };
     let error = error.to_string();
     let rest = error.strip_prefix(&format!("{}:", path.display())).unwrap_or_else(|| panic!("no file: {error}"));
-    let (line, what) = rest.split_once(": ").unwrap_or_else(|| panic!("no line: {error}"));
-    assert!(line.split(':').all(|number| number.parse::<usize>().is_ok()), "no line: {error}");
+    let (place, what) = rest.split_once(": ").unwrap_or_else(|| panic!("no place: {error}"));
+    let numbers: Vec<_> = place.split(':').map(str::parse::<usize>).collect();
+    assert!(matches!(numbers[..], [Ok(1..), Ok(1..)]), "no line and column: {error}");
     assert!(what.contains("; "), "no remedy: {error}");
     let mut words = what.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == ','));
     assert!(!words.any(|word| TYPES.contains(&word)), "a Rust type: {error}");
