@@ -66,7 +66,7 @@ def measured():
 def is_lossy(figures, name, figure):
     """Whether packets are lost in a scenario or an experiment, or in the part of it with this figure."""
     parts = [f"{figure[:end]}.loss" for end, mark in enumerate(figure) if mark == "."]
-    losses = ["packets.lost", "packets.corrupted", "loss", "conditions.loss", *parts]
+    losses = ["packets.lost", "packets.damaged", "loss", "conditions.loss", *parts]
     return any(float(value) != 0 for loss in losses for value in figures.get((name, loss), []))
 
 

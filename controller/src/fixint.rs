@@ -62,6 +62,36 @@ impl Fixed for Instant {
     }
 }
 
+/// The rest of some encoded fields, read without a deserializer.
+#[cfg(feature = "host")]
+pub(crate) struct Fields<'a>(pub(crate) &'a [u8]);
+
+#[cfg(feature = "host")]
+impl Fields<'_> {
+    pub(crate) fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (bytes, after) = self.0.split_first_chunk()?;
+        self.0 = after;
+        Some(*bytes)
+    }
+
+    pub(crate) fn fixed<T: Fixed<Bytes = [u8; N]>, const N: usize>(&mut self) -> Option<T> {
+        self.take().map(T::from_bytes)
+    }
+
+    /// A varint below 2^28: groups of 7 bits, at most four of them.
+    pub(crate) fn number(&mut self) -> Option<u32> {
+        let mut number = 0;
+        for shift in [0, 7, 14, 21] {
+            let [byte] = self.take()?;
+            number |= u32::from(byte & 0x7F).wrapping_shl(shift);
+            if byte < 0x80 {
+                return Some(number);
+            }
+        }
+        None
+    }
+}
+
 pub(crate) fn serialize<T: Fixed, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
     value.to_bytes().serialize(to)
 }

@@ -1,5 +1,6 @@
 //! The id and the mode of a robot.
 
+use crate::names::named;
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
@@ -62,29 +63,40 @@ const DOUBLE: u32 = 1 << 31;
 
 const FIRST_LOCAL: u32 = DOUBLE - (1 << 16);
 
-/// The current activity of a robot; see [`crate::supervisor`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)]
-pub enum Mode {
-    /// It has no goal.
-    #[default]
-    Idle,
-    /// It takes its place in the formation, before or during travel.
-    Forming,
-    /// It is on the way to its goal.
-    Cruise,
-    /// It stands because it was asked to, or because no route is open.
-    Hold,
-    /// It is at its goal.
-    Arrived,
-    /// It stands because an input is missing or invalid.
-    Fault,
-    /// Its agent does not steer it: the motors are off, or another controller steers.
-    Passive,
+named! {
+    /// The current activity of a robot; see [`crate::supervisor`].
+    #[derive(Default)]
+    #[repr(u8)]
+    pub enum Mode {
+        /// It has no goal.
+        #[default]
+        Idle = "idle",
+        /// It takes its place in the formation, before or during travel.
+        Forming = "forming",
+        /// It is on the way to its goal.
+        Cruise = "cruise",
+        /// It stands because it was asked to, or because no route is open.
+        Hold = "hold",
+        /// It is at its goal.
+        Arrived = "arrived",
+        /// It stands because an input is missing or invalid; in a simulation also while its
+        /// computer is off.
+        Fault = "down",
+        /// Its agent does not steer it: the motors are off, or another controller steers.
+        Passive = "passive",
+    }
 }
 
 impl Mode {
+    const ALL: [Self; 7] =
+        [Self::Idle, Self::Forming, Self::Cruise, Self::Hold, Self::Arrived, Self::Fault, Self::Passive];
+
+    /// Returns the mode with this number on the wire, from 0 in the order of the list.
+    #[must_use]
+    pub fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+
     /// Whether it does not intend to move: it has arrived, or has no goal.
     #[must_use]
     pub const fn is_parked(self) -> bool {

@@ -110,8 +110,8 @@ fn bit_errors_cost_packets_only() {
     let (outcome, _) = run(&scenario);
     assert_all_arrive(&scenario, &outcome);
     let packets = outcome.packets;
-    assert!(packets.corrupted > packets.delivered / 2, "{packets:?}");
+    assert!(packets.damaged > packets.delivered / 2, "{packets:?}");
     // A packet in which a byte became zero splits into two frames, both of them rejected.
-    assert!(packets.rejected + 2 >= packets.corrupted, "{packets:?}");
-    assert!(packets.rejected < packets.corrupted * 5 / 4, "{packets:?}");
+    assert!(packets.rejected + 2 >= packets.damaged, "{packets:?}");
+    assert!(packets.rejected < packets.damaged * 5 / 4, "{packets:?}");
 }

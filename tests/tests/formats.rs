@@ -49,14 +49,14 @@ fn flocks_run_identically_in_both_formats() {
 
 #[test]
 fn transmitted_bytes_are_those_of_the_format() {
-    let corrupted = |format: Format| {
+    let damaged = |format: Format| {
         let mut scenario = scenario("six-robots", Some(200));
         scenario.radio.format = format;
         scenario.radio.bit_error_rate = 1e-3;
         let packets = run(&scenario).0.packets;
         // A damaged frame may look like two, or like a message of another robot.
-        assert!(packets.rejected > packets.corrupted / 2 && packets.corrupted > 0);
-        packets.corrupted
+        assert!(packets.rejected > packets.damaged / 2 && packets.damaged > 0);
+        packets.damaged
     };
-    assert_ne!(corrupted(Format::Postcard), corrupted(Format::Mavlink));
+    assert_ne!(damaged(Format::Postcard), damaged(Format::Mavlink));
 }

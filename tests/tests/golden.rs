@@ -28,8 +28,8 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
     }
     writeln!(
         text,
-        "packets    sent {}, delivered {}, lost {}, corrupted {}, rejected {}",
-        packets.sent, packets.delivered, packets.lost, packets.corrupted, packets.rejected
+        "packets    sent {}, delivered {}, lost {}, damaged {}, rejected {}",
+        packets.sent, packets.delivered, packets.lost, packets.damaged, packets.rejected
     )?;
     for count in &outcome.waits {
         let WaitCount { wait, robots, now, robot_ticks, longest_ticks } = count;

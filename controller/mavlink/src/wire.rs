@@ -304,7 +304,7 @@ fn beacon(data: &STAYA_BEACON_DATA) -> Parts {
         position_mm: [data.x_mm, data.y_mm, data.z_mm],
         velocity_mmps: [data.vx_mmps, data.vy_mmps, data.vz_mmps],
         radius_mm: data.radius_mm,
-        mode: mode(data.mode).ok_or(DecodeError::Body)?,
+        mode: Mode::from_number(data.mode).ok_or(DecodeError::Body)?,
         flock: data.flock,
         protocol: ProtocolId(data.protocol),
         payload: filled(data.count, &data.bytes)?,
@@ -425,12 +425,6 @@ fn robot(system: u8) -> RobotId {
 /// In thousandths, saturating.
 fn milli(mps: f32) -> i16 {
     mps.to_milli().unwrap_or(0).clamp(i16::MIN.into(), i16::MAX.into()) as i16
-}
-
-fn mode(number: u8) -> Option<Mode> {
-    const MODES: [Mode; 7] =
-        [Mode::Idle, Mode::Forming, Mode::Cruise, Mode::Hold, Mode::Arrived, Mode::Fault, Mode::Passive];
-    MODES.get(usize::from(number)).copied()
 }
 
 #[cfg(test)]

@@ -62,8 +62,19 @@ pub trait Content: Clone + Debug + Serialize + DeserializeOwned {
 
     /// Decodes bytes of protocol `id`; `None` unless they are exactly one value of `own`. O(bytes).
     fn decode(own: ProtocolId, id: ProtocolId, bytes: &[u8]) -> Option<Self> {
-        let (value, rest) = postcard::take_from_bytes(bytes).ok()?;
-        (id == own && rest.is_empty()).then_some(value)
+        if id != own {
+            return None;
+        }
+        Self::read(bytes).or_else(|| {
+            let (value, rest) = postcard::take_from_bytes(bytes).ok()?;
+            rest.is_empty().then_some(value)
+        })
+    }
+
+    /// Decodes exactly what postcard would, faster; `None`: postcard decodes.
+    #[doc(hidden)]
+    fn read(_: &[u8]) -> Option<Self> {
+        None
     }
 }
 

@@ -81,7 +81,7 @@ impl Meter for Gauge {
         let ticks = runtime::ticks().wrapping_sub(self.began);
         let painted = self.painted.take();
         if painted.is_some_and(|painted| !painted.has_room()) {
-            // The memory below the stack may be corrupted.
+            // The memory below the stack may be damaged.
             fault::over_the_link(format_args!("stack overflow: all of {} bytes used", stack::size()));
         }
         Cost { ticks, stack_bytes: painted.map_or(0, |painted| painted.deepest()) }

@@ -51,6 +51,7 @@ impl Stop {
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
+    label: String,
     lines: Option<Instant>,
 }
 
@@ -66,12 +67,12 @@ impl Progress {
         };
         let bar = ProgressBar::with_draw_target(Some(total), target);
         // The message is cut at the last column, so that the line does not wrap.
-        let style = "{prefix} [{bar:20}] {pos}/{len}, {eta} left{wide_msg}";
+        let style = "[{bar:10}] {eta} left, {pos}/{len}{wide_msg}";
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style.progress_chars("=> "));
         }
-        bar.set_prefix(label.to_owned());
-        Self { bar, lines: (!terminal && !global.quiet).then(Instant::now) }
+        bar.set_message(spaced(label));
+        Self { bar, label: label.to_owned(), lines: (!terminal && !global.quiet).then(Instant::now) }
     }
 
     /// Sets the total number of steps.
@@ -83,11 +84,11 @@ impl Progress {
     pub fn set(&mut self, done: u64, message: impl FnOnce() -> String) {
         self.bar.set_position(done);
         if !self.bar.is_hidden() {
-            self.bar.set_message(spaced(&message()));
+            let message = message();
+            self.bar.set_message(spaced(if message.is_empty() { &self.label } else { &message }));
         } else if self.lines.is_some_and(|at| at.elapsed() >= LINE_EVERY) {
             self.lines = Some(Instant::now());
-            let (label, total) = (self.bar.prefix(), self.bar.length().unwrap_or(0));
-            let left = self.bar.eta().as_secs();
+            let (label, total, left) = (&self.label, self.bar.length().unwrap_or(0), self.bar.eta().as_secs());
             // Standard error may be closed.
             let _ = writeln!(io::stderr(), "{label}: {done}/{total}{}, about {left} s left", spaced(&message()));
         }

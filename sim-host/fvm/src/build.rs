@@ -1,6 +1,7 @@
 //! Builds a model of a function: the tangent plane of its graph in each node of a grid.
 
 use crate::Function;
+use anyhow::{Result, bail};
 use staya_voxel::{Header, checksum};
 
 /// The grid on which a function is sampled.
@@ -15,43 +16,14 @@ pub struct Grid<const V: usize> {
 /// Largest size of a model, bytes.
 pub(crate) const MOST_BYTES: usize = 64 << 20;
 
-/// Why a model cannot be built.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BuildError {
-    /// The number of variables is not two or three.
-    #[error("{0} variables: give a function of two or three")]
-    Variables(usize),
-    /// The depth is not supported.
-    #[error("depth {0}: give 4 to 16 bits")]
-    Depth(u8),
-    /// The extent or the nodes of an axis are invalid.
-    #[error("axis {0}: give at least two nodes, and an extent from a smaller to a larger number")]
-    Axis(usize),
-    /// The model would be too large.
-    #[error("a model of {0} bytes exceeds 64 MiB; give fewer nodes")]
-    Size(usize),
-    /// The function has no finite value at a node.
-    #[error(
-        "the function is not finite in 32 bits at {0:?}; exclude that point from the extent, or define the function there"
-    )]
-    NotFinite(Vec<f64>),
-    /// The slope is too steep for the depth.
-    #[error("the function is too steep at {at:?} for {depth} bits; give a greater depth")]
-    TooSteep {
-        /// Coordinates of the node.
-        at: Vec<f64>,
-        /// Depth, bits.
-        depth: u8,
-    },
-}
-
 /// Builds the model of a function on a grid, as bytes for `staya_voxel::Model`. Each node's plane
 /// has the function's value there; its slopes are central differences over half a step to both
 /// sides. `depth`: bits per component, 4 to 16.
 ///
 /// # Errors
-/// [`BuildError`].
-pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) -> Result<Vec<u8>, BuildError> {
+/// The variables are not two or three, the depth or an axis is invalid, the model exceeds 64 MiB,
+/// or the function is not finite or too steep at a node.
+pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) -> Result<Vec<u8>> {
     let header = header(grid, depth)?;
     let step = |axis: usize| f64::from(header.step[axis]);
     let half: [f64; V] = std::array::from_fn(|axis| 0.5 * step(axis));
@@ -68,7 +40,10 @@ pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) 
         });
         let (value, gradient) = (function.value(at), function.gradient(at, half));
         if !((value as f32).is_finite() && gradient.iter().all(|slope| slope.is_finite())) {
-            return Err(BuildError::NotFinite(at.to_vec()));
+            bail!(
+                "the function is not finite in 32 bits at {at:?}; exclude that point from the extent, or define the \
+                 function there"
+            );
         }
         most = most.max(value.abs());
         planes.push((at, value, gradient));
@@ -84,7 +59,7 @@ pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) 
         let level = |component: f64| libm::round(component / length * whole) as i16;
         let down = level(-1.0);
         if down == 0 {
-            return Err(BuildError::TooSteep { at: at.to_vec(), depth });
+            bail!("the function is too steep at {at:?} for {depth} bits; give a greater depth");
         }
         for component in slopes.map(level).into_iter().chain([down, level(free)]) {
             let pair = component.to_le_bytes();
@@ -96,12 +71,12 @@ pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) 
     Ok(bytes)
 }
 
-fn header<const V: usize>(grid: &Grid<V>, depth: u8) -> Result<Header, BuildError> {
+fn header<const V: usize>(grid: &Grid<V>, depth: u8) -> Result<Header> {
     if V != 2 && V != 3 {
-        return Err(BuildError::Variables(V));
+        bail!("{V} variables: give a function of two or three");
     }
     if !(4..=16).contains(&depth) {
-        return Err(BuildError::Depth(depth));
+        bail!("depth {depth}: give 4 to 16 bits");
     }
     let mut header = Header { variables: V as u8, depth, nodes: [1; 3], first: [0.0; 3], step: [0.0; 3], unit: 1.0 };
     for (axis, (&nodes, &[low, high])) in grid.nodes.iter().zip(&grid.extent).enumerate() {
@@ -109,12 +84,12 @@ fn header<const V: usize>(grid: &Grid<V>, depth: u8) -> Result<Header, BuildErro
         let last = first + step * (f32::from(nodes) - 1.0);
         let is_sound = nodes >= 2 && step.is_normal() && first < last && last.is_finite();
         if !is_sound {
-            return Err(BuildError::Axis(axis + 1));
+            bail!("axis {}: give at least two nodes, and an extent from a smaller to a larger number", axis + 1);
         }
         (header.nodes[axis], header.first[axis], header.step[axis]) = (nodes, first, step);
     }
     if header.model_len() > MOST_BYTES {
-        return Err(BuildError::Size(header.model_len()));
+        bail!("a model of {} bytes exceeds 64 MiB; give fewer nodes", header.model_len());
     }
     Ok(header)
 }

@@ -5,13 +5,14 @@ mod orca;
 
 use crate::build::MOST_BYTES;
 use crate::draw::{m_images, sheet};
-use crate::swarm::{Models, Outcome, Source, Swap};
+use crate::numbers::numbers;
+use crate::swarm::{Crowd, Outcome, Source, Swap};
 use crate::{
     HalfPlaneErrors, Measured, Reading, System, Template, Templated, VelocityForm, build, half_planes, measure,
 };
 use anyhow::{Context as _, Result, anyhow};
 use clap::{Args, Subcommand};
-use options::{TemplateArgs, grid, numbers};
+use options::{TemplateArgs, grid};
 use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
 use staya_sim::file::read_remedy;
@@ -125,18 +126,8 @@ struct SwarmArgs {
     /// A room as TOML (`outline`, `[[circle]]`, `[[polygon]]`) [default: the documentation's].
     #[arg(long, value_name = "FILE")]
     room: Option<PathBuf>,
-    /// Number of robots.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=64))]
-    robots: u32,
-    /// Radius of the circle of starts around the origin, metres.
-    #[arg(long, value_name = "M", default_value_t = 2.5)]
-    circle: f32,
-    /// Seed; equal seeds give equal starts.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Time limit of a run, seconds.
-    #[arg(long, value_name = "S", default_value_t = 60.0)]
-    limit: f32,
+    #[command(flatten)]
+    crowd: Crowd,
     /// Nodes along the longest axis of the room's model.
     #[arg(long, value_name = "N", default_value_t = 65, value_parser = clap::value_parser!(u16).range(2..))]
     room_resolution: u16,
@@ -255,7 +246,7 @@ impl EvaluateArgs {
         let bytes = read(&self.model)?;
         let about = || self.model.display().to_string();
         let variables = Header::read(&bytes).with_context(about)?.variables;
-        let at = numbers(&self.at).map_err(|error| anyhow!(error))?;
+        let at = numbers(&self.at)?;
         let reading = if self.nearest { Reading::Nearest } else { Reading::Blend };
         let found = if variables == 2 {
             let local = local::<2>(&bytes, &at, reading)?;
@@ -286,6 +277,12 @@ fn local<const V: usize>(bytes: &[u8], at: &[f64], reading: Reading) -> Result<L
         .local(&model, at.map(|x| x as f32))
         .ok_or_else(|| anyhow!("{at:?} is outside the model; give a point in its extent {extent:?}"))
 }
+
+/// Head of the table of errors.
+const MEASURED: &str = concat!(
+    "       nodes  bits    bytes  reading                 value              gradient               angle, degrees\n",
+    "                                           mean      worst       mean      worst       mean      p99    worst\n",
+);
 
 #[derive(Debug, Serialize)]
 struct Row {
@@ -323,20 +320,7 @@ impl MeasureArgs {
         if global.json {
             return print_json(&rows);
         }
-        let mut text = format!(
-            "{:>12} {:>5} {:>8} {:>8} {:>21} {:>21} {:>28}\n{:>36} {:>21} {:>21} {:>28}\n",
-            "nodes",
-            "bits",
-            "bytes",
-            "reading",
-            "value",
-            "gradient",
-            "angle, degrees",
-            "",
-            "mean      worst",
-            "mean      worst",
-            "mean      p99    worst"
-        );
+        let mut text = String::from(MEASURED);
         for Row { nodes, depth, bytes, reading, errors, half_planes } in rows {
             let nodes: Vec<String> = nodes.iter().map(ToString::to_string).collect();
             let reading = if reading == Reading::Nearest { "nearest" } else { "blend" };
@@ -382,15 +366,8 @@ impl SwarmArgs {
         let room = options::room(self.room.as_deref())?;
         let model = |template: &Template, resolution| made(&template.function()?, resolution, self.depth);
         let room_model = model(&Template::Room(room.clone(), System::R1), self.room_resolution)?;
-        let neighbor = model(&Template::Neighbor(VelocityForm::Distance), self.neighbor_resolution)?;
-        let swap = Swap {
-            room,
-            robots: self.robots,
-            circle_m: self.circle,
-            seed: self.seed,
-            limit_s: self.limit,
-            models: Models { room: &room_model, neighbor: &neighbor },
-        };
+        let neighbor_model = model(&Template::Neighbor(VelocityForm::Distance), self.neighbor_resolution)?;
+        let swap = Swap { crowd: self.crowd, room, room_model: &room_model, neighbor_model: &neighbor_model };
         if let Some(robot) = swap.blocked() {
             return Err(anyhow!("robot {robot} would start or end in a wall; give another --circle or fewer --robots"));
         }
@@ -404,16 +381,10 @@ impl SwarmArgs {
             return print_json(&outcomes);
         }
         let mut text = format!(
-            "models: room {} bytes, neighbours {} bytes\n{:<10} {:<10} {:>7} {:>8} {:>10} {:>10} {:>8}\n",
+            "models: room {} bytes, neighbours {} bytes\n\
+             neighbours walls      arrived  time, s     gap, m    wall, m overlaps\n",
             room_model.len(),
-            neighbor.len(),
-            "neighbours",
-            "walls",
-            "arrived",
-            "time, s",
-            "gap, m",
-            "wall, m",
-            "overlaps"
+            neighbor_model.len()
         );
         let name = |source| match source {
             Source::Formula => "formula",

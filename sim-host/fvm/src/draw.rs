@@ -1,45 +1,13 @@
 //! Pictures of models: M-images with one pixel per voxel, and an overview sheet.
 
+use crate::orca::view::{grey, pixels};
+use anyhow::{Context as _, Result, bail};
 use staya_controller::scalar::Scalar;
 use staya_plot::canvas::{Anchor, Canvas, Pixels, Shape, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 use staya_sim::record::write_atomically;
-use staya_voxel::{FileError, HEADER_LEN, Header, Model};
+use staya_voxel::{HEADER_LEN, Header, Model};
 use std::path::{Path, PathBuf};
-
-/// Why pictures cannot be drawn.
-#[derive(Debug, thiserror::Error)]
-pub enum DrawError {
-    /// The model is invalid.
-    #[error("{0}")]
-    Model(#[from] FileError),
-    /// An axis is too long for its numbers, or too short.
-    #[error(
-        "axis {axis} of the model goes from {low:e} to {high:e}; build it again with different ends, at most {most:e}",
-        most = f32::MAX
-    )]
-    Extent {
-        /// Number of the axis, from 1.
-        axis: usize,
-        /// Smallest coordinate.
-        low: f64,
-        /// Largest coordinate.
-        high: f64,
-    },
-    /// The slice is outside the third axis.
-    #[error("no slice at {at}; give {low} to {high} along the third axis")]
-    Slice {
-        /// Requested slice.
-        at: f64,
-        /// Smallest coordinate.
-        low: f64,
-        /// Largest coordinate.
-        high: f64,
-    },
-    /// A file cannot be written.
-    #[error("{0}: {1}")]
-    Write(PathBuf, String),
-}
 
 const NAMES: [&[&str]; 2] = [
     &["cos alpha", "cos beta", "cos gamma", "cos delta"],
@@ -51,8 +19,8 @@ const NAMES: [&[&str]; 2] = [
 /// bottom.
 ///
 /// # Errors
-/// [`DrawError`].
-pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>, DrawError> {
+/// The model is invalid, or a file cannot be written.
+pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>> {
     let header = Header::read(bytes)?;
     let (width, rows) = (usize::from(header.nodes[0]), usize::from(header.nodes[1]) * usize::from(header.nodes[2]));
     let (length, components) = (header.component_len(), header.components());
@@ -73,15 +41,16 @@ pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>, DrawError> {
             }
         }
         let path = suffixed(stem, &format!("-{}.png", component + 1));
-        let failed = |error: &dyn std::fmt::Display| DrawError::Write(path.clone(), error.to_string());
         let mut picture = Vec::new();
         let mut encoder = png::Encoder::new(&mut picture, width as u32, rows as u32);
         encoder.set_color(png::ColorType::Grayscale);
         encoder.set_depth(if length == 1 { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
-        let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
-        writer.write_image_data(&grey).map_err(|error| failed(&error))?;
-        writer.finish().map_err(|error| failed(&error))?;
-        write_atomically(&path, &picture).map_err(|error| failed(&error))?;
+        let written = encoder.write_header().and_then(|mut writer| {
+            writer.write_image_data(&grey)?;
+            writer.finish()
+        });
+        written.with_context(|| path.display().to_string())?;
+        write_atomically(&path, &picture)?;
         files.push(path);
     }
     Ok(files)
@@ -102,8 +71,9 @@ const PIXELS: u32 = 360;
 /// layer nearest to `slice`, by default the middle one.
 ///
 /// # Errors
-/// [`DrawError`].
-pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, DrawError> {
+/// The model is invalid, an axis is too long for its numbers or too short, or the slice is outside
+/// the third axis.
+pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas> {
     if Header::read(bytes)?.variables == 2 {
         let model = Model::<f64, 2>::from_bytes(bytes)?;
         let [nx, ny, _] = Header::read(bytes)?.nodes;
@@ -120,7 +90,7 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
     let [x, y, [low, high]] = drawable(model.extent())?;
     let at = slice.unwrap_or(0.5 * (low + high));
     if !(low..=high).contains(&at) {
-        return Err(DrawError::Slice { at, low, high });
+        bail!("no slice at {at}; give {low} to {high} along the third axis");
     }
     let layer = libm::round((at - low) / (high - low) * f64::from(nz - 1)) as u16;
     let value = |x: f64, y: f64| model.blend([x, y, at]).map(|local| local.value);
@@ -132,10 +102,13 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
 }
 
 /// Refuses axes without a finite length, from which the size of the picture would follow.
-fn drawable<const V: usize>(extent: [[f64; 2]; V]) -> Result<[[f64; 2]; V], DrawError> {
+fn drawable<const V: usize>(extent: [[f64; 2]; V]) -> Result<[[f64; 2]; V]> {
     let is_drawable = |[low, high]: [f64; 2]| low < high && high <= f64::from(f32::MAX);
     match (1..).zip(extent).find(|(_, ends)| !is_drawable(*ends)) {
-        Some((axis, [low, high])) => Err(DrawError::Extent { axis, low, high }),
+        Some((axis, [low, high])) => bail!(
+            "axis {axis} of the model goes from {low:e} to {high:e}; build it again with different ends, at most {:e}",
+            f32::MAX
+        ),
         None => Ok(extent),
     }
 }
@@ -168,29 +141,19 @@ impl Sheet<'_> {
         let scale = f64::from(PIXELS) / longest;
         let [across, up] = [east - west, north - south].map(|side| (libm::round(side * scale) as u32).max(1));
         for (index, (name, field)) in self.fields.iter().enumerate() {
-            let mut rgba = Vec::new();
-            let most = 0.35 * longest;
-            for row in (0..up).rev() {
-                for column in 0..across {
-                    let along = |pixel: u32, pixels: u32| (f64::from(pixel) + 0.5) / f64::from(pixels);
-                    let (x, y) =
-                        (west + (east - west) * along(column, across), south + (north - south) * along(row, up));
-                    rgba.push(field(x, y).map_or([0; 4], |value| contoured(value, most, 1.2 / scale)));
-                }
-            }
-            show(&mut canvas, place(index), name, Pixels { width: across, height: up, rgba });
+            let along = |pixel: u32, pixels: u32| (f64::from(pixel) + 0.5) / f64::from(pixels);
+            let pixels = pixels(across, up, |column, row| {
+                let (x, y) = (west + (east - west) * along(column, across), south + (north - south) * along(row, up));
+                field(x, y).map_or([0; 4], |value| contoured(value, 0.35 * longest, 1.2 / scale))
+            });
+            show(&mut canvas, place(index), name, pixels);
         }
         let [nx, ny] = self.nodes;
         for (component, name) in self.names.iter().enumerate() {
-            let mut rgba = Vec::new();
-            for row in (0..ny).rev() {
-                for column in 0..nx {
-                    let found = (self.node)(column, row).and_then(|node| node.get(component).copied());
-                    let shade = found.map_or(0, |found| (127.5 + 127.5 * Scalar::clamp(found, -1.0, 1.0)) as u8);
-                    rgba.push([shade, shade, shade, 255]);
-                }
-            }
-            let pixels = Pixels { width: nx.into(), height: ny.into(), rgba };
+            let pixels = pixels(nx.into(), ny.into(), |column, row| {
+                let node = (self.node)(column as u16, row as u16);
+                node.and_then(|node| node.get(component).copied()).map_or([0, 0, 0, 255], grey)
+            });
             show(&mut canvas, place(self.fields.len() + component), name, pixels);
         }
         canvas

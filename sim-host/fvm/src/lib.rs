@@ -5,6 +5,7 @@ pub mod cli;
 pub mod draw;
 mod function;
 mod measure;
+mod numbers;
 pub mod orca;
 mod room;
 pub mod shape;
@@ -13,8 +14,8 @@ mod template;
 #[cfg(test)]
 mod tests;
 
-pub use build::{BuildError, Grid, build};
+pub use build::{Grid, build};
 pub use function::{Function, System};
 pub use measure::{Errors, HalfPlaneErrors, Measured, Reading, half_planes, measure};
 pub use room::Room;
-pub use template::{Pair, Template, TemplateError, Templated, VelocityForm};
+pub use template::{Pair, Template, Templated, VelocityForm};

@@ -30,7 +30,7 @@ impl Reading {
 }
 
 /// Statistics of errors.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
     /// Mean.
     pub mean: f64,
@@ -41,7 +41,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    fn of(values: &[f64]) -> Option<Self> {
+    pub(crate) fn of(values: &[f64]) -> Option<Self> {
         let max = values.iter().copied().fold(0.0, f64::max);
         Some(Self { mean: mean(values)?, p99: quantile(values, 0.99)?, max })
     }

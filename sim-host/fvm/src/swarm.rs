@@ -1,9 +1,10 @@
 //! Robots that swap places in a room: ORCA from formulas, its table, or functional voxel models.
 
 use crate::Room;
+use clap::Args;
 use serde::Serialize;
 use staya_controller::body::Body;
-use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::geom::Vec2;
 use staya_controller::neighbor::Nearby;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::{Analytic, AvoidParams, Avoider, HalfSpaces, VoxelTable2k};
@@ -31,30 +32,35 @@ pub enum Source {
     Model,
 }
 
+/// Robots on a circle; the goal of each is opposite its start. Each start has a random offset of up
+/// to 20 mm.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Crowd {
+    /// Number of robots.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub robots: u32,
+    /// Radius of the circle of starts around the origin, metres.
+    #[arg(long, value_name = "M", default_value_t = 2.5)]
+    pub circle: f32,
+    /// Seed; equal seeds give equal starts.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Time limit of a run, seconds.
+    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    pub limit: f32,
+}
+
 /// A swap of places.
 #[derive(Clone, Debug)]
 pub struct Swap<'a> {
+    /// The robots.
+    pub crowd: Crowd,
     /// The room.
     pub room: Room,
-    /// Number of robots on the circle; the goal of each is opposite its start.
-    pub robots: u32,
-    /// Radius of the circle around the origin, metres.
-    pub circle_m: f32,
-    /// Seed; each start has a random offset of up to 20 mm.
-    pub seed: u64,
-    /// Time limit, seconds.
-    pub limit_s: f32,
-    /// Models of the room and of neighbours.
-    pub models: Models<'a>,
-}
-
-/// The bytes of the models.
-#[derive(Clone, Copy, Debug)]
-pub struct Models<'a> {
-    /// Model of [`Template::Room`](crate::Template::Room).
-    pub room: &'a [u8],
-    /// Model of [`Template::Neighbor`](crate::Template::Neighbor).
-    pub neighbor: &'a [u8],
+    /// Bytes of the model of [`Template::Room`](crate::Template::Room).
+    pub room_model: &'a [u8],
+    /// Bytes of the model of [`Template::Neighbor`](crate::Template::Neighbor).
+    pub neighbor_model: &'a [u8],
 }
 
 /// Result of a run.
@@ -93,12 +99,12 @@ impl Swap<'_> {
             let Vec2 { x, y } = self.place(index);
             function.value([x.into(), y.into()]) < -f64::from(RADIUS_M + 0.03)
         };
-        (0..self.robots).find(|&index| !free(index)).map(|index| index + 1)
+        (0..self.crowd.robots).find(|&index| !free(index)).map(|index| index + 1)
     }
 
     fn place(&self, index: u32) -> Vec2<f32> {
-        let (sin, cos) = libm::sincos(TAU * f64::from(index) / f64::from(self.robots));
-        Vec2::new(cos as f32, sin as f32) * self.circle_m
+        let (sin, cos) = libm::sincos(TAU * f64::from(index) / f64::from(self.crowd.robots));
+        Vec2::new(cos as f32, sin as f32) * self.crowd.circle
     }
 
     /// Simulates one run.
@@ -106,28 +112,31 @@ impl Swap<'_> {
     /// # Errors
     /// An invalid model.
     pub fn run(&self, neighbors: Source, walls: Source) -> Result<Outcome, FileError> {
-        let outcome = match neighbors {
-            Source::Formula => self.go(Analytic, walls)?,
-            Source::Table => self.go(VoxelTable2k, walls)?,
-            Source::Model => self.go(VoxelNeighbor::new(Model::from_bytes(self.models.neighbor)?), walls)?,
-        };
-        Ok(Outcome { neighbors, ..outcome })
+        match neighbors {
+            Source::Formula => self.go([neighbors, walls], Analytic),
+            Source::Table => self.go([neighbors, walls], VoxelTable2k),
+            Source::Model => self.go([neighbors, walls], VoxelNeighbor::new(Model::from_bytes(self.neighbor_model)?)),
+        }
     }
 
-    fn go<P: HalfSpaces<f32, Velocity = Vec2<f32>> + Clone>(&self, by: P, walls: Source) -> Result<Outcome, FileError> {
-        let model = Model::<f32, 2>::from_bytes(self.models.room)?;
+    fn go<P: HalfSpaces<f32, Velocity = Vec2<f32>> + Clone>(
+        &self,
+        [neighbors, walls]: [Source; 2],
+        by: P,
+    ) -> Result<Outcome, FileError> {
+        let model = Model::<f32, 2>::from_bytes(self.room_model)?;
         let truth = self.room.function(crate::System::R1);
-        let mut robots: Vec<Robot<P>> = (0..self.robots).map(|index| self.robot(index, by.clone())).collect();
+        let mut robots: Vec<Robot<P>> = (0..self.crowd.robots).map(|index| self.robot(index, by.clone())).collect();
         let mut outcome = Outcome {
-            neighbors: Source::Formula,
+            neighbors,
             walls,
             arrived: 0,
-            time_s: self.limit_s,
+            time_s: self.crowd.limit,
             gap_m: f32::INFINITY,
             wall_gap_m: f32::INFINITY,
             overlaps: 0,
         };
-        let ticks = (self.limit_s / STEP_S) as u32;
+        let ticks = (self.crowd.limit / STEP_S) as u32;
         for tick in 0..ticks {
             let wished: Vec<_> =
                 (0..robots.len()).map(|own| self.decide(&mut robots, own, tick, walls, &model)).collect();
@@ -146,7 +155,7 @@ impl Swap<'_> {
                 }
             }
             outcome.arrived = robots.iter().filter(|robot| robot.has_arrived).count() as u32;
-            if outcome.arrived == self.robots {
+            if outcome.arrived == self.crowd.robots {
                 outcome.time_s = (tick + 1) as f32 * STEP_S;
                 break;
             }
@@ -156,7 +165,7 @@ impl Swap<'_> {
 
     fn robot<P: HalfSpaces<f32>>(&self, index: u32, by: P) -> Robot<P> {
         let place = self.place(index);
-        let mut rng = Rng::keyed(self.seed, PURPOSE, index, 0);
+        let mut rng = Rng::keyed(self.crowd.seed, PURPOSE, index, 0);
         let mut off = || (rng.below(41) as f32 - 20.0) * 0.001;
         let at = place + Vec2::new(off(), off());
         let avoider = Avoider::with_source(AvoidParams { margin_m: 0.004, ..AvoidParams::default() }, by);
@@ -207,11 +216,8 @@ impl Swap<'_> {
             step_s: STEP_S,
         };
         let way = goal - at;
-        let wish = Vec2::new(way.x, way.y) * (1.0 / STEP_S);
-        let mut rng = Rng::keyed(self.seed, PURPOSE, own as u32, tick + 1);
-        let wish = wish.clamp_norm(SPEED_MPS);
-        let found = robots[own].avoider.velocity(&body, wish, Some(way), &nearby, &around, &mut rng);
-        let Vec3 { x, y, .. } = found.velocity_mps.extend(0.0);
-        Vec2::new(x, y)
+        let wish = (way * (1.0 / STEP_S)).clamp_norm(SPEED_MPS);
+        let mut rng = Rng::keyed(self.crowd.seed, PURPOSE, own as u32, tick + 1);
+        robots[own].avoider.velocity(&body, wish, Some(way), &nearby, &around, &mut rng).velocity_mps
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::room::{extent, is_polygon};
 use crate::{Function, Room, System, shape};
+use anyhow::{Result, bail};
 
 /// The function of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,12 +32,6 @@ pub struct Pair {
     pub horizon_s: f64,
 }
 
-impl Default for Pair {
-    fn default() -> Self {
-        Self { places_m: [[2.0, -3.0], [-2.0, 3.0]], radii_m: [1.0, 1.0], horizon_s: 2.0 }
-    }
-}
-
 /// Function that represents a velocity obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VelocityForm {
@@ -45,25 +40,6 @@ pub enum VelocityForm {
     /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions, as in the paper. The border is the
     /// same, but the gradient is not everywhere the shortest way out.
     RFunction(System),
-}
-
-/// Why a template is invalid.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum TemplateError {
-    /// Invalid radius.
-    #[error("radius {0}: give a finite number above 0")]
-    Radius(f64),
-    /// Invalid centre.
-    #[error("center: give finite numbers")]
-    Center,
-    /// Invalid polygon.
-    #[error("corners: give three or more, finite, no two in a row equal")]
-    Corners,
-    /// Robots that overlap, or a radius or horizon that is not above 0.
-    #[error(
-        "the robots overlap or a number is not positive; give places more than {0} m apart, radii and horizon above 0"
-    )]
-    Pair(f64),
 }
 
 /// A function and its default extent.
@@ -82,30 +58,15 @@ impl Template {
     /// The function and its default extent.
     ///
     /// # Errors
-    /// [`TemplateError`].
-    pub fn function(&self) -> Result<Templated, TemplateError> {
-        let sound = |radius: f64| {
-            if radius > 0.0 && radius.is_finite() { Ok(()) } else { Err(TemplateError::Radius(radius)) }
-        };
-        let around = |center: f64, radius: f64| [center - 1.5 * radius, center + 1.5 * radius];
+    /// A number is not finite, a radius or horizon is not above 0, corners are not a polygon, or
+    /// robots overlap.
+    pub fn function(&self) -> Result<Templated> {
         Ok(match self {
-            &Self::Circle(center, radius) => {
-                sound(radius)?;
-                if !center.iter().all(|x| x.is_finite()) {
-                    return Err(TemplateError::Center);
-                }
-                Templated::Plane(shape::circle(center, radius), center.map(|x| around(x, radius)))
-            }
-            &Self::Ball(center, radius) => {
-                sound(radius)?;
-                if !center.iter().all(|x| x.is_finite()) {
-                    return Err(TemplateError::Center);
-                }
-                Templated::Space(shape::ball(center, radius), center.map(|x| around(x, radius)))
-            }
+            &Self::Circle(center, radius) => Templated::Plane(shape::circle(center, radius), around(center, radius)?),
+            &Self::Ball(center, radius) => Templated::Space(shape::ball(center, radius), around(center, radius)?),
             Self::Polygon(corners) => {
                 if !is_polygon(corners) {
-                    return Err(TemplateError::Corners);
+                    bail!("corners: give three or more, finite, no two in a row equal");
                 }
                 let [[left, right], [bottom, top]] = extent(corners, 0.0);
                 let margin = 0.25 * (right - left).max(top - bottom);
@@ -121,14 +82,27 @@ impl Template {
     }
 }
 
+fn around<const V: usize>(center: [f64; V], radius: f64) -> Result<[[f64; 2]; V]> {
+    if !(radius > 0.0 && radius.is_finite()) {
+        bail!("radius {radius}: give a finite number above 0");
+    }
+    if !center.iter().all(|x| x.is_finite()) {
+        bail!("center: give finite numbers");
+    }
+    Ok(center.map(|x| [x - 1.5 * radius, x + 1.5 * radius]))
+}
+
 impl Pair {
-    fn function(&self, form: VelocityForm) -> Result<Templated, TemplateError> {
+    fn function(&self, form: VelocityForm) -> Result<Templated> {
         let [[ax, ay], [bx, by]] = self.places_m;
         let (x, y) = (bx - ax, by - ay);
         let (distance, radii) = (libm::hypot(x, y), self.radii_m[0] + self.radii_m[1]);
         let is_sound = distance > radii && distance.is_finite() && self.radii_m.iter().all(|&r| r > 0.0);
         if !(is_sound && self.horizon_s > 0.0 && self.horizon_s.is_finite()) {
-            return Err(TemplateError::Pair(radii));
+            bail!(
+                "the robots overlap or a number is not positive; give places more than {radii} m apart, radii and \
+                 horizon above 0"
+            );
         }
         let (tip, unit) = ([x / self.horizon_s, y / self.horizon_s], radii / self.horizon_s);
         let (ahead, sine) = ([x / distance, y / distance], radii / distance);

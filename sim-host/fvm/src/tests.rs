@@ -1,5 +1,5 @@
 use crate::draw::{m_images, sheet};
-use crate::swarm::{Models, Source, Swap};
+use crate::swarm::{Crowd, Source, Swap};
 use crate::*;
 use proptest::prelude::*;
 use staya_controller::geom::Vec2;
@@ -10,6 +10,8 @@ use staya_voxel::{Header, Model, VoxelNeighbor, obstacles, velocity_half_plane};
 use std::path::Path;
 
 type V = Vec2<f64>;
+
+const PAIR: Pair = Pair { places_m: [[2.0, -3.0], [-2.0, 3.0]], radii_m: [1.0, 1.0], horizon_s: 2.0 };
 
 fn plane(template: &Template, nodes: [u16; 2], depth: u8) -> Vec<u8> {
     let Templated::Plane(function, extent) = template.function().unwrap() else { panic!("of three variables") };
@@ -109,7 +111,7 @@ fn worked_example_of_the_paper() {
     let relative = V::new(-1.5, 2.5);
     let off = |plane: HalfPlane<f64>| (plane.point - V::new(1.707107, 0.792893)).norm();
     for form in [VelocityForm::Distance, VelocityForm::RFunction(System::R1)] {
-        let bytes = plane(&Template::VelocityObstacle(Pair::default(), form), [65, 65], 16);
+        let bytes = plane(&Template::VelocityObstacle(PAIR, form), [65, 65], 16);
         let model = Model::<f64, 2>::from_bytes(&bytes).unwrap();
         let found = velocity_half_plane(&model, own, relative, 1.0).unwrap();
         assert!(off(found) < 0.007, "{form:?}: {}", off(found));
@@ -196,10 +198,7 @@ fn invalid_templates_are_refused() {
         Template::Circle([0.0; 2], 0.0),
         Template::Ball([f64::NAN; 3], 1.0),
         Template::Polygon(vec![[0.0; 2]; 3]),
-        Template::VelocityObstacle(
-            Pair { places_m: [[0.0; 2], [1.0, 0.0]], ..Pair::default() },
-            VelocityForm::Distance,
-        ),
+        Template::VelocityObstacle(Pair { places_m: [[0.0; 2], [1.0, 0.0]], ..PAIR }, VelocityForm::Distance),
     ] {
         assert!(template.function().is_err(), "{template:?}");
     }
@@ -226,8 +225,12 @@ fn models_and_formulas_give_similar_swarms() {
     let room = Room::default();
     let of_room = plane(&Template::Room(room.clone(), System::R1), [65, 50], 16);
     let of_neighbor = space(&Template::Neighbor(VelocityForm::Distance), [17, 9, 5], 16);
-    let models = Models { room: &of_room, neighbor: &of_neighbor };
-    let swap = Swap { room, robots: 6, circle_m: 2.5, seed: 1, limit_s: 40.0, models };
+    let swap = Swap {
+        crowd: Crowd { robots: 6, circle: 2.5, seed: 1, limit: 40.0 },
+        room,
+        room_model: &of_room,
+        neighbor_model: &of_neighbor,
+    };
     for (neighbors, walls) in [(Source::Formula, Source::Formula), (Source::Model, Source::Model)] {
         let outcome = swap.run(neighbors, walls).unwrap();
         assert_eq!((outcome.arrived, outcome.overlaps), (6, 0), "{outcome:?}");

@@ -4,12 +4,12 @@ mod bridge;
 mod companion;
 mod formation;
 
+use crate::terminal::{number, say};
 use anyhow::Result;
 use clap::Subcommand;
 use staya_console::{Ended, Global};
 use staya_mavlink::signing::Signing;
 use staya_sim::key::{KeyFile, timestamp};
-use std::io::{self, Write as _};
 use std::path::Path;
 
 /// Commands that use MAVLink.
@@ -35,19 +35,6 @@ impl Command {
             Self::Companion(args) => args.run(global),
         }
     }
-}
-
-/// Parses a number within limits.
-fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| {
-        let value = text.parse().ok().filter(|value| (least..=most).contains(value));
-        value.ok_or_else(|| format!("give a number from {least} to {most}"))
-    }
-}
-
-/// Tells the operator something. Standard error may be closed.
-fn say(remark: &str) {
-    let _ = writeln!(io::stderr(), "staya: {remark}");
 }
 
 /// Signatures with the key in a file, under a number that no other sender with this key uses.

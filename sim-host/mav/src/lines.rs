@@ -2,27 +2,17 @@ use super::endpoint::Endpoint;
 use super::inbox::{Inbox, Peer, Received};
 use super::traffic::{Counts, Outgoing, Shared};
 use super::{stream, udp};
-use std::io;
+use anyhow::{Result, anyhow};
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Why a link cannot be opened.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot open {endpoint}: {source}; give another address or port, or end the program that uses it")]
-pub struct OpenError {
-    /// The link.
-    pub endpoint: Endpoint,
-    /// Cause.
-    pub source: io::Error,
-}
-
 struct Line {
     outgoing: Box<dyn Outgoing>,
     shared: Shared,
-    threads: Vec<JoinHandle<()>>,
+    thread: Option<JoinHandle<()>>,
 }
 
 /// Open links with one queue of received frames. Sending never waits: frames that cannot be sent
@@ -40,7 +30,7 @@ impl Lines {
     ///
     /// # Errors
     /// The first link that cannot be opened. An absent peer is not an error.
-    pub fn open(endpoints: &[Endpoint]) -> Result<Self, OpenError> {
+    pub fn open(endpoints: &[Endpoint]) -> Result<Self> {
         let inbox = Arc::<Inbox>::default();
         let mut lines = Self { lines: Vec::new(), inbox: Arc::clone(&inbox) };
         for (line, endpoint) in endpoints.iter().enumerate() {
@@ -52,46 +42,37 @@ impl Lines {
                 Endpoint::TcpIn(address) => stream::listen(*address, &shared),
                 Endpoint::Serial(port) => stream::serial(port, &shared),
             };
-            let (outgoing, threads) = opened.map_err(|source| OpenError { endpoint: endpoint.clone(), source })?;
-            lines.lines.push(Line { outgoing, shared, threads });
+            let (outgoing, thread) = opened.map_err(|error| {
+                anyhow!(
+                    "cannot open {endpoint}: {error}; give another address or port, or end the program that uses it"
+                )
+            })?;
+            lines.lines.push(Line { outgoing, shared, thread: Some(thread) });
         }
         Ok(lines)
     }
 
     /// Local address of link `line`; `None` for a serial port.
-    #[must_use]
     pub fn local(&self, line: usize) -> Option<SocketAddr> {
-        self.lines.get(line)?.outgoing.local()
+        self.lines[line].outgoing.local()
     }
 
     /// Sends a frame to all peers of all links.
     pub fn send_all(&self, frame: &[u8]) {
-        self.lines.iter().for_each(|line| line.outgoing.send(frame));
+        self.lines.iter().for_each(|line| line.outgoing.send(None, frame));
     }
 
-    /// Sends a frame to all peers of a link. An unknown index does nothing.
-    pub fn send(&self, line: usize, frame: &[u8]) {
-        if let Some(line) = self.lines.get(line) {
-            line.outgoing.send(frame);
-        }
-    }
-
-    /// Sends a frame to one peer of a link.
-    pub fn send_to(&self, line: usize, peer: Peer, frame: &[u8]) {
-        if let Some(line) = self.lines.get(line) {
-            line.outgoing.send_to(peer, frame);
-        }
+    /// Sends a frame to one peer of a link, or to all.
+    pub fn send(&self, line: usize, peer: Option<Peer>, frame: &[u8]) {
+        self.lines[line].outgoing.send(peer, frame);
     }
 
     /// Marks a peer as known after a valid (with a key, authentic) frame; a silent peer expires.
     pub fn believe(&self, line: usize, peer: Peer) {
-        if let Some(line) = self.lines.get(line) {
-            line.outgoing.believe(peer);
-        }
+        self.lines[line].outgoing.believe(peer);
     }
 
     /// The next received frame of any link, or `None` after the timeout. Peers are served in turn.
-    #[must_use]
     pub fn receive(&self, timeout: Duration) -> Option<Received> {
         self.inbox.next(timeout)
     }
@@ -103,16 +84,13 @@ impl Lines {
     }
 
     /// Traffic counters of link `line`.
-    #[must_use]
     pub fn counts(&self, line: usize) -> Counts {
-        let line = self.lines.get(line);
-        line.map_or_else(Counts::default, |line| line.shared.tally.counts())
+        self.lines[line].shared.tally.counts()
     }
 
     /// Why the last connection attempt of link `line` failed; `None` without a failure.
-    #[must_use]
     pub fn trouble(&self, line: usize) -> Option<String> {
-        self.lines.get(line).and_then(|line| line.shared.tally.trouble())
+        self.lines[line].shared.tally.trouble()
     }
 
     /// Closes all links. Frames already received remain available.
@@ -120,15 +98,12 @@ impl Lines {
         for line in &self.lines {
             line.shared.closed.store(true, Ordering::Relaxed);
         }
-        for line in &mut self.lines {
-            for thread in line.threads.drain(..) {
-                let _ = thread.join();
-            }
+        for thread in self.lines.iter_mut().filter_map(|line| line.thread.take()) {
+            let _ = thread.join();
         }
     }
 
     /// Number of queued frames.
-    #[must_use]
     pub fn waiting(&self) -> u64 {
         self.inbox.len()
     }

@@ -79,24 +79,13 @@ struct Stream {
 }
 
 impl Outgoing for Stream {
-    fn send(&self, frame: &[u8]) {
-        self.peers.with(|peers| {
-            for peer in peers.values() {
-                if peer.queue.try_send(frame.to_vec()).is_err() {
-                    self.shared.tally.sent(frame, false);
-                }
-            }
+    fn send(&self, peer: Option<Peer>, frame: &[u8]) {
+        let is_lost = |peer: &&Connected| peer.queue.try_send(frame.to_vec()).is_err();
+        let lost = self.peers.with(|peers| match peer {
+            None => peers.values().filter(is_lost).count(),
+            Some(peer) => usize::from(peers.get(&peer).is_none_or(|peer| is_lost(&peer))),
         });
-    }
-
-    fn send_to(&self, peer: Peer, frame: &[u8]) {
-        let is_queued = self.peers.with(|peers| {
-            let peer = peers.get(&peer);
-            peer.is_some_and(|peer| peer.queue.try_send(frame.to_vec()).is_ok())
-        });
-        if !is_queued {
-            self.shared.tally.sent(frame, false);
-        }
+        (0..lost).for_each(|_| self.shared.tally.sent(frame, false));
     }
 
     fn believe(&self, peer: Peer) {
@@ -112,29 +101,34 @@ impl Outgoing for Stream {
     }
 }
 
+/// A link whose thread does `work`.
+fn open(
+    name: &str,
+    local: Option<SocketAddr>,
+    shared: &Shared,
+    work: impl FnOnce(&Peers, &Shared) + Send + 'static,
+) -> Opened {
+    let stream = Stream { peers: Peers::default(), local, shared: shared.clone() };
+    let (peers, shared) = (stream.peers.clone(), shared.clone());
+    Ok((Box::new(stream), start(name, move || work(&peers, &shared))?))
+}
+
 pub(super) fn connect(to: SocketAddr, shared: &Shared) -> Opened {
-    let peers = Peers::default();
-    let stream = Stream { peers: peers.clone(), local: None, shared: shared.clone() };
-    let shared = shared.clone();
-    let work = move || {
+    open("tcp", None, shared, move |peers, shared| {
         while !shared.is_closed() {
             if let Ok(socket) = shared.tally.noting(TcpStream::connect_timeout(&to, PATIENCE)) {
                 let frames = peers.join(Peer::Address(to), None);
-                converse_tcp(&socket, Peer::Address(to), frames, &peers, &shared);
+                converse_tcp(&socket, Peer::Address(to), frames, peers, shared);
             }
-            wait(RETRY, &shared);
+            wait(RETRY, shared);
         }
-    };
-    Ok((Box::new(stream), vec![start("tcp", work)?]))
+    })
 }
 
 pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
     let listener = TcpListener::bind(at)?;
     listener.set_nonblocking(true)?;
-    let peers = Peers::default();
-    let stream = Stream { peers: peers.clone(), local: listener.local_addr().ok(), shared: shared.clone() };
-    let shared = shared.clone();
-    let work = move || {
+    open("tcpin", listener.local_addr().ok(), shared, move |peers, shared| {
         let mut threads = Vec::<JoinHandle<()>>::new();
         while !shared.is_closed() {
             threads.retain(|thread| !thread.is_finished());
@@ -162,28 +156,22 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
         for thread in threads {
             let _ = thread.join();
         }
-    };
-    Ok((Box::new(stream), vec![start("tcpin", work)?]))
+    })
 }
 
 pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
     let port = port.clone();
-    let open = move || port.open(PAUSE);
-    let mut opened = Some(open().map_err(io::Error::other)?);
-    let peers = Peers::default();
-    let stream = Stream { peers: peers.clone(), local: None, shared: shared.clone() };
-    let shared = shared.clone();
-    let work = move || {
+    let mut opened = Some(port.open(PAUSE).map_err(io::Error::other)?);
+    open("serial", None, shared, move |peers, shared| {
         while !shared.is_closed() {
             if let Some((read, write)) = opened.take() {
                 let frames = peers.join(Peer::Wire, None);
-                converse(read, write, Peer::Wire, frames, &peers, &shared);
+                converse(read, write, Peer::Wire, frames, peers, shared);
             }
-            wait(RETRY, &shared);
-            opened = open().ok();
+            wait(RETRY, shared);
+            opened = port.open(PAUSE).ok();
         }
-    };
-    Ok((Box::new(stream), vec![start("serial", work)?]))
+    })
 }
 
 fn wait(time: Duration, shared: &Shared) {

@@ -39,15 +39,7 @@ impl Tlog {
     /// # Errors
     /// The file cannot be written.
     pub fn add(&mut self, frame: &[u8]) -> Result<(), Error> {
-        self.add_at(micros_since_1970(), frame)
-    }
-
-    /// Appends a frame with a time in microseconds since 1970.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn add_at(&mut self, micros: u64, frame: &[u8]) -> Result<(), Error> {
-        self.write(micros, frame).map_err(Error::new("write", &self.path))
+        self.write(micros_since_1970(), frame).map_err(Error::new("write", &self.path))
     }
 
     fn write(&mut self, micros: u64, frame: &[u8]) -> io::Result<()> {
@@ -97,7 +89,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.tlog");
         let mut log = Tlog::create(&path, &mut Files::default()).expect("a log");
-        log.add_at(0x0102, b"xyz").expect("room");
+        log.write(0x0102, b"xyz").expect("room");
         log.finish().expect("room");
         let bytes = std::fs::read(&path).expect("the log");
         assert_eq!(bytes, b"\0\0\0\0\0\0\x01\x02xyz");
@@ -109,7 +101,7 @@ mod tests {
         let path = folder.path().join("a.tlog");
         let mut log = Tlog { limit: 40, ..Tlog::create(&path, &mut Files::default()).expect("a log") };
         for frame in 0..11 {
-            log.add_at(frame, b"ab").expect("room");
+            log.write(frame, b"ab").expect("room");
         }
         log.finish().expect("room");
         let frames = |name: &str| {

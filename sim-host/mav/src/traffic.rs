@@ -95,16 +95,16 @@ impl Shared {
     }
 }
 
-/// The sending side of an open link, and its threads.
-pub(super) type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
+/// The sending side of an open link, and its thread.
+pub(super) type Opened = io::Result<(Box<dyn Outgoing>, JoinHandle<()>)>;
 
 pub(super) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
     thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
 pub(super) trait Outgoing: Send + Sync {
-    fn send(&self, frame: &[u8]);
-    fn send_to(&self, peer: Peer, frame: &[u8]);
+    /// To one peer, or to all.
+    fn send(&self, peer: Option<Peer>, frame: &[u8]);
     fn believe(&self, peer: Peer);
     /// `None` without a socket.
     fn local(&self) -> Option<SocketAddr>;

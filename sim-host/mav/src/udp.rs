@@ -69,7 +69,7 @@ pub(super) fn open_out(to: SocketAddr, shared: &Shared) -> Opened {
     let socket = UdpSocket::bind(local)?;
     let reader = read(socket.try_clone()?, shared, move |from| (from.ip() == to.ip()).then_some(from == to))?;
     let shared = shared.clone();
-    Ok((Box::new(Udp { socket, to: To::One(to), shared }), vec![reader]))
+    Ok((Box::new(Udp { socket, to: To::One(to), shared }), reader))
 }
 
 pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
@@ -78,7 +78,7 @@ pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
     let known = believed.clone();
     let reader = read(socket.try_clone()?, shared, move |from| Some(known.has(from)))?;
     let shared = shared.clone();
-    Ok((Box::new(Udp { socket, to: To::Believed(believed), shared }), vec![reader]))
+    Ok((Box::new(Udp { socket, to: To::Believed(believed), shared }), reader))
 }
 
 /// `knows` returns whether a sender is known, or `None` to ignore it.
@@ -111,17 +111,14 @@ impl Udp {
 }
 
 impl Outgoing for Udp {
-    fn send(&self, frame: &[u8]) {
-        match &self.to {
-            To::One(to) => self.send_one(*to, frame),
-            To::Believed(peers) => peers.all(Instant::now()).into_iter().for_each(|peer| self.send_one(peer, frame)),
-        }
-    }
-
-    fn send_to(&self, peer: Peer, frame: &[u8]) {
+    fn send(&self, peer: Option<Peer>, frame: &[u8]) {
         match (peer, &self.to) {
-            (Peer::Address(to), To::One(_)) => self.send_one(to, frame),
-            (Peer::Address(to), To::Believed(peers)) if peers.has(to) => self.send_one(to, frame),
+            (None, To::One(to)) => self.send_one(*to, frame),
+            (None, To::Believed(peers)) => {
+                peers.all(Instant::now()).into_iter().for_each(|to| self.send_one(to, frame))
+            }
+            (Some(Peer::Address(to)), To::One(_)) => self.send_one(to, frame),
+            (Some(Peer::Address(to)), To::Believed(peers)) if peers.has(to) => self.send_one(to, frame),
             // An unknown peer may be a spoofed address.
             _ => self.shared.tally.sent(frame, false),
         }

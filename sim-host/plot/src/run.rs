@@ -107,11 +107,11 @@ pub(super) fn packets(of: &str, history: &History) -> Panels {
         .with(
             chart("Corrupted and rejected")
                 .note(format!(
-                    "in all {} corrupted on the way, {} rejected by receivers (damaged, foreign or replayed)",
-                    n(all.corrupted),
+                    "in all {} damaged on the way, {} rejected by receivers (damaged, foreign or replayed)",
+                    n(all.damaged),
                     n(all.rejected)
                 ))
-                .with(line("corrupted", 3, |packets| packets.corrupted))
+                .with(line("damaged", 3, |packets| packets.damaged))
                 .with(line("rejected", 2, |packets| packets.rejected)),
         )
 }

@@ -348,7 +348,7 @@ fn entries(ways: &BTreeMap<u32, Way>, with_edges: bool) -> Vec<Entry<'static>> {
         }
     }
     entries.push(Entry::new(12.0, "start", |canvas, [x, y]| ring(canvas, [x + 6.0, y], 4.5, INK)));
-    entries.push(Entry::new(12.0, "target", |canvas, [x, y]| cross(canvas, [x + 6.0, y], 4.5, INK)));
+    entries.push(Entry::new(12.0, "goal", |canvas, [x, y]| cross(canvas, [x + 6.0, y], 4.5, INK)));
     if with_edges {
         entries.push(Entry::new(50.0, "formation, early to late", |canvas, [x, y]| {
             for part in 0..5 {

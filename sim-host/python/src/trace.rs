@@ -41,7 +41,7 @@ struct Swarm {
     sent: Vec<u64>,
     delivered: Vec<u64>,
     lost: Vec<u64>,
-    corrupted: Vec<u64>,
+    damaged: Vec<u64>,
     rejected: Vec<u64>,
 }
 
@@ -143,7 +143,7 @@ impl Swarm {
         self.sent.push(packets.sent);
         self.delivered.push(packets.delivered);
         self.lost.push(packets.lost);
-        self.corrupted.push(packets.corrupted);
+        self.damaged.push(packets.damaged);
         self.rejected.push(packets.rejected);
     }
 
@@ -151,7 +151,7 @@ impl Swarm {
         columns!(py,
             "tick": self.tick, "time_s": self.time_s, "formation_error": self.formation_error,
             "graph_distance": self.graph_distance, "sent": self.sent, "delivered": self.delivered, "lost": self.lost,
-            "corrupted": self.corrupted, "rejected": self.rejected, "arrived": self.arrived, "waiting": self.waiting,
+            "damaged": self.damaged, "rejected": self.rejected, "arrived": self.arrived, "waiting": self.waiting,
             "collisions": self.collisions,
         )
     }

@@ -4,13 +4,12 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::Wait;
-use staya_controller::names::Named as _;
+use staya_controller::names::Named;
+use staya_controller::robot;
 use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::{self, Shape};
 
-/// Names of the modes by the numbers in frames.
-pub const MODES: [&str; 7] = ["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"];
 /// A fraction of a cell.
 const GRID_RADIUS: f64 = 0.35;
 /// A fraction of the view's longer side.
@@ -229,7 +228,7 @@ impl Scene {
                 .then(|| Formation { edges: scenario.edges().map(|edge| edge.map(|at| at as u32)).collect() }),
             radio: Radio::of(scenario),
             parameters: Vec::new(),
-            words: Words { modes: MODES.map(str::to_owned).into(), waits: wait_names().map(str::to_owned).collect() },
+            words: Words { modes: names::<robot::Mode>(), waits: names::<Wait>() },
             minds: Vec::new(),
             description: String::new(),
         }
@@ -258,9 +257,8 @@ pub fn description(text: &str) -> String {
     comment.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
-/// Names of the reasons to wait, by the numbers in frames.
-pub fn wait_names() -> impl Iterator<Item = &'static str> {
-    Wait::NAMES.iter().map(|(name, _)| *name)
+fn names<T: Named>() -> Vec<String> {
+    T::NAMES.iter().map(|(name, _)| (*name).to_owned()).collect()
 }
 
 /// Origin of a scenario's scene and frames, metres: near enough to the bodies for `f32`.

@@ -402,7 +402,7 @@ export class Controls {
         context.fillRect(1, 2, 24, 10);
       };
     if (look.colourBy === "mode")
-      scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word === "fault" ? "down" : word, `mode:${i}`));
+      scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word, `mode:${i}`));
     if (look.colourBy === "wait") {
       scene.words.waits.forEach((word, i) => key(disc(look.waitColours[i]), `waits: ${word}`, `wait:${i}`));
       key(disc(css.grey), "does not wait", "wait:255");

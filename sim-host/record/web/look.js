@@ -8,7 +8,7 @@ const NAMED = {
   cruise: "blue",
   hold: "orange",
   arrived: "green",
-  fault: "vermillion",
+  down: "vermillion",
   passive: "purple",
   team: "purple",
   stopped: "sky",

@@ -16,7 +16,7 @@ const MODES = {
   forming: "takes its place in the formation",
   hold: "stands",
   arrived: "is at its goal",
-  fault: "stands: it is down, or an input is missing",
+  down: "stands: it is down, or an input is missing",
   passive: "is not steered by its own controller",
 };
 const WAITS = {

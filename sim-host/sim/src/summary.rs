@@ -270,7 +270,7 @@ impl Summary {
             ("packets.sent", Some(packets.sent as f64)),
             ("packets.delivered", Some(packets.delivered as f64)),
             ("packets.lost", Some(packets.lost as f64)),
-            ("packets.corrupted", Some(packets.corrupted as f64)),
+            ("packets.damaged", Some(packets.damaged as f64)),
             ("packets.rejected", Some(packets.rejected as f64)),
             ("packets.unsigned", Some(packets.unsigned as f64)),
             ("packets.forged", Some(packets.forged as f64)),
@@ -395,7 +395,7 @@ impl Summary {
             "receptions",
             format!("{} delivered, {} lost{}", packets.delivered, packets.lost, share(packets.lost, receptions)),
         )?;
-        line("bad frames", format!("{} damaged, {} refused", packets.corrupted, packets.rejected))?;
+        line("bad frames", format!("{} damaged, {} rejected", packets.damaged, packets.rejected))?;
         if self.is_authenticated {
             line(
                 "of them, by the key",

@@ -1,8 +1,8 @@
 use crate::page;
 use crate::playback::Playback;
-use crate::server::{ServeError, Server};
+use crate::server::Server;
 use crate::session::Session;
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, ensure};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, ScenarioArgs, Stop, print, print_json};
@@ -51,16 +51,6 @@ struct Page {
     _way_in: Option<WayIn>,
 }
 
-impl Page {
-    const fn server(&self) -> &Server {
-        &self.server
-    }
-
-    fn end(self) -> Result<(), ServeError> {
-        if self.server.is_alive() { Ok(()) } else { Err(ServeError::Ended) }
-    }
-}
-
 #[derive(Debug, Serialize)]
 struct Served<'a> {
     url: &'a str,
@@ -96,9 +86,8 @@ impl ViewArgs {
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let path = self.source.path();
         let stop = Stop::on_ctrl_c()?;
-        let is_stopped = || stop.is_requested();
         let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-        if is_scenario {
+        let server = if is_scenario {
             // Errors refer to the file without the overrides.
             self.source.load()?;
             let text = text_with(path, self.source.settings())?;
@@ -106,9 +95,9 @@ impl ViewArgs {
             if self.speed.is_some() {
                 session.set_speed(self.speed);
             }
-            let page = self.listen.serve(global)?;
-            session.run(page.server(), &|| is_stopped() || !page.server().is_alive());
-            page.end()?;
+            let Page { server, _way_in } = self.listen.serve(global)?;
+            session.run(&server, &|| stop.is_requested() || !server.is_alive());
+            server
         } else {
             let mut playback = Playback::open(path, self.paused)?;
             if let Some(at) = playback.torn_at() {
@@ -118,11 +107,12 @@ impl ViewArgs {
             if self.speed.is_some() {
                 playback.set_speed(self.speed);
             }
-            let page = self.listen.serve(global)?;
-            let over = || is_stopped() || !page.server().is_alive();
-            playback.run(page.server(), &over).context("cannot continue the playback")?;
-            page.end()?;
-        }
+            let Page { server, _way_in } = self.listen.serve(global)?;
+            let over = || stop.is_requested() || !server.is_alive();
+            playback.run(&server, &over).context("cannot continue the playback")?;
+            server
+        };
+        ensure!(server.is_alive(), "the page server has failed; start the command again and report the messages above");
         Ok(Ended::by(&stop))
     }
 }

@@ -2,13 +2,13 @@
 
 pub mod cli;
 mod command;
-pub mod mcap;
+mod mcap;
 mod observers;
-pub mod pace;
-pub mod playback;
+mod pace;
+mod playback;
 mod series;
 pub mod server;
-pub mod session;
+mod session;
 pub mod watch;
 
 use staya_record::{frame, mind, page, recording, scene};

@@ -19,20 +19,17 @@ pub struct Pace {
 
 impl Pace {
     /// Creates a clock at real time, or at ten ticks of `tick_s` per second if that is faster.
-    #[must_use]
     pub fn new(tick_s: f64, is_paused: bool) -> Self {
         let speed = Some((tick_s * TICKS_A_SECOND).max(1.0));
         Self { tick_s, speed, is_paused, due: Instant::now() }
     }
 
     /// Simulated seconds per second; `None` for no limit.
-    #[must_use]
     pub const fn speed(&self) -> Option<f64> {
         self.speed
     }
 
     /// Whether the clock is paused.
-    #[must_use]
     pub const fn is_paused(&self) -> bool {
         self.is_paused
     }
@@ -55,7 +52,6 @@ impl Pace {
     }
 
     /// Time until the next tick, zero if it is due; `None` while paused.
-    #[must_use]
     pub fn until_due(&self, now: Instant) -> Option<Duration> {
         (!self.is_paused).then(|| self.speed.map_or(Duration::ZERO, |_| self.due.saturating_duration_since(now)))
     }

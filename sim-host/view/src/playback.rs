@@ -5,41 +5,14 @@ use crate::pace::Pace;
 use crate::recording::{Reader, RecordingError};
 use crate::series::Series;
 use crate::server::{Client, FromPage, Server, WORDS};
-use crate::session::trail;
-use serde::Deserialize;
+use crate::session::{FRAME, NotUnderstood, STATE, TRAIL, Wanted, trail};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-const FRAME: Duration = Duration::from_millis(16);
-const STATE: Duration = Duration::from_millis(500);
-/// Ticks of one request for past positions.
-const TRAIL: usize = 240;
 /// Figures of more ticks are read for every n-th tick.
 const FIGURES: u32 = 1 << 16;
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(tag = "do", rename_all = "lowercase")]
-enum Wanted {
-    Pause,
-    Play,
-    Step,
-    Speed {
-        x: Option<f64>,
-    },
-    Seek {
-        tick: u32,
-    },
-    Seen {
-        frames: u64,
-    },
-    Trail {
-        ticks: Vec<u32>,
-    },
-    #[serde(other)]
-    Other,
-}
 
 /// Plays a recording for pages, which can pause and seek.
 #[derive(Debug)]
@@ -89,13 +62,11 @@ impl Playback {
     }
 
     /// The byte at which an incomplete file ends.
-    #[must_use]
     pub const fn torn_at(&self) -> Option<u64> {
         self.reader.torn_at()
     }
 
     /// The first and the last tick.
-    #[must_use]
     pub const fn ticks(&self) -> (u32, u32) {
         (self.first, self.last)
     }
@@ -151,7 +122,7 @@ impl Playback {
             FromPage::Closed(client) => {
                 self.pages.remove(&client);
             }
-            FromPage::Said(client, text) => match serde_json::from_str(&text) {
+            FromPage::Said(client, text) => match Wanted::read(&text) {
                 Ok(Wanted::Pause) => self.pace.pause(),
                 Ok(Wanted::Play) => {
                     if self.tick == self.last {
@@ -173,7 +144,7 @@ impl Playback {
                     server.seen(client, frames);
                     return Ok(());
                 }
-                Ok(Wanted::Trail { mut ticks }) => {
+                Ok(Wanted::Trail { mut ticks, .. }) => {
                     ticks.truncate(TRAIL);
                     let mut frames = Vec::new();
                     for tick in ticks {
@@ -182,7 +153,7 @@ impl Playback {
                     server.say(Some(client), trail(None, frames.iter().map(|(tick, frame)| (*tick, &frame[..]))));
                     return Ok(());
                 }
-                Ok(Wanted::Other) => {}
+                Ok(_) | Err(NotUnderstood { is_json: true, .. }) => {}
                 Err(_) => server.dismiss(client),
             },
         }

@@ -6,9 +6,10 @@ use crate::frame::{FrameData, Framer, NO_WAIT, NONE};
 use crate::page;
 use crate::scene::{Mode, Scene};
 use crate::server::{Client, FromPage, Server, WORDS};
+use crate::session::{FRAME, Looks, NotUnderstood, Wanted};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::json;
 use staya_console::WatchArgs;
 use staya_sim::engine::{Known, Moment};
@@ -17,31 +18,7 @@ use staya_sim::scenario::Scenario;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-const FRAME: Duration = Duration::from_millis(16);
 const LONGEST: usize = 256;
-
-/// Other requests are ignored.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(tag = "do", rename_all = "lowercase")]
-enum Wanted {
-    Select {
-        robot: Option<usize>,
-    },
-    Links {
-        on: bool,
-    },
-    Seen {
-        frames: u64,
-    },
-    #[serde(other)]
-    Other,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Looks {
-    robot: Option<usize>,
-    links: bool,
-}
 
 /// Details of a robot beyond its row.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -202,14 +179,15 @@ impl Watcher {
                 self.pages.remove(&client);
             }
             FromPage::Said(client, text) => {
-                let wanted = Some(&text).filter(|text| text.len() <= LONGEST).map(|text| serde_json::from_str(text));
                 let looks = self.pages.entry(client).or_default();
-                match wanted {
-                    Some(Ok(Wanted::Select { robot })) => looks.robot = robot,
-                    Some(Ok(Wanted::Links { on })) => looks.links = on,
-                    Some(Ok(Wanted::Seen { frames })) => self.server.seen(client, frames),
-                    Some(Ok(Wanted::Other)) => {}
-                    Some(Err(_)) | None => self.server.dismiss(client),
+                match Wanted::read(&text) {
+                    _ if text.len() > LONGEST => self.server.dismiss(client),
+                    Ok(Wanted::Select { robot }) => looks.robot = robot,
+                    Ok(Wanted::Links { on }) => looks.links = on,
+                    Ok(Wanted::Seen { frames }) => self.server.seen(client, frames),
+                    // Other requests are ignored.
+                    Ok(_) | Err(NotUnderstood { is_json: true, .. }) => {}
+                    Err(_) => self.server.dismiss(client),
                 }
             }
         }

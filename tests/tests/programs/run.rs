@@ -50,7 +50,7 @@ fn json_is_one_object_with_every_promised_key() {
     for key in ["ticks", "sim_seconds", "wall_seconds", "formation_error_per_agent", "graph_distance_mean"] {
         assert!(json[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {}", json[key]);
     }
-    for key in ["sent", "delivered", "lost", "corrupted", "rejected"] {
+    for key in ["sent", "delivered", "lost", "damaged", "rejected"] {
         assert!(json["packets"][key].is_u64(), "packets.{key}");
     }
     let hash = json["trace_hash"].as_str().expect("a string");

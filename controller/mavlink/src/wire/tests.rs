@@ -79,7 +79,7 @@ fn built_in() -> impl Strategy<Value = (u8, AnyOrder)> {
 }
 
 fn any_message() -> impl Strategy<Value = Message> {
-    let modes = (0..7_u8).prop_map(|number| mode(number).unwrap());
+    let modes = (0..7_u8).prop_map(|number| Mode::from_number(number).unwrap());
     let beacon = (any::<([i32; 3], [i16; 3], u16, u8)>(), modes, protocol(), bytes());
     let beacon = beacon.prop_map(|((position_mm, velocity_mmps, radius_mm, flock), mode, protocol, payload)| {
         Message::Beacon(Beacon { position_mm, velocity_mmps, radius_mm, mode, flock, protocol, payload })

@@ -66,6 +66,10 @@ impl MoveHistory {
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
         self.cell = Some(cell);
         self.choice = choice;
+        // The least patience below: most decisions need no look at the robots nearby.
+        if choice == Dir::Stay || (self.attempts < PATIENCE && idle <= PATIENCE) {
+            return None;
+        }
         let patience = |other: &GridNeighbor| {
             if other.cell != cell {
                 return if other.mode == Mode::Arrived && idle > PATIENCE { 0 } else { PATIENCE };
@@ -76,7 +80,7 @@ impl MoveHistory {
         };
         let wanted = cell + choice.offset();
         let to = occupant(input, wanted).or_else(|| occupant(input, cell))?;
-        if choice == Dir::Stay || self.attempts < patience(&to) {
+        if self.attempts < patience(&to) {
             return None;
         }
         self.attempts = 0;

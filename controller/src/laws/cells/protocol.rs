@@ -67,7 +67,19 @@ pub struct GridPayload {
     pub leader: RobotId,
 }
 
-impl Content for GridPayload {}
+impl Content for GridPayload {
+    // A host decodes many.
+    #[cfg(feature = "host")]
+    fn read(bytes: &[u8]) -> Option<Self> {
+        let mut rest = fixint::Fields(bytes);
+        let cell = Cell::new(rest.fixed()?, rest.fixed()?);
+        let target = Cell::new(rest.fixed()?, rest.fixed()?);
+        let (busy_ms, [heading, slot]) = (rest.fixed()?, rest.take()?);
+        let is_direction = heading <= Dir::Stay as u8;
+        let (heading, leader) = (Dir::from_index(heading), RobotId(rest.number()?));
+        (is_direction && rest.0.is_empty()).then_some(Self { cell, target, busy_ms, heading, slot, leader })
+    }
+}
 
 /// A message between robots that plan on the grid (KUZ section 7).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -345,6 +357,35 @@ impl GridTask {
             heading,
             slot: self.shown.slot,
             leader: if self.shown.leader > MAX_LEADER { RobotId::NONE } else { self.shown.leader },
+        }
+    }
+}
+
+#[cfg(all(test, feature = "host"))]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_payload_reader_agrees_with_postcard(
+            payload in ((any::<[i16; 4]>(), any::<u16>()), 0..=8_u8, any::<u8>(), 0..1_u32 << 29),
+            damage in any::<(usize, u8, bool)>(),
+        ) {
+            let (([x, y, to_x, to_y], busy_ms), heading, slot, leader) = payload;
+            let (cell, target) = (Cell::new(x, y), Cell::new(to_x, to_y));
+            let payload = GridPayload { cell, target, busy_ms, heading: Dir::from_index(heading), slot, leader: RobotId(leader) };
+            let mut buffer = [0; 20];
+            let bytes = postcard::to_slice(&payload, &mut buffer).unwrap();
+            let is_short = leader < 1 << 28;
+            prop_assert_eq!(GridPayload::read(bytes), is_short.then_some(payload));
+            let (at, flips, is_cut) = damage;
+            let at = at % bytes.len();
+            bytes[at] ^= flips;
+            let bytes = if is_cut { &bytes[..at] } else { &bytes[..] };
+            if let Some(read) = GridPayload::read(bytes) {
+                prop_assert_eq!(postcard::from_bytes(bytes), Ok(read));
+            }
         }
     }
 }

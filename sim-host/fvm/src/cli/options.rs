@@ -1,7 +1,8 @@
 //! Template options and number parsing.
 
+use crate::numbers::{fixed, numbers};
 use crate::{Grid, Pair, Room, System, Template, Templated, VelocityForm};
-use anyhow::{Result, anyhow};
+use anyhow::{Context as _, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use staya_sim::file::{TEXT, read_remedy, read_text};
 use std::path::{Path, PathBuf};
@@ -61,14 +62,14 @@ pub struct TemplateArgs {
     #[arg(long, value_enum, default_value_t = Form::Distance)]
     form: Form,
     /// Position of robot A, which decides, metres.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, default_value = "2,-3")]
-    place_a: String,
+    #[arg(long, value_name = "X,Y", value_parser = fixed::<2>, allow_hyphen_values = true, default_value = "2,-3")]
+    place_a: [f64; 2],
     /// Position of robot B, metres.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, default_value = "-2,3")]
-    place_b: String,
+    #[arg(long, value_name = "X,Y", value_parser = fixed::<2>, allow_hyphen_values = true, default_value = "-2,3")]
+    place_b: [f64; 2],
     /// Radii of A and B, metres.
-    #[arg(long, value_name = "A,B", default_value = "1,1")]
-    radii: String,
+    #[arg(long, value_name = "A,B", value_parser = fixed::<2>, default_value = "1,1")]
+    radii: [f64; 2],
     /// tau: time horizon without collisions, seconds.
     #[arg(long, default_value_t = 2.0)]
     horizon: f64,
@@ -80,11 +81,9 @@ pub struct TemplateArgs {
 impl TemplateArgs {
     pub fn templated(&self) -> Result<Templated> {
         let templated = self.template()?.function()?;
-        let Some(extent) = &self.extent else {
-            return Ok(templated);
-        };
+        let Some(extent) = &self.extent else { return Ok(templated) };
         let wrong = "give two numbers for each variable";
-        let ends = numbers(extent).map_err(|error| anyhow!("--extent: {error}"))?;
+        let ends = numbers(extent).context("--extent")?;
         let (pairs, rest) = ends.as_chunks::<2>();
         let pairs = if rest.is_empty() { pairs } else { &[] };
         Ok(match templated {
@@ -107,47 +106,31 @@ impl TemplateArgs {
             Form::RFunction => VelocityForm::RFunction(self.system),
         };
         Ok(match self.template {
-            Kind::Circle => Template::Circle(self.center("--center")?, self.radius),
-            Kind::Ball => Template::Ball(self.center("--center")?, self.radius),
+            Kind::Circle => Template::Circle(self.center()?, self.radius),
+            Kind::Ball => Template::Ball(self.center()?, self.radius),
             Kind::Polygon => {
-                let corners = self.corners.split_whitespace().map(|corner| fixed("--corners", corner));
-                Template::Polygon(corners.collect::<Result<_>>()?)
+                let corners = self.corners.split_whitespace().map(fixed);
+                Template::Polygon(corners.collect::<Result<_>>().context("--corners")?)
             }
             Kind::Room => Template::Room(room(self.room.as_deref())?, self.system),
             Kind::VelocityObstacle => {
-                let places_m = [fixed("--place-a", &self.place_a)?, fixed("--place-b", &self.place_b)?];
-                let radii_m = fixed("--radii", &self.radii)?;
-                Template::VelocityObstacle(Pair { places_m, radii_m, horizon_s: self.horizon }, form)
+                let places_m = [self.place_a, self.place_b];
+                Template::VelocityObstacle(Pair { places_m, radii_m: self.radii, horizon_s: self.horizon }, form)
             }
             Kind::Neighbor => Template::Neighbor(form),
         })
     }
 
-    fn center<const V: usize>(&self, option: &str) -> Result<[f64; V]> {
-        self.center.as_ref().map_or(Ok([0.0; V]), |center| fixed(option, center))
+    fn center<const V: usize>(&self) -> Result<[f64; V]> {
+        self.center.as_ref().map_or(Ok([0.0; V]), |center| fixed(center)).context("--center")
     }
 }
 
 pub fn room(file: Option<&Path>) -> Result<Room> {
-    let Some(file) = file else {
-        return Ok(Room::default());
-    };
+    let Some(file) = file else { return Ok(Room::default()) };
     let text = read_text(file, TEXT)
         .map_err(|error| anyhow!("cannot read {}: {error}; {}", file.display(), read_remedy(&error)))?;
     Ok(Room::read(&text, file)?)
-}
-
-pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
-    let number = |word: &str| match word.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{}` is not a finite number; give numbers with commas, such as 1.5,-2", word.trim())),
-    };
-    text.split(',').map(number).collect()
-}
-
-fn fixed<const V: usize>(option: &str, text: &str) -> Result<[f64; V]> {
-    let found = numbers(text).map_err(|error| anyhow!("{option}: {error}"))?;
-    found.try_into().map_err(|_| anyhow!("{option}: `{text}`: give {V} numbers with commas"))
 }
 
 /// Equal steps along all axes, `resolution` nodes along the longest, at least two along others.
@@ -155,7 +138,7 @@ pub fn grid<const V: usize>(extent: [[f64; 2]; V], resolution: u16) -> Result<Gr
     let sides = extent.map(|[low, high]| high - low);
     let longest = sides.iter().copied().fold(0.0, f64::max);
     if !(longest > 0.0 && sides.iter().all(|side| side.is_finite())) {
-        return Err(anyhow!("the extent {extent:?} is empty; give a smaller and a larger number for each axis"));
+        bail!("the extent {extent:?} is empty; give a smaller and a larger number for each axis");
     }
     let nodes = sides.map(|side| {
         let steps = libm::round(side / longest * f64::from(resolution - 1));
@@ -209,7 +192,7 @@ mod tests {
         for (words, remedy) in [
             ("circle --center 1", "2 numbers"),
             ("ball --center 1,2", "3 numbers"),
-            ("circle --center 1,x", "`x` is not a finite number"),
+            ("circle --center 1,x", "`x` is not a number"),
             ("circle --radius 0", "above 0"),
             ("circle --extent 1,2,3", "4 in all"),
             ("ball --extent 1,2,3,4", "6 in all"),

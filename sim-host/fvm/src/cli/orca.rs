@@ -2,7 +2,7 @@
 
 use crate::orca::Sample;
 use crate::orca::pictures::{Drawing, Scene};
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
@@ -19,78 +19,32 @@ pub struct OrcaArgs {
 #[derive(Clone, Debug, Subcommand)]
 enum Action {
     /// Measure the errors of half-planes from voxel templates, by template size.
-    Table(TableArgs),
+    Table(Sample),
     /// Draw a velocity obstacle of two robots, its half-plane, R-function, M-images and template
     /// (default: the worked example of the functional voxel paper).
     Draw(Box<DrawArgs>),
 }
 
-#[derive(Args, Clone, Copy, Debug)]
-struct TableArgs {
-    /// Number of pairs of robots to compare.
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
-    pairs: u32,
-    /// Seed; equal seeds give equal pairs.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-}
-
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 struct DrawArgs {
-    /// Position of robot A, which decides, metres.
-    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "2,-3")]
-    place_a: [f64; 2],
-    /// Position of robot B, metres.
-    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "-2,3")]
-    place_b: [f64; 2],
-    /// Velocity of robot A, m/s.
-    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "1.5,1")]
-    velocity_a: [f64; 2],
-    /// Velocity of robot B, m/s.
-    #[arg(long, value_name = "X,Y", value_parser = vector, allow_hyphen_values = true, default_value = "3,-1.5")]
-    velocity_b: [f64; 2],
-    /// Radii of A and B, metres.
-    #[arg(long, value_name = "A,B", value_parser = vector, default_value = "1,1")]
-    radii: [f64; 2],
-    /// tau: time horizon without collisions, seconds.
-    #[arg(long, default_value_t = 2.0)]
-    horizon: f64,
-    /// A's share of the correction.
-    #[arg(long, default_value_t = 1.0)]
-    share: f64,
+    #[command(flatten)]
+    scene: Scene,
     /// Folder for the pictures.
     #[arg(long, value_name = "DIR", default_value = "out/orca")]
     out: PathBuf,
 }
 
-fn vector(text: &str) -> Result<[f64; 2]> {
-    let (x, y) = text.split_once(',').ok_or_else(|| anyhow!("give two numbers with a comma, such as 1.5,-2"))?;
-    let number = |text: &str| {
-        let text = text.trim();
-        text.parse().map_err(|_| anyhow!("`{text}` is not a number; give one such as 1.5"))
-    };
-    Ok([number(x)?, number(y)?])
-}
-
 impl OrcaArgs {
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.action {
-            Action::Table(args) => args.run(global)?,
+            Action::Table(sample) => {
+                let report = sample.report();
+                if global.json { print_json(&report)? } else { print(&report.to_string())? }
+            }
             Action::Draw(args) => args.run(global)?,
         }
         Ok(Ended::Done)
-    }
-}
-
-impl TableArgs {
-    fn run(&self, global: &Global) -> Result<()> {
-        let sample = Sample { pairs: self.pairs, seed: self.seed };
-        let report = sample.report();
-        if global.json {
-            return print_json(&report);
-        }
-        print(&report.to_string())
     }
 }
 
@@ -104,18 +58,8 @@ struct Drawn {
 }
 
 impl DrawArgs {
-    fn scene(&self) -> Scene {
-        Scene {
-            places_m: [self.place_a, self.place_b],
-            velocities_mps: [self.velocity_a, self.velocity_b],
-            radii_m: self.radii,
-            horizon_s: self.horizon,
-            share: self.share,
-        }
-    }
-
     fn run(&self, global: &Global) -> Result<()> {
-        let drawing: Drawing = self.scene().drawing()?;
+        let drawing: Drawing = self.scene.drawing()?;
         prepare_dir(&self.out)?;
         let pictures = drawing.draw(&self.out)?;
         let (point, normal) = (drawing.plane.point, drawing.plane.normal);
@@ -156,18 +100,29 @@ mod tests {
     #[test]
     fn defaults_are_the_papers_example_and_options_change_the_scene() {
         let scene = |words: &[&str]| match read(words).unwrap() {
-            Action::Draw(args) => args.scene(),
+            Action::Draw(args) => args.scene,
             Action::Table(_) => panic!("another command"),
         };
-        assert_eq!(scene(&["draw"]), Scene::default());
+        let example = Scene {
+            place_a: [2.0, -3.0],
+            place_b: [-2.0, 3.0],
+            velocity_a: [1.5, 1.0],
+            velocity_b: [3.0, -1.5],
+            radii: [1.0; 2],
+            horizon: 2.0,
+            share: 1.0,
+        };
+        assert_eq!(scene(&["draw"]), example);
         let words = "draw --place-a -1,2 --place-b 3,-4 --velocity-a -5,0.5 --velocity-b 0,-1 \
             --radii 0.2,0.3 --horizon 4 --share 0.5";
         let words: Vec<&str> = words.split_whitespace().collect();
         let expected = Scene {
-            places_m: [[-1.0, 2.0], [3.0, -4.0]],
-            velocities_mps: [[-5.0, 0.5], [0.0, -1.0]],
-            radii_m: [0.2, 0.3],
-            horizon_s: 4.0,
+            place_a: [-1.0, 2.0],
+            place_b: [3.0, -4.0],
+            velocity_a: [-5.0, 0.5],
+            velocity_b: [0.0, -1.0],
+            radii: [0.2, 0.3],
+            horizon: 4.0,
             share: 0.5,
         };
         assert_eq!(scene(&words), expected);

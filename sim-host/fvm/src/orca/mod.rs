@@ -2,35 +2,27 @@
 //! template, and [`pictures`] of the paper's figures.
 
 pub mod pictures;
-mod view;
+pub(crate) mod view;
 
+use crate::Errors;
+use clap::Args;
 use serde::Serialize;
 use staya_controller::geom::Vec2;
 use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable2k};
 use staya_controller::rand::Rng;
-use staya_stats::{mean, quantile};
 use std::f64::consts::TAU;
 use std::fmt;
 
 /// Random pairs of robots: radii 0.1 to 0.5 m, centres within 5 m without overlap, speeds up to 1.5
 /// m/s, horizon 2 s, the whole correction. Positions and velocities are uniform in discs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Args, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// Number of pairs.
+    /// Number of pairs of robots to compare.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub pairs: u32,
     /// Seed; equal seeds give equal pairs.
+    #[arg(long, default_value_t = 1)]
     pub seed: u64,
-}
-
-/// Statistics of errors.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Errors {
-    /// Mean.
-    pub mean: f64,
-    /// 99th percentile.
-    pub p99: f64,
-    /// Maximum.
-    pub max: f64,
 }
 
 /// Errors of the template against the analytic form.
@@ -97,21 +89,16 @@ impl Sample {
             seed: self.seed,
             bytes: table.bytes(),
             nodes: table.shape(),
-            angle_deg: Errors::of(&angles),
-            distance: Errors::of(&distances),
+            angle_deg: Errors::of(&angles).unwrap_or_default(),
+            distance: Errors::of(&distances).unwrap_or_default(),
         }
     }
 }
 
-impl Errors {
-    fn of(values: &[f64]) -> Self {
-        Self {
-            mean: mean(values).unwrap_or(0.0),
-            p99: quantile(values, 0.99).unwrap_or(0.0),
-            max: values.iter().copied().fold(0.0, f64::max),
-        }
-    }
-}
+const HEAD: &str = concat!(
+    "                                         angle of normals, deg   change of velocity, (R_A+R_B)/tau\n",
+    "template         bytes         nodes      mean     p99     max            mean       p99       max\n",
+);
 
 impl fmt::Display for Report {
     fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -120,19 +107,13 @@ impl fmt::Display for Report {
             "half-planes from the voxel template against the exact ones, {} pairs, seed {}",
             self.pairs, self.seed
         )?;
-        writeln!(text, "{:36}{:>26}{:>36}", "", "angle of normals, deg", "change of velocity, (R_A+R_B)/tau")?;
-        writeln!(
-            text,
-            "{:<14}{:>8}{:>14}{:>10}{:>8}{:>8}{:>16}{:>10}{:>10}",
-            "template", "bytes", "nodes", "mean", "p99", "max", "mean", "p99", "max"
-        )?;
+        text.write_str(HEAD)?;
         let [levels, directions] = self.nodes;
         let nodes = format!("{levels} x {directions}");
         let Errors { mean, p99, max } = self.angle_deg;
         write!(text, "{:<14}{:>8}{nodes:>14}{mean:>10.4}{p99:>8.3}{max:>8.3}", "Template2k", self.bytes)?;
         let Errors { mean, p99, max } = self.distance;
-        writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")?;
-        Ok(())
+        writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")
     }
 }
 

@@ -5,7 +5,9 @@ use super::view::{
     LEFT, NUMBER, PIXELS, SIDE, SMALL_SIDE, TOP, View, arrow, canvas, contoured, grey, image, label, left_of, note,
     opaque, picture,
 };
+use crate::numbers::fixed;
 use anyhow::{Context as _, bail};
+use clap::Args;
 use staya_controller::orca::{HalfPlane, MovingBall, Params, VelocityObstacle, VoxelTable2k, half_plane};
 use staya_plot::canvas::{Anchor, Canvas, Point, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
@@ -20,31 +22,31 @@ const ALLOWED: Colour = PALETTE[2];
 /// disc would consist of rounding errors.
 const FARTHEST: f64 = 1e9;
 
-/// Two robots as in the paper's section "analytic representation".
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Two robots, by default those of the paper's section "analytic representation".
+#[derive(Args, Clone, Copy, Debug, PartialEq)]
+#[command(allow_negative_numbers = true)]
 pub struct Scene {
-    /// Positions of robot A, which decides, and of robot B, metres.
-    pub places_m: [[f64; 2]; 2],
-    /// Velocities of A and B, m/s.
-    pub velocities_mps: [[f64; 2]; 2],
+    /// Position of robot A, which decides, metres.
+    #[arg(long, value_name = "X,Y", value_parser = fixed::<2>, allow_hyphen_values = true, default_value = "2,-3")]
+    pub place_a: [f64; 2],
+    /// Position of robot B, metres.
+    #[arg(long, value_name = "X,Y", value_parser = fixed::<2>, allow_hyphen_values = true, default_value = "-2,3")]
+    pub place_b: [f64; 2],
+    /// Velocity of robot A, m/s.
+    #[arg(long, value_name = "X,Y", value_parser = fixed::<2>, allow_hyphen_values = true, default_value = "1.5,1")]
+    pub velocity_a: [f64; 2],
+    /// Velocity of robot B, m/s.
+    #[arg(long, value_name = "X,Y", value_parser = fixed::<2>, allow_hyphen_values = true, default_value = "3,-1.5")]
+    pub velocity_b: [f64; 2],
     /// Radii of A and B, metres.
-    pub radii_m: [f64; 2],
-    /// Time horizon tau, seconds.
-    pub horizon_s: f64,
-    /// A's share of the correction, 0 to 1.
+    #[arg(long, value_name = "A,B", value_parser = fixed::<2>, default_value = "1,1")]
+    pub radii: [f64; 2],
+    /// tau: time horizon without collisions, seconds.
+    #[arg(long, default_value_t = 2.0)]
+    pub horizon: f64,
+    /// A's share of the correction.
+    #[arg(long, default_value_t = 1.0)]
     pub share: f64,
-}
-
-impl Default for Scene {
-    fn default() -> Self {
-        Self {
-            places_m: [[2.0, -3.0], [-2.0, 3.0]],
-            velocities_mps: [[1.5, 1.0], [3.0, -1.5]],
-            radii_m: [1.0; 2],
-            horizon_s: 2.0,
-            share: 1.0,
-        }
-    }
 }
 
 /// A valid scene with derived values.
@@ -69,17 +71,17 @@ impl Scene {
     /// far apart.
     pub fn drawing(&self) -> anyhow::Result<Drawing> {
         let vector = |[x, y]: [f64; 2]| V::new(x, y);
-        let [place, other_place] = self.places_m.map(vector);
-        let [own, other] = self.velocities_mps.map(vector);
+        let [place, other_place, own, other] =
+            [self.place_a, self.place_b, self.velocity_a, self.velocity_b].map(vector);
         let sound = [place, other_place, own, other].iter().all(|v| v.is_finite());
         if !(sound && self.share.is_finite()) {
             bail!("places, velocities and the share must be finite; give finite numbers");
         }
         let positive = |x: f64| x.is_finite() && x > 0.0;
-        if !self.radii_m.into_iter().chain([self.horizon_s]).all(positive) {
+        if !self.radii.into_iter().chain([self.horizon]).all(positive) {
             bail!("radii and the horizon must be above 0; give positive numbers");
         }
-        let radii_m = self.radii_m.iter().sum();
+        let radii_m = self.radii.iter().sum();
         let neighbor = MovingBall { offset_m: other_place - place, velocity_mps: other, radii_m, tie: V::ZERO };
         let apart = neighbor.offset_m.norm();
         if apart > FARTHEST * radii_m {
@@ -88,11 +90,11 @@ impl Scene {
                  give places nearer to each other, or greater radii"
             );
         }
-        let obstacle = VelocityObstacle::new(neighbor.offset_m, radii_m, self.horizon_s);
+        let obstacle = VelocityObstacle::new(neighbor.offset_m, radii_m, self.horizon);
         let obstacle = obstacle.with_context(|| {
             format!("the robots are {apart} m apart and overlap; give places more than {radii_m} m apart")
         })?;
-        let params = Params { horizon_s: self.horizon_s, separation_s: self.horizon_s, share: self.share };
+        let params = Params { horizon_s: self.horizon, separation_s: self.horizon, share: self.share };
         let whole = Params { share: 1.0, ..params };
         let out_of_range = "the numbers are out of range; give smaller ones";
         Ok(Drawing {
@@ -333,10 +335,21 @@ impl Drawing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        scene: Scene,
+    }
+
+    fn scene() -> Scene {
+        Line::parse_from(["draw"]).scene
+    }
 
     #[test]
     fn default_scene_is_the_papers_example() {
-        let drawing = Scene::default().drawing().unwrap();
+        let drawing = scene().drawing().unwrap();
         assert!((drawing.plane.point - V::new(1.707107, 0.792893)).norm() < 1e-6);
         assert!((drawing.change_mps - 0.292893).abs() < 1e-6);
     }
@@ -344,22 +357,21 @@ mod tests {
     #[test]
     fn invalid_scenes_are_errors_with_a_remedy() {
         let refusal = |scene: Scene| scene.drawing().unwrap_err().to_string();
-        let base = Scene::default();
-        let near = Scene { places_m: [[0.0, 0.0], [0.5, 0.0]], ..base };
+        let near = Scene { place_a: [0.0, 0.0], place_b: [0.5, 0.0], ..scene() };
         assert!(refusal(near).contains("more than 2 m apart"));
-        let lost = Scene { velocities_mps: [[f64::NAN, 0.0], [0.0; 2]], ..base };
+        let lost = Scene { velocity_a: [f64::NAN, 0.0], ..scene() };
         assert!(refusal(lost).contains("finite"));
-        let thin = Scene { radii_m: [0.0, 1.0], ..base };
+        let thin = Scene { radii: [0.0, 1.0], ..scene() };
         assert!(refusal(thin).contains("above 0"));
-        assert!(refusal(Scene { horizon_s: -1.0, ..base }).contains("above 0"));
+        assert!(refusal(Scene { horizon: -1.0, ..scene() }).contains("above 0"));
         // Axes of such pictures would have a label for each rounding error.
-        let far = Scene { places_m: [[0.0; 2], [1e100, 0.0]], ..base };
+        let far = Scene { place_a: [0.0; 2], place_b: [1e100, 0.0], ..scene() };
         assert!(refusal(far).contains("1e100 m apart, more than 1e9 times the sum of their radii; give places nearer"));
     }
 
     #[test]
     fn the_local_equation_has_the_half_planes_angle() {
-        let drawing = Scene::default().drawing().unwrap();
+        let drawing = scene().drawing().unwrap();
         let [a, b, _, _] = drawing.local_equation(drawing.relative, 1e-6);
         let cos = a / libm::sqrt(a * a + b * b);
         assert!((cos + drawing.plane.normal.x).abs() < 1e-5, "{cos}");
@@ -367,8 +379,9 @@ mod tests {
 
     #[test]
     fn equal_scenes_give_equal_pictures() {
-        let odd = Scene { places_m: [[1e6, 0.0], [1e6, -7.0]], velocities_mps: [[0.0; 2]; 2], ..Scene::default() };
-        for scene in [Scene::default(), odd] {
+        let odd =
+            Scene { place_a: [1e6, 0.0], place_b: [1e6, -7.0], velocity_a: [0.0; 2], velocity_b: [0.0; 2], ..scene() };
+        for scene in [scene(), odd] {
             let drawing = scene.drawing().unwrap();
             assert_eq!(drawing.velocities(), drawing.velocities());
             for canvas in [drawing.velocities(), drawing.fields(), drawing.m_images(), drawing.template()] {

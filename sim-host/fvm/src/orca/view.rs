@@ -37,13 +37,7 @@ impl View {
     pub fn pixels(&self, mut colour: impl FnMut(V) -> [u8; 4]) -> Pixels {
         let step = self.side / f64::from(PIXELS);
         let at = |i: u32| (f64::from(i) + 0.5) * step;
-        let mut rgba = Vec::with_capacity((PIXELS * PIXELS) as usize);
-        for row in (0..PIXELS).rev() {
-            for column in 0..PIXELS {
-                rgba.push(colour(self.corner + V::new(at(column), at(row))));
-            }
-        }
-        Pixels { width: PIXELS, height: PIXELS, rgba }
+        pixels(PIXELS, PIXELS, |column, row| colour(self.corner + V::new(at(column), at(row))))
     }
 
     pub fn axes(&self, canvas: &mut Canvas) {
@@ -78,6 +72,13 @@ impl View {
         });
         canvas.rectangle(self.frame(), None, Some(Stroke::new(MUTED, 1.0)));
     }
+}
+
+/// Columns count from the left, rows from below.
+pub fn pixels(width: u32, height: u32, mut colour: impl FnMut(u32, u32) -> [u8; 4]) -> Pixels {
+    let places = (0..height).rev().flat_map(|row| (0..width).map(move |column| (column, row)));
+    let rgba = places.map(|(column, row)| colour(column, row)).collect();
+    Pixels { width, height, rgba }
 }
 
 pub fn step(side: f64) -> f64 {

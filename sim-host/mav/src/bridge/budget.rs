@@ -11,7 +11,6 @@ const AT_ONCE_US: u64 = 100_000;
 
 impl Budget {
     /// A limit of `count` units per second; 0 counts as 1.
-    #[must_use]
     pub fn per_second(count: u32) -> Self {
         Self { each_us: 1_000_000 / u64::from(count.max(1)), even_us: 0 }
     }

@@ -12,7 +12,6 @@
 use super::items::{fault_without_place, has_no_place};
 use super::mission::{Item, ack};
 use super::model::FlightMode;
-use super::params::NotSet;
 use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::geo::Global;
 use staya_controller::parameters::SPEED;
@@ -27,52 +26,27 @@ const STANDING_MPS: f64 = 0.05;
 
 pub(super) type Refusal = u8;
 
-#[derive(Clone, Copy, Debug)]
-struct Spot {
-    frame: u8,
-    x: i32,
-    y: i32,
-    z: f32,
-}
-
-struct Command {
-    id: u16,
-    params: [f32; 7],
-    /// The place in a COMMAND_INT.
-    spot: Option<Spot>,
-}
-
 fn whole(x: f32, most: f32) -> Result<u32, Refusal> {
     let is_one = (0.0..=most).contains(&x) && libm::truncf(x) == x;
     if is_one { Ok(x as u32) } else { Err(MAV_RESULT_DENIED) }
 }
 
 impl Vehicle {
-    pub(super) fn command_long(&mut self, from: Sender, c: &COMMAND_LONG_DATA, out: &mut Out) {
-        let command = Command {
-            id: c.command,
-            params: [c.param1, c.param2, c.param3, c.param4, c.param5, c.param6, c.param7],
-            spot: None,
-        };
-        self.answer(from, &command, out);
+    /// Without the coordinates, which are too coarse for any command.
+    pub(super) fn command_long(&mut self, from: Sender, command: &COMMAND_LONG_DATA, out: &mut Out) {
+        let COMMAND_LONG_DATA { param1, param2, param7: z, command, .. } = *command;
+        let frame = MAV_FRAME_GLOBAL_RELATIVE_ALT;
+        let command = COMMAND_INT_DATA { param1, param2, z, command, frame, ..COMMAND_INT_DATA::DEFAULT };
+        self.command(from, &command, false, out);
     }
 
-    pub(super) fn command_int(&mut self, from: Sender, c: &COMMAND_INT_DATA, out: &mut Out) {
-        let command = Command {
-            id: c.command,
-            params: [c.param1, c.param2, c.param3, c.param4, c.x as f32, c.y as f32, c.z],
-            spot: Some(Spot { frame: c.frame, x: c.x, y: c.y, z: c.z }),
-        };
-        self.answer(from, &command, out);
-    }
-
-    fn answer(&mut self, from: Sender, command: &Command, out: &mut Out) {
+    pub(super) fn command(&mut self, from: Sender, command: &COMMAND_INT_DATA, is_int: bool, out: &mut Out) {
         // The acknowledgement is sent before the messages that the command causes.
         let mut after = Out::default();
-        let result = self.execute(command, &mut after);
+        let result = self.execute(command, is_int, &mut after);
         let result = result.err().unwrap_or(MAV_RESULT_ACCEPTED);
         out.messages.push(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
-            command: command.id,
+            command: command.command,
             result,
             progress: 0,
             result_param2: 0,
@@ -83,30 +57,23 @@ impl Vehicle {
         out.actions.append(&mut after.actions);
     }
 
-    fn execute(&mut self, command: &Command, out: &mut Out) -> Result<(), Refusal> {
-        let [first, second, ..] = command.params;
-        match command.id {
+    fn execute(&mut self, command: &COMMAND_INT_DATA, is_int: bool, out: &mut Out) -> Result<(), Refusal> {
+        let (first, second) = (command.param1, command.param2);
+        match command.command {
             MAV_CMD_COMPONENT_ARM_DISARM => {
                 let arms = whole(first, 1.0)? == 1;
                 self.arm(arms, second == ARM_DISARM_FORCE, out)
             }
             MAV_CMD_DO_SET_MODE => {
-                let base = whole(first, 255.0)?;
-                let is_custom = base & u32::from(MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) != 0;
-                let number = whole(second, 255.0)?;
-                if !is_custom {
-                    return Err(MAV_RESULT_DENIED);
-                }
-                self.set_mode(number, out)
+                let base = whole(first, 255.0)? as u8;
+                self.set_mode(base, whole(second, 255.0)?, out)
             }
             MAV_CMD_NAV_TAKEOFF => {
-                let frame = command.spot.map(|spot| spot.frame);
-                let is_known =
-                    matches!(frame, None | Some(MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT));
-                if self.model.flies && !is_known {
+                let frames = [MAV_FRAME_GLOBAL_RELATIVE_ALT, MAV_FRAME_GLOBAL_RELATIVE_ALT_INT];
+                if self.model.flies && !frames.contains(&command.frame) {
                     return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME);
                 }
-                self.take_off(command.params[6], out)
+                self.take_off(command.z, out)
             }
             MAV_CMD_NAV_LAND if self.model.flies => {
                 self.needs_arms()?;
@@ -115,8 +82,9 @@ impl Vehicle {
             }
             MAV_CMD_NAV_RETURN_TO_LAUNCH => {
                 self.needs_arms()?;
-                self.set_mode(FlightMode::Return.number(self.model.flies), out)
+                self.set_mode(MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, FlightMode::Return.number(self.model.flies), out)
             }
+            MAV_CMD_DO_REPOSITION if !is_int => Err(MAV_RESULT_COMMAND_INT_ONLY),
             MAV_CMD_DO_REPOSITION => self.reposition(command, out),
             MAV_CMD_DO_CHANGE_SPEED => self.change_speed(second, out),
             MAV_CMD_MISSION_START => {
@@ -166,7 +134,7 @@ impl Vehicle {
 
     fn arm(&mut self, arms: bool, forced: bool, out: &mut Out) -> Result<(), Refusal> {
         // Disarming a moving vehicle would make others run into it.
-        let [vx, vy, vz] = self.sample.velocity_mps;
+        let [vx, vy, vz] = self.seen.motion.velocity_mps;
         let moves = vx * vx + vy * vy + vz * vz > STANDING_MPS * STANDING_MPS;
         if !arms && !forced && (moves || self.is_in_air()) {
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
@@ -184,9 +152,9 @@ impl Vehicle {
         Ok(())
     }
 
-    fn set_mode(&mut self, number: u32, out: &mut Out) -> Result<(), Refusal> {
+    pub(super) fn set_mode(&mut self, base: u8, number: u32, out: &mut Out) -> Result<(), Refusal> {
         let mode = FlightMode::from_number(number, self.model.flies);
-        let mode = mode.ok_or(MAV_RESULT_DENIED)?;
+        let mode = mode.filter(|_| base & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED != 0).ok_or(MAV_RESULT_DENIED)?;
         if mode == FlightMode::Return && self.model.in_formation {
             return Err(MAV_RESULT_DENIED);
         }
@@ -198,25 +166,12 @@ impl Vehicle {
         Ok(())
     }
 
-    /// SET_MODE, the older message. The protocol defines no answer to it.
-    pub(super) fn set_mode_message(&mut self, wanted: &SET_MODE_DATA, out: &mut Out) {
-        let is_custom = wanted.base_mode & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED != 0;
-        let result = match is_custom {
-            true => self.set_mode(wanted.custom_mode, out),
-            false => Err(MAV_RESULT_DENIED),
-        };
-        if result.is_err() {
-            let text = "unknown mode";
-            self.text(out, Kind::News, MAV_SEVERITY_WARNING, text);
-        }
-    }
-
     fn take_off(&mut self, height_m: f32, out: &mut Out) -> Result<(), Refusal> {
         if !self.model.flies {
             return Err(MAV_RESULT_UNSUPPORTED);
         }
         let is_sound = height_m > self.tolerance_m() && height_m <= HIGHEST_M;
-        let [x, y, _] = self.sample.position_m;
+        let [x, y, _] = self.seen.motion.position_m;
         let wish = self.goal([x, y, f64::from(height_m)]);
         let wish = wish.filter(|_| is_sound).ok_or(MAV_RESULT_DENIED)?;
         self.needs_arms()?;
@@ -227,10 +182,9 @@ impl Vehicle {
         Ok(())
     }
 
-    fn reposition(&mut self, command: &Command, out: &mut Out) -> Result<(), Refusal> {
-        let [speed_mps, flags, ..] = command.params;
-        let spot = command.spot.ok_or(MAV_RESULT_COMMAND_INT_ONLY)?;
-        let place = self.global_place(spot)?;
+    fn reposition(&mut self, command: &COMMAND_INT_DATA, out: &mut Out) -> Result<(), Refusal> {
+        let COMMAND_INT_DATA { param1: speed_mps, param2: flags, frame, x, y, z, .. } = *command;
+        let place = self.global_place(frame, x, y, z)?;
         let flags = if flags.is_nan() { 0 } else { whole(flags, 255.0)? };
         let changes_mode = flags & MAV_DO_REPOSITION_FLAGS_CHANGE_MODE != 0;
         if self.model.in_formation {
@@ -269,31 +223,30 @@ impl Vehicle {
     }
 
     pub(super) fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
-        match self.parameters.set_setting(SPEED.name, speed_mps) {
-            Ok(_) => {}
-            Err(NotSet::Unknown) => return Err(MAV_RESULT_UNSUPPORTED),
-            Err(NotSet::OutOf(_)) => return Err(MAV_RESULT_DENIED),
-        }
+        let index = self.parameters.index_of(SPEED.name).ok_or(MAV_RESULT_UNSUPPORTED)?;
+        self.parameters.set(index, speed_mps).map_err(|_| MAV_RESULT_DENIED)?;
         out.actions.push(Action::Set(SPEED.name, speed_mps));
         Ok(())
     }
 
-    fn global_place(&self, spot: Spot) -> Result<[f64; 3], Refusal> {
+    /// Altitude of height 0 in a global frame; `None` for other frames.
+    pub(super) fn datum_m(&self, frame: u8) -> Option<f64> {
+        match frame {
+            MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => Some(0.0),
+            // Home is on the ground at the origin: heights above home are heights above the ground.
+            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => {
+                Some(self.model.origin.place().altitude_m)
+            }
+            _ => None,
+        }
+    }
+
+    fn global_place(&self, frame: u8, x: i32, y: i32, z: f32) -> Result<[f64; 3], Refusal> {
         let origin = &self.model.origin;
-        // Home is on the ground at the origin, so heights above home are heights above the ground.
-        let above_m = match spot.frame {
-            MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
-            MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => origin.place().altitude_m,
-            _ => return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME),
-        };
-        // A ground vehicle ignores the height, which may be NaN.
-        let z = match (self.model.flies, spot.z.is_nan()) {
-            (true, true) => return Err(MAV_RESULT_DENIED),
-            (true, false) => f64::from(spot.z) + above_m,
-            (false, _) => origin.place().altitude_m,
-        };
-        let mut place = Global::from_e7(spot.x, spot.y, 0);
-        place.altitude_m = z;
+        let datum_m = self.datum_m(frame).ok_or(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME)?;
+        // A ground vehicle ignores the height, which may be NaN. A NaN fails the check of heights.
+        let altitude_m = if self.model.flies { f64::from(z) + datum_m } else { origin.place().altitude_m };
+        let place = Global { altitude_m, ..Global::from_e7(x, y, 0) };
         let place_m = origin.to_enu_m(&place).ok_or(MAV_RESULT_DENIED)?;
         let is_low = place_m[2] <= f64::from(HIGHEST_M);
         let is_above_ground = !self.model.flies || place_m[2] >= -0.001;
@@ -307,7 +260,7 @@ impl Vehicle {
             let up = if self.model.flies { -f64::from(z) } else { 0.0 };
             return (0.0..=f64::from(HIGHEST_M)).contains(&up).then_some([east, north, up]);
         }
-        self.global_place(Spot { frame, x, y, z }).ok()
+        self.global_place(frame, x, y, z).ok()
     }
 
     pub(super) fn item_fault(&self, item: &Item) -> u8 {
@@ -319,14 +272,7 @@ impl Vehicle {
             MAV_CMD_NAV_TAKEOFF => self.model.flies,
             _ => false,
         };
-        let is_frame = matches!(
-            item.frame,
-            MAV_FRAME_GLOBAL
-                | MAV_FRAME_LOCAL_NED
-                | MAV_FRAME_GLOBAL_RELATIVE_ALT
-                | MAV_FRAME_GLOBAL_INT
-                | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
-        );
+        let is_frame = item.frame == MAV_FRAME_LOCAL_NED || self.datum_m(item.frame).is_some();
         let hold_s = item.param1;
         match self.item_place(item) {
             _ if !is_known || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
@@ -342,7 +288,7 @@ impl Vehicle {
         if self.mission.is_empty() {
             return Err(MAV_RESULT_DENIED);
         }
-        if self.mission.current() == 0 || self.mission.is_complete() {
+        if self.mission.current == 0 || self.mission.is_complete {
             self.mission.set_current(1);
         }
         self.enter(FlightMode::Mission { there_since_us: None }, out);

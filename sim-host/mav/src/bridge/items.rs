@@ -30,12 +30,12 @@ impl Vehicle {
     pub(super) fn begin_item(&mut self, out: &mut Out) {
         self.mode = FlightMode::Mission { there_since_us: None };
         loop {
-            let Some(item) = self.mission.item(self.mission.current()).cloned() else {
+            let Some(item) = self.mission.item(self.mission.current).cloned() else {
                 return self.stop_mission(out);
             };
             match item.command {
                 MAV_CMD_NAV_RETURN_TO_LAUNCH => {
-                    self.mission.complete();
+                    self.mission.is_complete = true;
                     return self.enter(FlightMode::Return, out);
                 }
                 MAV_CMD_NAV_LAND => return self.enter(FlightMode::Land { is_item: true }, out),
@@ -59,11 +59,11 @@ impl Vehicle {
 
     /// Returns whether there is a next item.
     fn finish_item(&mut self, out: &mut Out) -> bool {
-        let seq = self.mission.current();
+        let seq = self.mission.current;
         out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
         let has_next = self.mission.set_current(seq + 1);
         if !has_next {
-            self.mission.complete();
+            self.mission.is_complete = true;
             self.mode = FlightMode::Auto;
             out.actions.push(Action::Wish(Wish::Hold));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
@@ -84,19 +84,19 @@ impl Vehicle {
 
     pub(super) fn finish_landing(&mut self, out: &mut Out) {
         self.mode = FlightMode::LAND;
-        self.mission.complete();
-        let seq = self.mission.current();
+        self.mission.is_complete = true;
+        let seq = self.mission.current;
         out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
     }
 
     pub(super) fn advance_mission(&mut self, out: &mut Out) {
-        let Some(item) = self.mission.item(self.mission.current()) else { return };
+        let Some(item) = self.mission.item(self.mission.current) else { return };
         let finite = |x: f32| f64::from(if x.is_finite() { x } else { 0.0 });
         let (wait_us, near_m) = (libm::round(finite(item.param1) * 1e6), finite(item.param2));
         if !has_no_place(item) && !self.item_place(item).is_some_and(|place| self.is_at(place, near_m)) {
             return;
         }
-        let now = self.sample.time_us;
+        let now = self.time_us;
         let FlightMode::Mission { there_since_us } = &mut self.mode else { return };
         let since = *there_since_us.get_or_insert(now);
         if ((now - since) as f64) < wait_us {

@@ -21,7 +21,6 @@ const fn scale(frame: u8) -> f64 {
 }
 
 /// A position that is not finite becomes one that fails validation.
-#[must_use]
 pub fn from_float(item: &MISSION_ITEM_DATA) -> Item {
     let int = |x: f32| match x.is_finite() {
         true => libm::round(f64::from(x) * scale(item.frame)) as i32,
@@ -66,30 +65,22 @@ struct Upload {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mission {
     items: Vec<Item>,
-    current: u16,
+    pub(super) current: u16,
     /// Whether the last item is completed, or started if it is a return.
-    is_complete: bool,
+    pub(super) is_complete: bool,
     upload: Option<Upload>,
 }
 
 impl Mission {
-    #[must_use]
     pub fn len(&self) -> u16 {
         self.items.len() as u16
     }
 
     /// A mission with home alone is empty.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.items.len() < 2
     }
 
-    #[must_use]
-    pub const fn current(&self) -> u16 {
-        self.current
-    }
-
-    #[must_use]
     pub fn item(&self, seq: u16) -> Option<&Item> {
         self.items.get(usize::from(seq))
     }
@@ -102,21 +93,11 @@ impl Mission {
         is_there
     }
 
-    pub const fn complete(&mut self) {
-        self.is_complete = true;
-    }
-
-    #[must_use]
-    pub const fn is_complete(&self) -> bool {
-        self.is_complete
-    }
-
     pub fn count(&mut self, from: Sender, told: &MISSION_COUNT_DATA, now_us: u64) -> MavMessage {
         if told.mission_type != MAV_MISSION_TYPE_MISSION {
             return ack(from, told.mission_type, MAV_MISSION_UNSUPPORTED);
         }
-        let is_another = |upload: &Upload| !same(upload.from, from);
-        if self.upload.as_ref().is_some_and(is_another) {
+        if self.upload.as_ref().is_some_and(|upload| !same(upload.from, from)) {
             return ack(from, told.mission_type, MAV_MISSION_DENIED);
         }
         if told.count > ITEMS {
@@ -165,8 +146,7 @@ impl Mission {
         let from = upload.from;
         if upload.tries >= TRIES {
             self.upload = None;
-            let cancelled = MAV_MISSION_OPERATION_CANCELLED;
-            return Some(ack(from, MAV_MISSION_TYPE_MISSION, cancelled));
+            return Some(ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_OPERATION_CANCELLED));
         }
         upload.tries += 1;
         upload.asked_us = now_us;
@@ -174,7 +154,6 @@ impl Mission {
     }
 
     /// Lists other than missions (fences, rally points) are empty.
-    #[must_use]
     pub fn list(&self, from: Sender, mission_type: u8) -> MavMessage {
         let is_known = mission_type == MAV_MISSION_TYPE_MISSION;
         MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
@@ -185,7 +164,6 @@ impl Mission {
         })
     }
 
-    #[must_use]
     pub fn tell(&self, from: Sender, seq: u16, mission_type: u8, as_int: bool) -> MavMessage {
         let item = self.item(seq);
         let Some(item) = item.filter(|_| mission_type == MAV_MISSION_TYPE_MISSION) else {
@@ -224,7 +202,6 @@ const fn request(to: Sender, seq: u16) -> MavMessage {
     })
 }
 
-#[must_use]
 pub const fn ack(to: Sender, mission_type: u8, result: u8) -> MavMessage {
     MavMessage::MISSION_ACK(MISSION_ACK_DATA {
         target_system: to.system,
@@ -275,7 +252,7 @@ mod tests {
         assert_eq!(give(&mut mission, 1), 2);
         assert!(mission.is_empty(), "the mission is replaced only after its last item");
         assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_ACCEPTED));
-        assert_eq!((mission.len(), mission.current()), (3, 1));
+        assert_eq!((mission.len(), mission.current), (3, 1));
         assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_INVALID_SEQUENCE));
         let MavMessage::MISSION_ITEM_INT(told) = mission.tell(GCS, 2, 0, true) else {
             panic!("an item");

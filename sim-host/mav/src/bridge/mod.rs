@@ -1,7 +1,7 @@
 //! The MAVLink bridge of the simulation: every robot appears as a vehicle to ground stations and
 //! scripts.
 //!
-//! [`Swarm`] runs a scenario in real time; [`Vehicle`] is one robot's side of the protocol, without
+//! [`Swarm`] runs a scenario in real time; `Vehicle` is one robot's side of the protocol, without
 //! sockets or a clock. A command becomes a goal of the robot's controller
 //! ([`Guided`](staya_controller::agent::Guided)), so the safety layer still applies.
 
@@ -19,12 +19,8 @@ mod streams;
 mod swarm;
 mod telemetry;
 #[cfg(test)]
-mod testing;
+mod test_support;
 mod vehicle;
 
-pub use model::{FlightMode, Sample, VehicleModel};
-pub use params::{NotSet, Parameters, SETPOINT_TIMEOUT};
 pub use report::{BridgeReport, LineReport, Refused};
-pub use streams::Streams;
-pub use swarm::{BridgeError, Options, Swarm};
-pub use vehicle::{Action, Out, Vehicle};
+pub use swarm::{Options, Swarm};

@@ -1,9 +1,6 @@
 use crate::geo::Origin;
 use staya_controller::agent::SafetyKind;
-use staya_controller::agent::Wish;
-use staya_controller::grid::{BLOCKED, Cell};
-use staya_controller::robot::Mode;
-use staya_sim::engine::Observation;
+use staya_controller::grid::Cell;
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
@@ -29,7 +26,6 @@ pub struct VehicleModel {
 
 impl VehicleModel {
     /// Describes the vehicles of `scenario`.
-    #[must_use]
     pub fn new(scenario: &Scenario, origin: Origin) -> Self {
         let on_grid = scenario.plane.is_none();
         let plane = scenario.plane.as_ref();
@@ -49,20 +45,12 @@ impl VehicleModel {
     }
 
     /// The grid cell at a position in metres; `None` off the map, inside a wall, or without a grid.
-    #[must_use]
     pub fn cell(&self, [x, y, _]: [f64; 3]) -> Option<Cell> {
         let land = self.grid.as_ref()?;
-        let at = |metres: f64, axis: usize| {
-            let cells = libm::floor((metres - land.origin_m[axis]) / land.cell_m);
-            (0.0..f64::from(i16::MAX)).contains(&cells).then_some(cells as i16)
-        };
-        let cell = Cell::new(at(x, 0)?, at(y, 1)?);
-        land.index(cell)?;
-        (land.get(cell) != BLOCKED).then_some(cell)
+        land.cell_at([x, y]).filter(|cell| land.is_passable(*cell))
     }
 
     /// Whether a vehicle fits at a position in metres.
-    #[must_use]
     pub fn has_room(&self, place_m: [f64; 3]) -> bool {
         if self.grid.is_some() {
             return self.cell(place_m).is_some();
@@ -100,75 +88,31 @@ impl FlightMode {
     /// A landing on command.
     pub const LAND: Self = Self::Land { is_item: false };
 
-    /// The custom mode number in MAVLink.
-    #[must_use]
-    pub const fn number(self, flies: bool) -> u32 {
-        match (self, flies) {
-            (Self::Auto | Self::Mission { .. }, false) => 10,
-            (Self::Guided, false) => 15,
-            (Self::Hold, false) => 4,
-            (Self::Return, false) => 11,
-            (Self::Land { .. }, _) => 9,
-            (Self::Auto | Self::Mission { .. }, true) => 3,
-            (Self::Guided, true) => 4,
-            (Self::Hold, true) => 5,
-            (Self::Return, true) => 6,
+    /// Custom mode numbers and names in ArduPilot's Rover and Copter.
+    const fn codes(self) -> [(u32, &'static str); 2] {
+        match self {
+            Self::Auto | Self::Mission { .. } => [(10, "AUTO"), (3, "AUTO")],
+            Self::Guided => [(15, "GUIDED"), (4, "GUIDED")],
+            Self::Hold => [(4, "HOLD"), (5, "LOITER")],
+            Self::Return => [(11, "RTL"), (6, "RTL")],
+            Self::Land { .. } => [(9, "LAND"), (9, "LAND")],
         }
     }
 
-    /// The mode with this number; `None` if these vehicles do not have it.
-    #[must_use]
-    pub fn from_number(number: u32, flies: bool) -> Option<Self> {
-        let mut modes = Self::ALL.into_iter();
-        modes.find(|mode| mode.number(flies) == number && (flies || *mode != Self::LAND))
+    /// The custom mode number in MAVLink.
+    pub fn number(self, flies: bool) -> u32 {
+        self.codes()[usize::from(flies)].0
     }
 
     /// The name that ArduPilot uses.
-    #[must_use]
-    pub const fn name(self, flies: bool) -> &'static str {
-        match self {
-            Self::Auto | Self::Mission { .. } => "AUTO",
-            Self::Guided => "GUIDED",
-            Self::Hold if flies => "LOITER",
-            Self::Hold => "HOLD",
-            Self::Return => "RTL",
-            Self::Land { .. } => "LAND",
-        }
+    pub fn name(self, flies: bool) -> &'static str {
+        self.codes()[usize::from(flies)].1
     }
-}
 
-/// A robot's own state after one tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample {
-    /// Simulated time, microseconds.
-    pub time_us: u64,
-    /// East, north, up, metres.
-    pub position_m: [f64; 3],
-    /// East, north, up, m/s.
-    pub velocity_mps: [f64; 3],
-    /// The cell on the grid.
-    pub cell: Cell,
-    /// Mode of the controller.
-    pub mode: Mode,
-    /// Goal that the controller follows.
-    pub wish: Wish<f32>,
-    /// Whether the onboard computer runs.
-    pub is_up: bool,
-}
-
-impl Sample {
-    /// Copies an observation of the simulator at `time_us`.
-    #[must_use]
-    pub fn new(time_us: u64, observation: &Observation) -> Self {
-        Self {
-            time_us,
-            position_m: observation.motion.position_m,
-            velocity_mps: observation.motion.velocity_mps,
-            cell: observation.motion.cell,
-            mode: observation.status.mode,
-            wish: observation.wish,
-            is_up: observation.is_up,
-        }
+    /// The mode with this number; `None` if these vehicles do not have it.
+    pub fn from_number(number: u32, flies: bool) -> Option<Self> {
+        let mut modes = Self::ALL.into_iter();
+        modes.find(|mode| mode.number(flies) == number && (flies || *mode != Self::LAND))
     }
 }
 

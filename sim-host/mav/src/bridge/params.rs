@@ -26,18 +26,8 @@ pub struct Parameters {
     left: usize,
 }
 
-/// Why a parameter was not set.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NotSet {
-    /// No parameter has this name.
-    Unknown,
-    /// The value is outside these limits.
-    OutOf([f32; 2]),
-}
-
 impl Parameters {
     /// Creates the parameters of a robot from those of its controller and their values.
-    #[must_use]
     pub fn new(model: &VehicleModel, values: &[(&'static Parameter, f32)]) -> Self {
         let of_bodies = [RADIUS, SPEED, TOLERANCE].map(|row| row.name);
         let own = values.iter().filter(|(row, _)| model.grid.is_none() || !of_bodies.contains(&row.name));
@@ -62,7 +52,6 @@ impl Parameters {
     }
 
     /// Number of parameters.
-    #[must_use]
     pub const fn count(&self) -> usize {
         self.entries.len()
     }
@@ -73,7 +62,6 @@ impl Parameters {
     }
 
     /// Whether parameters remain to be listed.
-    #[must_use]
     pub const fn is_listing(&self) -> bool {
         self.left > 0
     }
@@ -87,7 +75,6 @@ impl Parameters {
     }
 
     /// Index of the parameter that `param_id` names.
-    #[must_use]
     pub fn find(&self, id: &[u8; 16]) -> Option<usize> {
         let end = id.iter().position(|letter| *letter == 0);
         let id = &id[..end.unwrap_or(id.len())];
@@ -95,35 +82,27 @@ impl Parameters {
     }
 
     /// Value of a setting; `None` if the vehicle lacks it.
-    #[must_use]
     pub fn get(&self, setting: &str) -> Option<f32> {
         Some(self.entries[self.index_of(setting)?].value)
     }
 
-    fn index_of(&self, setting: &str) -> Option<usize> {
+    /// Index of a setting; `None` if the vehicle lacks it.
+    pub fn index_of(&self, setting: &str) -> Option<usize> {
         self.entries.iter().position(|entry| entry.setting == setting)
     }
 
     /// Sets a parameter by index. Returns the setting that changed.
     ///
     /// # Errors
-    /// [`NotSet`]; the value is unchanged.
-    pub fn set(&mut self, index: usize, value: f32) -> Result<&'static str, NotSet> {
-        let entry = self.entries.get_mut(index).ok_or(NotSet::Unknown)?;
+    /// The value is outside these limits, and unchanged.
+    pub fn set(&mut self, index: usize, value: f32) -> Result<&'static str, [f32; 2]> {
+        let entry = &mut self.entries[index];
         let [least, greatest] = entry.range;
         if !(least..=greatest).contains(&value) {
-            return Err(NotSet::OutOf(entry.range));
+            return Err(entry.range);
         }
         entry.value = value;
         Ok(entry.setting)
-    }
-
-    /// Sets a parameter by its setting. Returns the setting that changed.
-    ///
-    /// # Errors
-    /// [`NotSet`]; the value is unchanged.
-    pub fn set_setting(&mut self, setting: &str, value: f32) -> Result<&'static str, NotSet> {
-        self.set(self.index_of(setting).ok_or(NotSet::Unknown)?, value)
     }
 
     /// Overwrites a value with the one that the controller uses. Returns its index.
@@ -134,7 +113,6 @@ impl Parameters {
     }
 
     /// PARAM_VALUE of the parameter at `index`.
-    #[must_use]
     pub fn message(&self, index: usize) -> Option<PARAM_VALUE_DATA> {
         let entry = self.entries.get(index)?;
         Some(PARAM_VALUE_DATA {
@@ -149,7 +127,7 @@ impl Parameters {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{greatest, model, on_grid};
+    use super::super::test_support::{greatest, model, on_grid};
     use super::*;
 
     fn padded(name: &str) -> [u8; 16] {
@@ -202,13 +180,13 @@ mod tests {
         let limit = model().max_speed_mps;
         for bad in [-0.1, limit * 1.01, f32::NAN, f32::INFINITY] {
             let before = parameters.clone();
-            assert_eq!(parameters.set(speed, bad), Err(NotSet::OutOf([0.0, limit])));
+            assert_eq!(parameters.set(speed, bad), Err([0.0, limit]));
             assert_eq!(parameters, before);
         }
         assert_eq!(parameters.set(speed, limit), Ok(SPEED.name));
         assert_eq!(parameters.get(SPEED.name), Some(limit));
-        assert!(parameters.set_setting(RADIUS.name, model().radius_m * 0.9).is_err());
-        assert_eq!(parameters.set(99, 1.0), Err(NotSet::Unknown));
+        let radius = parameters.index_of(RADIUS.name).expect("it is there");
+        assert!(parameters.set(radius, model().radius_m * 0.9).is_err());
     }
 
     #[test]

@@ -33,7 +33,6 @@ pub struct Refused {
 
 impl Refused {
     /// Sum over all reasons.
-    #[must_use]
     pub const fn total(&self) -> u64 {
         let Self { unsigned, forged, replayed, ahead, no_room, unanswerable } = *self;
         unsigned + forged + replayed + ahead + no_room + unanswerable
@@ -42,7 +41,7 @@ impl Refused {
 
 /// Statistics of a bridge run. The `frames_in` of all links are `frames_heard` + `frames_ignored` +
 /// `frames_refused` + `lost_in` + `frames_waiting`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct BridgeReport {
     /// Number of vehicles, one for each robot.
     pub vehicles: usize,

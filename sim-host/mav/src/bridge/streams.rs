@@ -21,7 +21,6 @@ fn every(rate_hz: f64) -> u64 {
 impl Streams {
     /// Creates the default streams: each position message at `position_hz`, attitude at half of
     /// that, the others at about 1 Hz. `phase` (0 to 1) shifts the first messages.
-    #[must_use]
     pub fn new(position_hz: f64, phase: f64) -> Self {
         let second = every(1.0);
         let rates = [
@@ -50,7 +49,6 @@ impl Streams {
     }
 
     /// Whether the vehicle can send message `id`.
-    #[must_use]
     pub fn has(&self, id: u32) -> bool {
         self.0.iter().any(|stream| stream.id == id)
     }
@@ -68,7 +66,6 @@ impl Streams {
     }
 
     /// Interval of a message, microseconds; -1 if it is off, `None` if the vehicle cannot send it.
-    #[must_use]
     pub fn interval_us(&self, id: u32) -> Option<i32> {
         let stream = self.0.iter().find(|stream| stream.id == id)?;
         Some(match stream.every_us {

@@ -4,25 +4,24 @@
 //! follow the real clock at any `speed`; setpoints and missions follow simulated time.
 
 use super::budget::Budget;
-use super::model::{Sample, VehicleModel};
+use super::model::VehicleModel;
 use super::params::Parameters;
-use super::report::{BridgeReport, LineReport, Refused, name};
+use super::report::{BridgeReport, LineReport, name};
 use super::streams::Streams;
-use super::vehicle::{Action, Out, Vehicle};
+use super::vehicle::{Action, Kind, Out, Vehicle};
 use crate::framed::framed;
 use crate::geo::Origin;
-use crate::{Endpoint, Lines, OpenError, Received, Tlog};
-use staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1;
+use crate::{Endpoint, Lines, Received, Tlog};
+use anyhow::{Result, anyhow, bail};
+use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_ERROR};
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::{Signing, Verdict};
 use staya_sim::engine::{Engine, Moment, operated};
 use staya_sim::key::timestamp;
-use staya_sim::record::{self, Files, RobotRow};
+use staya_sim::record::{Files, RobotRow};
 use staya_sim::scenario::Scenario;
-use staya_sim::world::Misplaced;
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -57,25 +56,6 @@ pub struct Options {
     pub tlog: Option<PathBuf>,
 }
 
-/// Why a bridge cannot start or continue.
-#[derive(Debug, thiserror::Error)]
-pub enum BridgeError {
-    /// A robot's number is not a valid MAVLink system id.
-    #[error(
-        "robot {0} cannot be a MAVLink vehicle: numbers are 1 to {LAST_SYSTEM}; give the scenario fewer robots, or other numbers"
-    )]
-    Number(u32),
-    /// The robots do not fit into the scenario.
-    #[error("the robots cannot be placed: {0}; change their starts")]
-    Misplaced(#[from] Misplaced),
-    /// A link cannot be opened.
-    #[error(transparent)]
-    Line(#[from] OpenError),
-    /// The log cannot be written.
-    #[error(transparent)]
-    Log(#[from] record::Error),
-}
-
 /// A callback that observes the swarm after each tick. It delays the next tick, so it must be fast.
 pub type Onlooker<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) + 'a;
 
@@ -90,17 +70,11 @@ pub struct Swarm {
     options: Options,
     log: Option<Tlog>,
     tick_us: u32,
-    ticks: u32,
     began: Instant,
-    missed: u32,
-    slowest: Duration,
     first: usize,
     listing: Budget,
     complained_us: Option<u64>,
-    heard: u64,
-    ignored: u64,
-    refused: Refused,
-    commands: BTreeMap<&'static str, u64>,
+    report: BridgeReport,
     out: Out,
 }
 
@@ -108,26 +82,30 @@ impl Swarm {
     /// Loads a scenario before its first tick and opens the links.
     ///
     /// # Errors
-    /// [`BridgeError`].
-    pub fn new(scenario: &Scenario, options: Options) -> Result<Self, BridgeError> {
+    /// A robot's number is not a valid MAVLink system id, two robots start in one place, a link
+    /// cannot be opened, or the log cannot be created.
+    pub fn new(scenario: &Scenario, options: Options) -> Result<Self> {
         let numbers: Vec<u32> = scenario.robots.iter().map(|robot| robot.id.0).collect();
         if let Some(number) = numbers.iter().find(|&&number| number == 0 || number > LAST_SYSTEM) {
-            return Err(BridgeError::Number(*number));
+            bail!(
+                "robot {number} cannot be a MAVLink vehicle: numbers are 1 to {LAST_SYSTEM}; give the scenario fewer \
+                 robots, or other numbers"
+            );
         }
-        let mut engine = operated(scenario)?;
+        let mut engine =
+            operated(scenario).map_err(|error| anyhow!("the robots cannot be placed: {error}; change their starts"))?;
         let model = Arc::new(VehicleModel::new(scenario, options.origin));
         let count = numbers.len();
         let mut vehicles = Vec::with_capacity(count);
         let sender = |system: &u32| Sender { system: *system as u8, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 };
         let senders = numbers.iter().map(sender).collect();
         for (index, number) in numbers.into_iter().enumerate() {
-            let sample = Sample::new(0, &engine.observation(index));
             let vehicle = Vehicle::new(
                 number as u8,
                 Arc::clone(&model),
                 Parameters::new(&model, &engine.parameters(index)),
                 Streams::new(options.position_hz, index as f64 / count as f64),
-                sample,
+                (0, engine.observation(index)),
                 options.starts_armed,
             );
             if let Some(Action::Wish(wish)) = vehicle.initial_action() {
@@ -136,10 +114,8 @@ impl Swarm {
             vehicles.push(vehicle);
         }
         let lines = Lines::open(&options.endpoints)?;
-        let log = match &options.tlog {
-            Some(path) => Some(Tlog::create(path, &mut Files::reading(&scenario.files))?),
-            None => None,
-        };
+        let create = |path: &PathBuf| Tlog::create(path, &mut Files::reading(&scenario.files));
+        let log = options.tlog.as_ref().map(create).transpose()?;
         let listing = Budget::per_second(parameters_per_s(&options.endpoints));
         Ok(Self {
             boots: vec![0; count],
@@ -151,23 +127,16 @@ impl Swarm {
             options,
             log,
             tick_us: scenario.tick_us,
-            ticks: 0,
             began: Instant::now(),
-            missed: 0,
-            slowest: Duration::ZERO,
             first: 0,
             listing,
             complained_us: None,
-            heard: 0,
-            ignored: 0,
-            refused: Refused::default(),
-            commands: BTreeMap::new(),
+            report: BridgeReport::default(),
             out: Out::default(),
         })
     }
 
     /// The open links.
-    #[must_use]
     pub const fn lines(&self) -> &Lines {
         &self.lines
     }
@@ -176,28 +145,24 @@ impl Swarm {
     /// finished ticks and is called every few milliseconds, `onlooker` after each tick.
     ///
     /// # Errors
-    /// [`BridgeError::Log`] if the log cannot be written.
-    pub fn run(
-        mut self,
-        mut is_over: impl FnMut(u32) -> bool,
-        onlooker: &mut Onlooker<'_>,
-    ) -> Result<BridgeReport, BridgeError> {
+    /// The log cannot be written.
+    pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool, onlooker: &mut Onlooker<'_>) -> Result<BridgeReport> {
         let tick = Duration::from_secs_f64(f64::from(self.tick_us) / 1e6 / self.options.speed);
         self.began = Instant::now();
         let mut due = self.began + tick;
-        while self.options.ticks.is_none_or(|ticks| self.ticks < ticks) && !is_over(self.ticks) {
+        while self.options.ticks.is_none_or(|ticks| self.report.ticks < ticks) && !is_over(self.report.ticks) {
             let now = Instant::now();
             if now >= due {
                 self.tick()?;
                 self.engine.show(onlooker);
                 let done = Instant::now();
-                self.slowest = self.slowest.max(done - due);
+                self.report.slowest_seconds = self.report.slowest_seconds.max((done - due).as_secs_f64());
                 due += tick;
                 if let Some(late) = done.checked_duration_since(due) {
                     // Late ticks are not made up for.
-                    let others = late.as_nanos() / tick.as_nanos().max(1);
-                    self.missed =
-                        self.missed.saturating_add(1).saturating_add(u32::try_from(others).unwrap_or(u32::MAX));
+                    let others = u32::try_from(late.as_nanos() / tick.as_nanos().max(1)).unwrap_or(u32::MAX);
+                    self.report.deadlines_missed =
+                        self.report.deadlines_missed.saturating_add(others).saturating_add(1);
                     due = done;
                 }
             }
@@ -210,7 +175,7 @@ impl Swarm {
         Ok(self.report())
     }
 
-    fn listen(&mut self, due: Instant) -> Result<(), BridgeError> {
+    fn listen(&mut self, due: Instant) -> Result<()> {
         if let Some(signing) = &mut self.options.signing {
             signing.advance_to(timestamp());
         }
@@ -234,13 +199,13 @@ impl Swarm {
     }
 
     /// Returns the number of answers.
-    fn take(&mut self, received: &Received) -> Result<usize, BridgeError> {
+    fn take(&mut self, received: &Received) -> Result<usize> {
         let Some(frame) = RawFrame::new(&received.frame) else {
-            self.ignored += 1;
+            self.report.frames_ignored += 1;
             return Ok(0);
         };
         let verdict = self.options.signing.as_mut().map(|signing| signing.verify(&frame));
-        let reasons = &mut self.refused;
+        let reasons = &mut self.report.refused;
         let reason = match verdict {
             None | Some(Verdict::Authentic) => None,
             Some(Verdict::Unsigned) => Some(&mut reasons.unsigned),
@@ -254,7 +219,7 @@ impl Swarm {
             return Ok(0);
         }
         let Some(message) = frame.message() else {
-            self.ignored += 1;
+            self.report.frames_ignored += 1;
             return Ok(0);
         };
         self.lines.believe(received.line, received.peer);
@@ -263,7 +228,7 @@ impl Swarm {
             log.add(&received.frame)?;
         }
         if self.is_exhausted() {
-            self.refused.unanswerable += 1;
+            self.report.refused.unanswerable += 1;
             return Ok(0);
         }
         let mut answers = 0;
@@ -273,26 +238,28 @@ impl Swarm {
         let mut is_heard = false;
         for index in 0..self.vehicles.len() {
             let vehicle = &mut self.vehicles[index];
-            let is_own = from.system == vehicle.system();
-            if is_for_some && !is_own && (system == 0 || system == vehicle.system()) {
+            let is_own = from.system == vehicle.system;
+            if is_for_some && !is_own && (system == 0 || system == vehicle.system) {
                 vehicle.receive(from, &message, now_us, &mut self.out);
                 is_heard = true;
                 answers += self.carry_out(index)?;
             }
         }
-        *(if is_heard || !is_for_some { &mut self.heard } else { &mut self.ignored }) += 1;
+        self.report.frames_heard += u64::from(is_heard || !is_for_some);
+        self.report.frames_ignored += u64::from(is_for_some && !is_heard);
         Ok(answers)
     }
 
-    fn speak(&mut self, due: Instant) -> Result<(), BridgeError> {
+    fn speak(&mut self, due: Instant) -> Result<()> {
         let now_us = self.now_us();
         self.complain(now_us)?;
         let count = self.vehicles.len();
         for _ in 0..count {
             let index = self.first;
-            self.vehicles[index].poll(now_us, &mut self.out);
-            if self.vehicles[index].is_listing() && self.listing.take(now_us) {
-                self.vehicles[index].list_one(&mut self.out);
+            let vehicle = &mut self.vehicles[index];
+            vehicle.poll(now_us, &mut self.out);
+            if vehicle.parameters.is_listing() && self.listing.take(now_us) {
+                self.out.messages.extend(vehicle.parameters.next_listed().map(MavMessage::PARAM_VALUE));
             }
             self.carry_out(index)?;
             self.first = (index + 1) % count;
@@ -304,14 +271,15 @@ impl Swarm {
     }
 
     /// The warning comes while some timestamps are left to sign it.
-    fn complain(&mut self, now_us: u64) -> Result<(), BridgeError> {
+    fn complain(&mut self, now_us: u64) -> Result<()> {
         let is_early = |last: u64| now_us.saturating_sub(last) < COMPLAIN_US;
         if !self.is_exhausted() || self.complained_us.is_some_and(is_early) {
             return Ok(());
         }
         self.complained_us = Some(now_us);
         for index in 0..self.vehicles.len() {
-            self.vehicles[index].say_exhausted(&mut self.out);
+            let text = "signing timestamps used up: give a new key";
+            self.vehicles[index].text(&mut self.out, Kind::News, MAV_SEVERITY_ERROR, text);
             self.carry_out(index)?;
         }
         Ok(())
@@ -321,30 +289,28 @@ impl Swarm {
         self.options.signing.as_ref().is_some_and(|signing| signing.left() < RESERVE)
     }
 
-    fn tick(&mut self) -> Result<(), BridgeError> {
+    fn tick(&mut self) -> Result<()> {
         self.engine.step();
-        self.ticks += 1;
-        let time_us = u64::from(self.ticks) * u64::from(self.tick_us);
+        self.report.ticks += 1;
+        let time_us = u64::from(self.report.ticks) * u64::from(self.tick_us);
         let now_us = self.now_us();
         for index in 0..self.vehicles.len() {
-            let observation = self.engine.observation(index);
-            let sample = Sample::new(time_us, &observation);
-            if observation.is_up && observation.boot != self.boots[index] {
-                self.boots[index] = observation.boot;
+            let seen = self.engine.observation(index);
+            if seen.is_up && seen.boot != self.boots[index] {
+                self.boots[index] = seen.boot;
                 let parameters = Parameters::new(&self.model, &self.engine.parameters(index));
-                self.vehicles[index].restart(parameters, sample, &mut self.out);
+                self.vehicles[index].restart(parameters, (time_us, seen), &mut self.out);
             }
             let events = self.engine.events(index);
-            self.vehicles[index].observe(sample, events, now_us, &mut self.out);
+            self.vehicles[index].observe((time_us, seen), events, now_us, &mut self.out);
             self.carry_out(index)?;
         }
         Ok(())
     }
 
     /// Returns the number of messages.
-    fn carry_out(&mut self, index: usize) -> Result<usize, BridgeError> {
-        let mut refused = Vec::new();
-        for action in self.out.actions.drain(..) {
+    fn carry_out(&mut self, index: usize) -> Result<usize> {
+        for action in core::mem::take(&mut self.out.actions) {
             match action {
                 Action::Tell(header, message) => self.engine.tell(index, header, &message),
                 Action::Wish(wish) => {
@@ -352,19 +318,16 @@ impl Swarm {
                 }
                 Action::Set(name, value) => {
                     if self.engine.set_parameter(index, name, value).is_err() {
-                        refused.push(name);
+                        let value = self.engine.parameter(index, name);
+                        self.vehicles[index].set_back(name, value, &mut self.out);
                     }
                 }
             }
         }
-        for name in refused {
-            let value = self.engine.parameter(index, name);
-            self.vehicles[index].set_back(name, value, &mut self.out);
-        }
         let answers = self.out.messages.len();
         for message in self.out.messages.drain(..) {
             if let MavMessage::COMMAND_ACK(ack) = &message {
-                *self.commands.entry(name(ack.result)).or_default() += 1;
+                *self.report.commands.entry(name(ack.result)).or_default() += 1;
             }
             let signing = self.options.signing.as_mut();
             let Some(frame) = framed(&mut self.senders[index], &message, signing) else { continue };
@@ -384,27 +347,21 @@ impl Swarm {
             let bytes_out_per_s = counts.bytes_out as f64 / wall_seconds.max(1e-9);
             LineReport { endpoint: endpoint.to_string(), counts, bytes_out_per_s }
         };
-        let outcome = self.engine.outcome();
+        let (outcome, refused) = (self.engine.outcome(), self.report.refused);
         let gap = outcome.clearance.map(|clearance| clearance.bodies_m);
         BridgeReport {
             vehicles: self.vehicles.len(),
-            ticks: self.ticks,
             sim_seconds: outcome.seconds,
             wall_seconds,
-            deadlines_missed: self.missed,
-            slowest_seconds: self.slowest.as_secs_f64(),
-            frames_heard: self.heard,
-            frames_ignored: self.ignored,
-            frames_refused: self.refused.total(),
-            refused: self.refused,
-            frames_ahead: self.refused.ahead,
+            frames_refused: refused.total(),
+            frames_ahead: refused.ahead,
             frames_waiting: self.lines.waiting(),
             is_exhausted: self.is_exhausted(),
-            commands: self.commands.clone(),
             lines: self.options.endpoints.iter().enumerate().map(line).collect(),
             collisions: outcome.collisions,
             least_gap_m: gap.filter(|gap| gap.is_finite()),
             trace_hash: format!("{:016x}", outcome.trace_hash),
+            ..self.report
         }
     }
 }

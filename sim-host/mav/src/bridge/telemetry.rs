@@ -10,10 +10,10 @@ const UNKNOWN: u16 = u16::MAX;
 
 impl Vehicle {
     pub(super) fn telemetry(&self, id: u32) -> Option<MavMessage> {
-        let sample = &self.sample;
+        let motion = &self.seen.motion;
         let time_boot_ms = (self.uptime_us() / 1000) as u32;
-        let [x, y, z] = ned(sample.position_m).map(|m| m as f32);
-        let velocity = ned(sample.velocity_mps);
+        let [x, y, z] = ned(motion.position_m).map(|m| m as f32);
+        let velocity = ned(motion.velocity_mps);
         let [vx, vy, vz] = velocity.map(|v| v as f32);
         let speed_mps = libm::hypot(velocity[0], velocity[1]);
         let cm = |v: f64| libm::round(v * 100.0) as i16;
@@ -24,7 +24,7 @@ impl Vehicle {
             let global = self.model.origin.to_global(at_m);
             global.map(|global| global.to_e7())
         };
-        let here = || place(sample.position_m);
+        let here = || place(motion.position_m);
         Some(match id {
             HEARTBEAT_DATA::ID => self.heartbeat(),
             SYS_STATUS_DATA::ID => self.sys_status(),
@@ -58,7 +58,7 @@ impl Vehicle {
             GLOBAL_POSITION_INT_DATA::ID => {
                 let [lat, lon, alt] = here()?;
                 let [vx, vy, vz] = velocity.map(cm);
-                let above_home_m = sample.position_m[2] - self.home_m[2];
+                let above_home_m = motion.position_m[2] - self.home_m[2];
                 MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
                     time_boot_ms,
                     lat,
@@ -72,13 +72,13 @@ impl Vehicle {
                 })
             }
             MISSION_CURRENT_DATA::ID => MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
-                seq: self.mission.current(),
+                seq: self.mission.current,
                 total: self.mission.len().saturating_sub(1),
                 // MISSION_STATE: 1 none, 2 not started, 3 active, 5 complete.
                 mission_state: match self.mode {
                     _ if self.mission.is_empty() => 1,
                     FlightMode::Mission { .. } | FlightMode::Land { is_item: true } => 3,
-                    _ if self.mission.is_complete() => 5,
+                    _ if self.mission.is_complete => 5,
                     _ => 2,
                 },
                 mission_mode: if let FlightMode::Mission { .. } = self.mode { 1 } else { 2 },
@@ -95,7 +95,7 @@ impl Vehicle {
             VFR_HUD_DATA::ID => MavMessage::VFR_HUD(VFR_HUD_DATA {
                 airspeed: speed_mps as f32,
                 groundspeed: speed_mps as f32,
-                alt: (self.model.origin.place().altitude_m + sample.position_m[2]) as f32,
+                alt: (self.model.origin.place().altitude_m + motion.position_m[2]) as f32,
                 climb: -vz,
                 heading: (heading / 100) as i16,
                 throttle: 0,
@@ -153,7 +153,7 @@ impl Vehicle {
             mavtype: if flies { MAV_TYPE_QUADROTOR } else { MAV_TYPE_GROUND_ROVER },
             autopilot: MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode: MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | armed | source,
-            system_status: match (self.is_armed, self.sample.mode) {
+            system_status: match (self.is_armed, self.seen.status.mode) {
                 (false, _) => MAV_STATE_STANDBY,
                 (true, Mode::Fault) => MAV_STATE_CRITICAL,
                 (true, _) => MAV_STATE_ACTIVE,
@@ -167,7 +167,7 @@ impl Vehicle {
             | MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
             | MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
             | MAV_SYS_STATUS_PREARM_CHECK;
-        let has_fault = self.sample.mode == Mode::Fault;
+        let has_fault = self.seen.status.mode == Mode::Fault;
         let unsound = if has_fault { MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL } else { 0 };
         MavMessage::SYS_STATUS(SYS_STATUS_DATA {
             onboard_control_sensors_present: present,

@@ -5,7 +5,7 @@
 
 use super::files;
 use super::mission::{Mission, from_float};
-use super::model::{FlightMode, Sample, VehicleModel};
+use super::model::{FlightMode, VehicleModel};
 use super::ordered::Ordered;
 use super::params::Parameters;
 use super::streams::Streams;
@@ -18,7 +18,8 @@ use staya_controller::wire::{Header, Message};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
-use staya_mavlink::mavlink_core::Message as _;
+use staya_mavlink::mavlink_core::{Message as _, MessageData as _};
+use staya_sim::engine::Observation;
 use std::sync::Arc;
 
 mod tuning;
@@ -53,7 +54,10 @@ pub struct Vehicle {
     pub(super) streams: Streams,
     pub(super) parameters: Parameters,
     pub(super) mission: Mission,
-    pub(super) sample: Sample,
+    /// Simulated time, microseconds.
+    pub(super) time_us: u64,
+    /// The robot's own state at that time.
+    pub(super) seen: Observation,
     started_us: u64,
     pub(super) home_m: [f64; 3],
     /// Radians from north to east.
@@ -81,24 +85,24 @@ impl Kind {
 
 impl Vehicle {
     /// Creates a vehicle that has just started, disarmed unless `starts_armed`, with its streams.
-    #[must_use]
     pub fn new(
         system: u8,
         model: Arc<VehicleModel>,
         parameters: Parameters,
         streams: Streams,
-        sample: Sample,
+        (time_us, seen): (u64, Observation),
         starts_armed: bool,
     ) -> Self {
-        let [x, y, _] = sample.position_m;
+        let [x, y, _] = seen.motion.position_m;
         Self {
             system,
             streams,
             parameters,
             mission: Mission::default(),
-            started_us: sample.time_us,
+            started_us: time_us,
             home_m: [x, y, 0.0],
-            sample,
+            time_us,
+            seen,
             yaw: 0.0,
             mode: if starts_armed { FlightMode::Auto } else { FlightMode::Hold },
             is_armed: starts_armed,
@@ -110,28 +114,15 @@ impl Vehicle {
         }
     }
 
-    /// MAVLink system id.
-    #[must_use]
-    pub const fn system(&self) -> u8 {
-        self.system
-    }
-
     /// Action to perform at the start of the robot.
-    #[must_use]
     pub const fn initial_action(&self) -> Option<Action> {
         if self.starts_armed { None } else { Some(Action::Wish(Wish::Off)) }
     }
 
     /// Resets the vehicle after its onboard computer restarted. Only the mission is kept.
-    pub fn restart(&mut self, parameters: Parameters, sample: Sample, out: &mut Out) {
-        let fresh = Self::new(
-            self.system,
-            Arc::clone(&self.model),
-            parameters,
-            self.streams.clone(),
-            sample,
-            self.starts_armed,
-        );
+    pub fn restart(&mut self, parameters: Parameters, state: (u64, Observation), out: &mut Out) {
+        let fresh =
+            Self::new(self.system, Arc::clone(&self.model), parameters, self.streams.clone(), state, self.starts_armed);
         let old = core::mem::replace(self, fresh);
         (self.mission, self.home_m) = (old.mission, old.home_m);
         (self.now_us, self.yaw) = (old.now_us, old.yaw);
@@ -140,22 +131,21 @@ impl Vehicle {
     }
 
     /// Records the robot's state and events after a tick.
-    pub fn observe(&mut self, sample: Sample, events: &[Event], now_us: u64, out: &mut Out) {
-        let before = core::mem::replace(&mut self.sample, sample);
-        self.now_us = now_us;
-        if !sample.is_up {
+    pub fn observe(&mut self, (time_us, seen): (u64, Observation), events: &[Event], now_us: u64, out: &mut Out) {
+        let before = core::mem::replace(&mut self.seen, seen);
+        (self.time_us, self.now_us) = (time_us, now_us);
+        if !seen.is_up {
             return;
         }
-        let [east, north, _] = sample.velocity_mps;
+        let [east, north, _] = seen.motion.velocity_mps;
         if east * east + north * north > 1e-6 {
             self.yaw = libm::atan2(east, north) as f32;
         }
         if matches!(before.wish, Wish::Velocity { .. } | Wish::Waypoint { .. })
-            && sample.wish == Wish::Hold
+            && seen.wish == Wish::Hold
             && self.mode == FlightMode::Guided
         {
-            let text = "setpoint timed out: holding";
-            self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, text);
+            self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, "setpoint timed out: holding");
         }
         for event in events {
             self.report(event, out);
@@ -202,7 +192,7 @@ impl Vehicle {
     /// Sends due telemetry, and requests overdue mission items.
     pub fn poll(&mut self, now_us: u64, out: &mut Out) {
         self.now_us = now_us;
-        if !self.sample.is_up {
+        if !self.seen.is_up {
             return;
         }
         let mut streams = core::mem::take(&mut self.streams);
@@ -211,35 +201,23 @@ impl Vehicle {
         out.messages.extend(self.mission.poll(now_us));
     }
 
-    /// Whether parameters of a listing remain to be sent.
-    #[must_use]
-    pub const fn is_listing(&self) -> bool {
-        self.parameters.is_listing()
-    }
-
-    /// Sends the next parameter of the listing.
-    pub fn list_one(&mut self, out: &mut Out) {
-        out.messages.extend(self.parameters.next_listed().map(MavMessage::PARAM_VALUE));
-    }
-
-    /// Warns that the signing timestamps are nearly used up.
-    pub fn say_exhausted(&mut self, out: &mut Out) {
-        let text = "signing timestamps used up: give a new key";
-        self.text(out, Kind::News, MAV_SEVERITY_ERROR, text);
-    }
-
     /// Handles a message for this vehicle or for all vehicles.
     pub fn receive(&mut self, from: Sender, message: &MavMessage, now_us: u64, out: &mut Out) {
         self.now_us = now_us;
-        if !self.sample.is_up || !self.is_for_me(message) {
+        if !self.seen.is_up || !self.is_for_me(message) {
             return;
         }
         match message {
             MavMessage::COMMAND_LONG(command) => self.command_long(from, command, out),
-            MavMessage::COMMAND_INT(command) => self.command_int(from, command, out),
-            MavMessage::SET_MODE(wanted) => self.set_mode_message(wanted, out),
-            MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => self.target_local(target, out),
-            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => self.target_global(target, out),
+            MavMessage::COMMAND_INT(command) => self.command(from, command, true, out),
+            // The protocol defines no answer to this older message.
+            MavMessage::SET_MODE(wanted) => {
+                if self.set_mode(wanted.base_mode, wanted.custom_mode, out).is_err() {
+                    self.text(out, Kind::News, MAV_SEVERITY_WARNING, "unknown mode");
+                }
+            }
+            MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => self.follow(self.local_setpoint(target), out),
+            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => self.follow(self.global_setpoint(target), out),
             MavMessage::PARAM_REQUEST_LIST(_) => self.parameters.list(),
             MavMessage::PARAM_REQUEST_READ(wanted) => {
                 let index = match usize::try_from(wanted.param_index) {
@@ -253,10 +231,7 @@ impl Vehicle {
             }
             MavMessage::PARAM_SET(wanted) => self.set_parameter(wanted, out),
             MavMessage::REQUEST_DATA_STREAM(wanted) => {
-                let rate = match wanted.start_stop {
-                    0 => 0,
-                    _ => wanted.req_message_rate,
-                };
+                let rate = if wanted.start_stop == 0 { 0 } else { wanted.req_message_rate };
                 self.streams.set_group(wanted.req_stream_id, rate, now_us);
             }
             MavMessage::PING(ping) if ping.target_system == 0 => {
@@ -269,7 +244,7 @@ impl Vehicle {
             // A TIMESYNC with a time is an answer.
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => {
                 out.messages.push(MavMessage::TIMESYNC(TIMESYNC_DATA {
-                    tc1: i64::try_from(self.sample.time_us).map_or(i64::MAX, |us| us * 1000),
+                    tc1: i64::try_from(self.time_us).map_or(i64::MAX, |us| us * 1000),
                     ts1: sync.ts1,
                 }));
             }
@@ -299,10 +274,9 @@ impl Vehicle {
             }
             MavMessage::MISSION_SET_CURRENT(wanted) => {
                 if self.set_current_item(wanted.seq, out).is_err() {
-                    let text = "unknown mission item";
-                    self.text(out, Kind::News, MAV_SEVERITY_WARNING, text);
+                    self.text(out, Kind::News, MAV_SEVERITY_WARNING, "unknown mission item");
                 }
-                return out.messages.extend(self.telemetry(MISSION_CURRENT_ID));
+                return out.messages.extend(self.telemetry(MISSION_CURRENT_DATA::ID));
             }
             _ => return self.receive_orders(from, message, out),
         };
@@ -310,8 +284,7 @@ impl Vehicle {
     }
 
     fn is_for_me(&self, message: &MavMessage) -> bool {
-        let system = message.target_system_id();
-        let component = message.target_component_id();
+        let (system, component) = (message.target_system_id(), message.target_component_id());
         let is_mine = system.is_none_or(|system| system == 0 || system == self.system);
         // Broadcasts must not configure all vehicles alike.
         let is_private = matches!(
@@ -329,12 +302,12 @@ impl Vehicle {
     }
 
     pub(super) const fn uptime_us(&self) -> u64 {
-        self.sample.time_us.saturating_sub(self.started_us)
+        self.time_us.saturating_sub(self.started_us)
     }
 
     pub(super) fn is_in_air(&self) -> bool {
         let low_m = 0.02_f64.max(f64::from(self.tolerance_m()));
-        self.model.flies && self.sample.position_m[2] > low_m
+        self.model.flies && self.seen.motion.position_m[2] > low_m
     }
 
     pub(super) fn tolerance_m(&self) -> f32 {
@@ -352,7 +325,7 @@ impl Vehicle {
     }
 
     pub(super) fn begin(&mut self, out: &mut Out) {
-        let [x, y, z] = self.sample.position_m;
+        let [x, y, z] = self.seen.motion.position_m;
         let wish = match self.mode {
             _ if !self.is_armed => Wish::Off,
             FlightMode::Mission { .. } => return self.begin_item(out),
@@ -369,7 +342,7 @@ impl Vehicle {
 
     /// `None` if the position is not finite, too far, or inside an obstacle.
     pub(super) fn goal(&self, [x, y, z]: [f64; 3]) -> Option<Wish<f32>> {
-        let place_m = [x, y, if self.model.flies { z } else { self.sample.position_m[2] }];
+        let place_m = [x, y, if self.model.flies { z } else { self.seen.motion.position_m[2] }];
         let is_near = place_m.iter().all(|m| m.abs() <= FAR_M);
         if !is_near || !self.model.has_room(place_m) {
             return None;
@@ -382,9 +355,9 @@ impl Vehicle {
 
     pub(super) fn is_at(&self, place_m: [f64; 3], near_m: f64) -> bool {
         if self.model.grid.is_some() {
-            return self.model.cell(place_m) == Some(self.sample.cell);
+            return self.model.cell(place_m) == Some(self.seen.motion.cell);
         }
-        let off = [0, 1, 2].map(|axis| place_m[axis] - self.sample.position_m[axis]);
+        let off = [0, 1, 2].map(|axis| place_m[axis] - self.seen.motion.position_m[axis]);
         let flat = off[0] * off[0] + off[1] * off[1];
         let all = flat + if self.model.flies { off[2] * off[2] } else { 0.0 };
         let near_m = near_m.max(1.5 * f64::from(self.tolerance_m()));
@@ -395,7 +368,7 @@ impl Vehicle {
         if !self.is_armed {
             return;
         }
-        let [x, y, z] = self.sample.position_m;
+        let [x, y, z] = self.seen.motion.position_m;
         match self.mode {
             FlightMode::Land { is_item } if self.is_at([x, y, 0.0], 0.0) => {
                 self.is_armed = false;
@@ -416,8 +389,6 @@ impl Vehicle {
         }
     }
 }
-
-const MISSION_CURRENT_ID: u32 = 42;
 
 #[cfg(test)]
 mod tests;

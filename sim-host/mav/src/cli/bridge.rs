@@ -1,6 +1,7 @@
-use super::{number, say, signing};
+use super::signing;
 use crate::bridge::{BridgeReport, LineReport, Options, Refused, Swarm};
 use crate::geo::{Global as Place, Origin};
+use crate::terminal::{number, say};
 use crate::{Counts, Endpoint};
 use anyhow::Result;
 use clap::Args;
@@ -150,38 +151,27 @@ impl BridgeArgs {
 }
 
 fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
-    let mut text = String::new();
-    writeln!(text, "{name}")?;
-    let mut line = |name: &str, value: String| writeln!(text, "  {name:<16}{value}");
-    line("vehicles", report.vehicles.to_string())?;
-    line(
-        "simulated",
-        format!("{} s in {} ticks, {:.1} s of real time", report.sim_seconds, report.ticks, report.wall_seconds),
-    )?;
-    let (missed, ticks, slowest) = (report.deadlines_missed, report.ticks, report.slowest_seconds);
-    line("deadlines", format!("{missed} missed in {ticks} ticks, slowest tick {slowest:.4} s"))?;
-    let commands = report.commands.iter();
-    let commands: Vec<_> = commands.map(|(result, count)| format!("{count} {result}")).collect();
-    let commands = match commands.is_empty() {
-        true => "none".into(),
-        false => commands.join(", "),
-    };
-    line("commands", commands)?;
+    let BridgeReport { vehicles, ticks, sim_seconds, wall_seconds, slowest_seconds, frames_waiting, .. } = report;
+    let BridgeReport { deadlines_missed, frames_heard, frames_ignored, frames_refused, .. } = report;
     let Refused { unsigned, forged, replayed, ahead, no_room, unanswerable } = report.refused;
-    let (heard, ignored, refused) = (report.frames_heard, report.frames_ignored, report.frames_refused);
-    line("frames", format!("{heard} handled, {ignored} for other systems, {} still queued", report.frames_waiting))?;
-    line(
-        "frames rejected",
-        format!(
-            "{refused}: {unsigned} unsigned, {forged} forged, {replayed} replayed, {ahead} with future timestamps, \
-            {no_room} from new senders with the table full, {unanswerable} not answerable"
-        ),
-    )?;
-    if report.is_exhausted {
-        line("signing", String::from("timestamps used up, commands are refused; give the swarm a new key"))?;
-    }
-    line("collisions", report.collisions.to_string())?;
-    line("trace hash", report.trace_hash.clone())?;
+    let commands: Vec<_> = report.commands.iter().map(|(result, count)| format!("{count} {result}")).collect();
+    let commands = if commands.is_empty() { "none".into() } else { commands.join(", ") };
+    let signing = match report.is_exhausted {
+        true => "  signing         timestamps used up, commands are refused; give the swarm a new key\n",
+        false => "",
+    };
+    let mut text = format!(
+        "{name}\n  vehicles        {vehicles}\n  \
+         simulated       {sim_seconds} s in {ticks} ticks, {wall_seconds:.1} s of real time\n  \
+         deadlines       {deadlines_missed} missed in {ticks} ticks, slowest tick {slowest_seconds:.4} s\n  \
+         commands        {commands}\n  \
+         frames          {frames_heard} handled, {frames_ignored} for other systems, {frames_waiting} still queued\n  \
+         frames rejected {frames_refused}: {unsigned} unsigned, {forged} forged, {replayed} replayed, \
+         {ahead} with future timestamps, {no_room} from new senders with the table full, {unanswerable} not \
+         answerable\n\
+         {signing}  collisions      {}\n  trace hash      {}\n",
+        report.collisions, report.trace_hash
+    );
     writeln!(
         text,
         "\n{:<32}{:>10}{:>10}{:>12}{:>8}{:>12}{:>8}",

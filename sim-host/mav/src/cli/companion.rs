@@ -1,36 +1,22 @@
 mod page;
 
-use super::number;
 use crate::Tlog;
 use crate::companion::{Config, Options, Sight, run};
 use anyhow::Result;
 use clap::Args;
 use page::Page;
-use staya_console::WatchArgs;
-use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_console::{Ended, Global, Stop, WatchArgs, print, print_json};
 use staya_sim::record::Files;
 use staya_view::watch::Watcher;
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// Control ArduPilot or PX4 vehicles as a swarm.
 #[derive(Args, Clone, Debug)]
 pub struct CompanionArgs {
     /// Configuration, a .toml file; docs/autopilots.md lists its fields, companions/ has examples.
     config: PathBuf,
-    /// Show the messages that would be sent, and send nothing.
-    #[arg(long)]
-    dry_run: bool,
-    /// Simulate the configured vehicles in this process, without links; ends when all have
-    /// arrived.
-    #[arg(long, conflicts_with = "dry_run")]
-    demo: bool,
-    /// End with an error if no autopilot is heard in this many seconds; 0 waits forever.
-    #[arg(long, value_name = "N", default_value = "60", value_parser = number(0.0, 1e6))]
-    wait: f64,
-    /// Stop after this many seconds [default: run until Ctrl-C].
-    #[arg(long, value_name = "N", value_parser = number(0.0, 1e6))]
-    seconds: Option<f64>,
+    #[command(flatten)]
+    options: Options,
     /// Write sent and accepted messages of all links to a log for mavlogdump, MAVExplorer or
     /// QGroundControl; an older file, and each file at 256 MiB, is renamed to FILE.1.
     #[arg(long, value_name = "FILE")]
@@ -54,33 +40,21 @@ impl CompanionArgs {
     /// The configuration is invalid, a link cannot be opened, or a log cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let mut config = Config::load(&self.config)?;
-        for (given, kept) in [(&self.key, &mut config.key), (&self.link_key, &mut config.link_key)] {
-            if given.is_some() {
-                kept.clone_from(given);
-            }
-        }
-        let mut options = Options {
-            dry_run: self.dry_run,
-            quiet: global.quiet,
-            seconds: self.seconds,
-            demo: self.demo,
-            is_real_time: false,
-            wait: (self.wait > 0.0).then(|| Duration::from_secs_f64(self.wait)),
-            tlog: None,
-        };
+        config.key = self.key.clone().or(config.key);
+        config.link_key = self.link_key.clone().or(config.link_key);
         let inputs = config.scenario.files.iter().chain(&config.key).chain(&config.link_key);
         let mut files = Files::reading(inputs);
-        options.tlog = self.tlog.as_deref().map(|path| Tlog::create(path, &mut files)).transpose()?;
+        let tlog = self.tlog.as_deref().map(|path| Tlog::create(path, &mut files)).transpose()?;
         let stop = Stop::on_ctrl_c()?;
         let page = Watcher::by_options(&self.page, &config.scenario)?;
-        options.is_real_time = page.is_some();
+        let options = Options { quiet: global.quiet, is_real_time: page.is_some(), ..self.options };
         let mut page = page.map(|watcher| Page::new(watcher, &config.scenario)).transpose()?;
         let look = |sight: &Sight<'_>| {
             if let Some(page) = &mut page {
                 page.look(sight);
             }
         };
-        let report = run(&config, &mut options, || !stop.is_requested(), look)?;
+        let report = run(&config, &options, tlog, || !stop.is_requested(), look)?;
         if global.json {
             print_json(&report)?;
         } else {

@@ -25,10 +25,9 @@ pub struct Body {
     pub error_m: f64,
 }
 
-/// A law that an operator may switch off.
-pub type OperatedLaw = Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
-/// The agent of a vehicle.
-pub type ControllerAgent<W> = Agent<f32, OperatedLaw, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+/// The agent of a vehicle, with a law that an operator may switch off.
+type ControllerAgent<W> =
+    Agent<f32, Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED>>, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// The agent of one vehicle with its map and senses.
 pub struct Controller<W> {
@@ -39,7 +38,8 @@ pub struct Controller<W> {
     senses: Senses,
     out: Outputs<f32>,
     is_in_space: bool,
-    goal_m: Option<[f64; 3]>,
+    /// Goal, metres; `None` if the guidance has none.
+    pub goal_m: Option<[f64; 3]>,
     radius_m: f64,
     stepped: Option<(Instant, Position, [f64; 3])>,
 }
@@ -48,7 +48,6 @@ impl<W: Wire> Controller<W> {
     /// Creates the controller of robot `index` on the map `ground`. `boot` must differ between
     /// starts. Lost neighbours get a margin of at least `error_m`, because an autopilot whose
     /// companion died keeps moving for a while.
-    #[must_use]
     pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, error_m: f64, wire: W) -> Self {
         let (config, task) = ground.setup(index, 0);
         let config = AgentConfig { boot, seed: scenario.seed, plausibility: scenario.plausibility, ..config };
@@ -86,25 +85,16 @@ impl<W: Wire> Controller<W> {
     }
 
     /// The agent.
-    #[must_use]
     pub fn agent(&self) -> &ControllerAgent<W> {
         &self.agent
     }
 
     /// Why the robot waits, if it does.
-    #[must_use]
     pub const fn wait(&self) -> Option<Wait> {
         self.out.wait
     }
 
-    /// Goal, metres; `None` if the guidance has none.
-    #[must_use]
-    pub const fn goal_m(&self) -> Option<[f64; 3]> {
-        self.goal_m
-    }
-
     /// Neighbours and their positions at the last step. O(neighbours).
-    #[must_use]
     pub fn known(&self) -> Vec<Known> {
         let stepped = self.stepped.iter();
         stepped.flat_map(|&(now, own, own_m)| engine::known(self.agent.neighbors(), own, own_m, now)).collect()
@@ -134,7 +124,6 @@ impl<W: Wire> Controller<W> {
     }
 
     /// Commanded velocity east, north, up, m/s.
-    #[must_use]
     pub fn velocity_mps(&self) -> [f64; 3] {
         match self.out.command {
             Command::Velocity(Vec3 { x, y, z }) => [x, y, z].map(f64::from),

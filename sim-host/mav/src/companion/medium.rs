@@ -1,6 +1,7 @@
 //! Packets between companions: the frames that robots exchange by radio. A datagram on a LAN has
 //! those of one agent in one step; a TUNNEL message over MAVLink has up to 128 bytes of them.
 
+use anyhow::{Result, anyhow};
 use socket2::{Domain, Protocol, Socket, Type};
 use staya_controller::wire::Wire;
 use staya_mavlink::dialect::{MavMessage, TUNNEL_DATA};
@@ -35,14 +36,6 @@ pub enum MediumSetup {
     Tunnel,
 }
 
-/// Why the network to other companions is unavailable.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot exchange packets with other companions over {over}: {source}; check the addresses in [air]")]
-pub struct MediumError {
-    over: String,
-    source: io::Error,
-}
-
 /// The network to companions in other processes.
 #[derive(Debug, Default)]
 pub struct Medium {
@@ -56,8 +49,8 @@ impl Medium {
     /// Opens the network.
     ///
     /// # Errors
-    /// [`MediumError`] if an address is unavailable.
-    pub fn open(setup: &MediumSetup) -> Result<Self, MediumError> {
+    /// An address is unavailable.
+    pub fn open(setup: &MediumSetup) -> Result<Self> {
         let (over, socket, to) = match setup {
             MediumSetup::Here | MediumSetup::Tunnel => return Ok(Self::default()),
             MediumSetup::Multicast { group, interface } => {
@@ -66,7 +59,9 @@ impl Medium {
             MediumSetup::Peers { bind, peers } => (bind.to_string(), UdpSocket::bind(bind), peers.clone()),
         };
         let socket = socket.and_then(|socket| socket.set_nonblocking(true).map(|()| socket));
-        let socket = socket.map_err(|source| MediumError { over, source })?;
+        let socket = socket.map_err(|error| {
+            anyhow!("cannot exchange packets with other companions over {over}: {error}; check the addresses in [air]")
+        })?;
         Ok(Self { socket: Some(socket), to, sent: VecDeque::new() })
     }
 
@@ -148,7 +143,6 @@ pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
 }
 
 /// `None` if the message is not one of Staya's.
-#[must_use]
 pub fn tunnelled(message: &TUNNEL_DATA) -> Option<&[u8]> {
     let frames = message.payload.get(..message.payload_length.into())?;
     (message.payload_type == PAYLOAD_TYPE).then_some(frames)

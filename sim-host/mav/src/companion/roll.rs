@@ -31,7 +31,6 @@ pub struct Roll {
 
 impl Roll {
     /// With `has_old` the previous key is accepted from the start and dropped after the overlap.
-    #[must_use]
     pub fn new(overlap: Duration, has_old: bool) -> Self {
         Self { generation: has_old.into(), overlap, due: has_old.then_some((overlap, Turn::Forget)) }
     }
@@ -71,7 +70,6 @@ pub struct KeyWatch(Receiver<Result<Key, String>>);
 
 impl KeyWatch {
     /// Reports each key that differs from the previous one, and each error once.
-    #[must_use]
     pub fn start(path: PathBuf, mut key: Key) -> Self {
         let (sender, receiver) = channel();
         let mut is_told = false;

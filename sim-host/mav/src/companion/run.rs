@@ -2,14 +2,11 @@
 
 mod demo;
 mod machine;
-mod options;
 mod shown;
-mod sight;
 mod telemetry;
 mod vehicle;
 
-pub use options::{Options, RunError};
-pub use sight::{Seen, Sight};
+pub(crate) use vehicle::Vehicle;
 
 use super::config::{Config, VehicleSetup};
 use super::controller::Controller;
@@ -20,11 +17,13 @@ use super::roll::{Roll, Turn};
 use super::seal::Seal;
 use crate::framed::framed;
 use crate::geo::{Origin, ned};
+use crate::terminal::{number, say};
 use crate::tlog::micros_since_1970;
-use crate::{Endpoint, Lines, Received};
+use crate::{Endpoint, Lines, Received, Tlog};
+use anyhow::{Result, anyhow, bail};
+use clap::Args;
 use demo::Demo;
 use machine::{Host, Machine};
-use options::DEMO_S;
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
 use staya_mavlink::dialect::MavMessage;
@@ -35,13 +34,14 @@ use staya_sim::engine::PlaneGround;
 use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
 use staya_sim::record;
-use std::io::{self, Write as _};
+use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use vehicle::{Vehicle, is_within};
+use vehicle::is_within;
 
 /// Longest waits: with a LAN to poll, and without.
-const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(20)];
+const LAN_GLANCE: Duration = Duration::from_millis(5);
+const GLANCE: Duration = Duration::from_millis(20);
 /// Zero-velocity setpoints at the end, and their interval.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
@@ -49,6 +49,42 @@ const FEW_TIMESTAMPS: u64 = 1000;
 const LOOK: Duration = Duration::from_secs(1);
 /// Smallest age limit of positions in a dry run.
 const SELDOM: Duration = Duration::from_secs(3);
+
+/// Longest demo, seconds.
+const DEMO_S: f64 = 600.0;
+
+/// Options of a run.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Show the messages that would be sent, and send nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Simulate the configured vehicles in this process, without links; ends when all have
+    /// arrived.
+    #[arg(long, conflicts_with = "dry_run")]
+    pub demo: bool,
+    /// End with an error if no autopilot is heard in this many seconds; 0 waits forever.
+    #[arg(long, value_name = "N", default_value = "60", value_parser = number(0.0, 1e6))]
+    pub wait: f64,
+    /// Stop after this many seconds [default: run until Ctrl-C].
+    #[arg(long, value_name = "N", value_parser = number(0.0, 1e6))]
+    pub seconds: Option<f64>,
+    /// Do not show changes of state.
+    #[arg(skip)]
+    pub quiet: bool,
+    /// Runs the demo in real time.
+    #[arg(skip)]
+    pub is_real_time: bool,
+}
+
+/// The vehicles of this process at one moment, in the order of the configuration.
+#[derive(Clone, Copy)]
+pub struct Sight<'a> {
+    pub(crate) vehicles: &'a [Vehicle],
+    pub(crate) origin: &'a Origin,
+    /// Time since the start.
+    pub(crate) now: Duration,
+}
 
 struct Link {
     name: String,
@@ -58,11 +94,7 @@ struct Link {
 }
 
 struct Companions<'a> {
-    origin: Origin,
-    reach_m: f64,
-    tick: Duration,
-    glance: Duration,
-    is_tunnel: bool,
+    config: &'a Config,
     machine: Box<dyn Machine>,
     links: Vec<Link>,
     next_look: Duration,
@@ -76,28 +108,25 @@ struct Companions<'a> {
 }
 
 /// Runs the companions of a configuration until the time is over or `is_wanted` returns false.
-/// `look` observes them between two steps and must be fast.
+/// `look` observes them between two steps and must be fast. `tlog` gets all sent and accepted
+/// messages.
 ///
 /// A log that cannot be written does not end the run. At any end, controlled vehicles stop.
 ///
 /// # Errors
-/// [`RunError`] if something cannot be opened at the start, or standard output fails in a dry run.
-/// An absent autopilot is not an error.
+/// A key, link or network cannot be opened at the start, no autopilot is heard in the time that the
+/// options set, or standard output fails in a dry run.
 pub fn run(
     config: &Config,
-    options: &mut Options,
+    options: &Options,
+    tlog: Option<Tlog>,
     is_wanted: impl Fn() -> bool,
     mut look: impl FnMut(&Sight<'_>),
-) -> Result<CompanionReport, RunError> {
+) -> Result<CompanionReport> {
     let seal = config.key.as_deref().map(Seal::read).transpose()?;
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
-    let remarks =
-        [seal.as_ref().and_then(|seal| seal.remark.as_ref()), link_key.as_ref().and_then(|file| file.remark.as_ref())];
-    for remark in remarks.into_iter().flatten() {
-        // Standard error may be closed.
-        let _ = writeln!(io::stderr(), "staya: {remark}");
-    }
-    let tlog = options.tlog.take();
+    let remarks = [seal.as_ref().map(|seal| &seal.remark), link_key.as_ref().map(|file| &file.remark)];
+    remarks.into_iter().flatten().flatten().for_each(|remark| say(remark));
     let machine: Box<dyn Machine> = if options.demo {
         Box::new(Demo::new(config, tlog, options.is_real_time))
     } else {
@@ -119,8 +148,8 @@ pub fn run(
     companions.say_farewell();
     companions.close_log();
     match companions.output_error.take() {
-        Some(error) => Err(RunError::Output(error)),
-        None => Ok(companions.report(config, seconds, interrupted)),
+        Some(error) => bail!("cannot write to standard output: {error}"),
+        None => Ok(companions.report(seconds, interrupted)),
     }
 }
 
@@ -133,7 +162,7 @@ fn rules(setup: &VehicleSetup, options: &Options) -> Rules {
 
 impl<'a> Companions<'a> {
     fn new(
-        config: &Config,
+        config: &'a Config,
         options: &'a Options,
         seal: Option<&Seal>,
         link_key: Option<KeyFile>,
@@ -172,14 +201,8 @@ impl<'a> Companions<'a> {
             heard: 0,
             refused: 0,
         };
-        let [lan, else_] = GLANCES;
-        let is_lan = matches!(config.air, MediumSetup::Multicast { .. } | MediumSetup::Peers { .. });
         Companions {
-            origin: config.origin,
-            reach_m: config.reach_m,
-            tick: Duration::from_micros(config.scenario.tick_us.into()),
-            glance: if is_lan { lan } else { else_ },
-            is_tunnel: config.air == MediumSetup::Tunnel,
+            config,
             machine,
             links: config.lines.iter().enumerate().map(link).collect(),
             next_look: Duration::ZERO,
@@ -207,21 +230,26 @@ impl<'a> Companions<'a> {
                 break;
             }
             self.turn();
-            look(&self.sight());
+            look(&Sight { vehicles: &self.vehicles, origin: &self.config.origin, now: self.now() });
         }
         (self.now().as_secs_f64(), interrupted)
     }
 
     /// The error if all autopilots have been silent for too long since the start.
-    fn no_autopilot(&self) -> Option<RunError> {
-        let wait = self.options.wait.filter(|&wait| self.now() >= wait)?;
+    fn no_autopilot(&self) -> Option<anyhow::Error> {
+        let wait = Some(self.options.wait).filter(|&wait| wait > 0.0 && self.now().as_secs_f64() >= wait)?;
         let is_silent = self.vehicles.iter().all(|vehicle| vehicle.offboard.tally().heartbeats == 0);
         let links = self.links.iter().map(|link| match &link.trouble {
             Some(why) => format!("{} ({why})", link.name),
             None => link.name.clone(),
         });
-        is_silent
-            .then(|| RunError::NoAutopilot { seconds: wait.as_secs_f64(), links: links.collect::<Vec<_>>().join(", ") })
+        is_silent.then(|| {
+            anyhow!(
+                "no autopilot heard within {wait} s on {}; start the vehicles or correct `link`, wait longer with \
+                 --wait N (0: forever), or try --demo, which simulates the vehicles",
+                links.collect::<Vec<_>>().join(", ")
+            )
+        })
     }
 
     fn now(&self) -> Duration {
@@ -232,7 +260,11 @@ impl<'a> Companions<'a> {
         let now = self.now();
         let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.offboard.due(now));
         let due = self.vehicles.iter().map(due).min().unwrap_or_default();
-        let mut wait = due.saturating_sub(now).min(self.glance);
+        let glance = match self.config.air {
+            MediumSetup::Multicast { .. } | MediumSetup::Peers { .. } => LAN_GLANCE,
+            MediumSetup::Here | MediumSetup::Tunnel => GLANCE,
+        };
+        let mut wait = due.saturating_sub(now).min(glance);
         // Limited, so that a flood of frames does not block the loop.
         for _ in 0..1024 {
             let Some(received) = self.machine.receive(wait) else {
@@ -313,7 +345,9 @@ impl<'a> Companions<'a> {
         }
         self.log(frame.bytes());
         let Some(message) = frame.message() else { return };
-        self.machine.believe(received.line, received.peer);
+        if let Some(lines) = self.machine.lines() {
+            lines.believe(received.line, received.peer);
+        }
         let (sender, now) = (frame.sender(), self.now());
         if let MavMessage::TUNNEL(tunnel) = &message {
             // Packets of other companions. Own packets may return.
@@ -337,7 +371,7 @@ impl<'a> Companions<'a> {
     }
 
     fn step(&mut self, index: usize) {
-        let (now, tick) = (self.now(), self.tick);
+        let (now, tick) = (self.now(), Duration::from_micros(self.config.scenario.tick_us.into()));
         let vehicle = &mut self.vehicles[index];
         if now < vehicle.next_step {
             return;
@@ -346,8 +380,9 @@ impl<'a> Companions<'a> {
         let missed = now.saturating_sub(vehicle.next_step).as_micros() / tick.as_micros().max(1);
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
-        let body = vehicle.body(&self.origin, now);
-        let is_far = vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.reach_m));
+        let body = vehicle.body(&self.config.origin, now);
+        let is_far =
+            vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.config.reach_m));
         let is_news = is_far && !vehicle.is_far;
         vehicle.is_far = is_far;
         if is_news {
@@ -396,7 +431,7 @@ impl<'a> Companions<'a> {
         if !self.options.dry_run {
             self.machine.tell_others(said);
         }
-        if self.is_tunnel {
+        if self.config.air == MediumSetup::Tunnel {
             for message in tunnel(&self.wire, said) {
                 self.send(index, &message);
             }

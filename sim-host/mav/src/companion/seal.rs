@@ -1,56 +1,14 @@
 use super::roll::{KeyWatch, Roll, Turn};
+use anyhow::{Result, anyhow, bail};
 use staya_controller::auth::Key;
 use staya_controller::wire::{Format, Sealed};
 use staya_sim::file::{read_remedy, write_remedy};
-use staya_sim::key::{self, KeyError, KeyFile};
+use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
 use std::fs::File;
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// Why the key of packets is unusable.
-#[derive(Debug, thiserror::Error)]
-pub enum SealError {
-    /// The key file is unusable.
-    #[error(transparent)]
-    Key(#[from] KeyError),
-    /// The counter of starts cannot be read.
-    #[error("cannot read the counter of starts in {}: {source}; {}", .path.display(), read_remedy(.source))]
-    Read {
-        /// Path of the counter.
-        path: PathBuf,
-        /// Cause.
-        source: std::io::Error,
-    },
-    /// The counter is missing. From 0 it would make recorded packets valid again.
-    #[error(
-        "{} is missing, it counts how often this computer used the key; if the key is unused here, run `echo 0 > {}`; else write a \
-        number into it that is greater than all earlier ones, or give a new key",
-        .path.display(), .path.display()
-    )]
-    Missing {
-        /// Path of the counter.
-        path: PathBuf,
-    },
-    /// The counter is not a valid number, or its line is incomplete.
-    #[error(
-        "{} is not a counter of starts below 1048576; write a number into it that is greater than all earlier ones, or give a new key and remove it",
-        .path.display()
-    )]
-    NoNumber {
-        /// Path of the counter.
-        path: PathBuf,
-    },
-    /// The counter cannot be stored.
-    #[error("cannot store the counter of starts in {}: {source}; {}", .path.display(), write_remedy(.source))]
-    Write {
-        /// Path of the counter.
-        path: PathBuf,
-        /// Cause.
-        source: std::io::Error,
-    },
-}
 
 /// A key and the counter of this start, which is unique on this computer; see [`Sealed`].
 #[derive(Clone, Debug)]
@@ -85,29 +43,37 @@ impl Seal {
     /// the counter of starts in the file with `.starts` appended, and stores the next counter.
     ///
     /// # Errors
-    /// [`SealError`] with file and remedy.
-    pub fn read(path: &Path) -> Result<Self, SealError> {
+    /// A file is missing, invalid or not writable; the text names it and the remedy.
+    pub fn read(path: &Path) -> Result<Self> {
         let KeyFile { key, remark } = KeyFile::read(path)?;
         let (file, before) = (path.to_path_buf(), path.with_added_extension("old"));
         let old = if before.exists() { Some(KeyFile::read(&before)?.key).filter(|old| *old != key) } else { None };
         let path = path.with_added_extension("starts");
-        let starts = match std::fs::read_to_string(&path) {
-            Ok(text) => text.strip_suffix('\n').and_then(|line| line.trim().parse::<u32>().ok()),
-            Err(error) if error.kind() == ErrorKind::NotFound => return Err(SealError::Missing { path }),
-            Err(source) => return Err(SealError::Read { path, source }),
+        let name = path.display();
+        let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
+            // From 0 the counter would make recorded packets valid again.
+            ErrorKind::NotFound => anyhow!(
+                "{name} is missing, it counts how often this computer used the key; if the key is unused here, run \
+                 `echo 0 > {name}`; else write a number into it that is greater than all earlier ones, or give a new \
+                 key"
+            ),
+            _ => anyhow!("cannot read the counter of starts in {name}: {error}; {}", read_remedy(&error)),
+        })?;
+        // A line without its end may have lost digits.
+        let starts = text.strip_suffix('\n').and_then(|line| line.trim().parse::<u32>().ok());
+        let Some(starts) = starts.filter(|starts| Sealed::<1>::at_start(&key, *starts).is_some()) else {
+            bail!(
+                "{name} is not a counter of starts below 1048576; write a number into it that is greater than all \
+                 earlier ones, or give a new key and remove it"
+            );
         };
-        let starts = starts.filter(|starts| Sealed::<1>::at_start(&key, *starts).is_some());
-        let Some(starts) = starts else {
-            return Err(SealError::NoNumber { path });
-        };
-        if let Err(source) = replace(&path, &format!("{}\n", starts + 1)) {
-            return Err(SealError::Write { path, source });
-        }
+        replace(&path, &format!("{}\n", starts + 1)).map_err(|error| {
+            anyhow!("cannot store the counter of starts in {name}: {error}; {}", write_remedy(&error))
+        })?;
         Ok(Self { path: file, key, old, starts, remark })
     }
 
     /// The wire format of an agent, encrypted with this key; the previous key is accepted too.
-    #[must_use]
     pub fn wire(&self, format: Format) -> HostWire {
         let wire = HostWire::keyed(format, self.old.as_ref().unwrap_or(&self.key), self.starts, 0, key::timestamp());
         let mut wire = wire.expect("the counter of starts was validated when read");
@@ -121,13 +87,11 @@ impl Seal {
     }
 
     /// Whether there is a previous key.
-    #[must_use]
     pub const fn has_old(&self) -> bool {
         self.old.is_some()
     }
 
     /// Starts to watch the key file.
-    #[must_use]
     pub fn watch(&self) -> KeyWatch {
         KeyWatch::start(self.path.clone(), self.key.clone())
     }
@@ -181,7 +145,8 @@ mod tests {
         let kept = folder.path().join("swarm.key.starts");
         std::fs::write(&kept, "7\n").unwrap();
         std::fs::create_dir(folder.path().join("swarm.key.starts.new")).unwrap();
-        assert!(matches!(Seal::read(&path), Err(SealError::Write { .. })));
+        let error = Seal::read(&path).expect_err("the counter cannot be stored").to_string();
+        assert!(error.starts_with("cannot store the counter of starts in "), "{error}");
         assert_eq!(std::fs::read_to_string(&kept).unwrap(), "7\n");
     }
 
@@ -207,7 +172,8 @@ mod tests {
         }
         std::fs::remove_file(&kept).unwrap();
         std::fs::create_dir(&kept).unwrap();
-        assert!(matches!(Seal::read(&path), Err(SealError::Read { .. })));
+        let error = Seal::read(&path).expect_err("a folder").to_string();
+        assert!(error.starts_with("cannot read the counter of starts in "), "{error}");
         let error = Seal::read(&folder.path().join("none")).expect_err("no key");
         assert!(error.to_string().contains("none"), "{error}");
     }

@@ -18,7 +18,6 @@ impl Graph {
     /// Reorders the places for robots at `positions` (east, north, any unit and origin) for a
     /// minimal sum of squared distances. A robot without a neighbour of a smaller number to follow
     /// gets an edge to the nearest one with capacity. O(n^3).
-    #[must_use]
     pub fn nearest(&self, positions: &[[f64; 2]]) -> Self {
         let count = self.robots().min(positions.len());
         let middle = [0, 1].map(|axis| positions.iter().map(|at| at[axis]).sum::<f64>() / count.max(1) as f64);

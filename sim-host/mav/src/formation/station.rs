@@ -2,7 +2,8 @@
 
 use super::{Graph, GraphError, Order, STATION, orders};
 use crate::framed::{framed, signed};
-use crate::{Endpoint, Lines, OpenError};
+use crate::{Endpoint, Lines};
+use anyhow::{Result, bail};
 use serde::Serialize;
 use staya_controller::grid::Dir;
 use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_WARNING, MAV_TYPE_GCS};
@@ -37,45 +38,10 @@ pub struct Given {
 
 impl Given {
     /// Robots that have not confirmed their places, or the goal if they got one.
-    #[must_use]
     pub fn silent(&self, has_goal: bool) -> BTreeSet<u8> {
         let confirms = |robot: &u8| self.placed.contains(robot) && (!has_goal || self.heading_for_goal.contains(robot));
         self.robots.iter().copied().filter(|robot| !confirms(robot)).collect()
     }
-}
-
-/// Why no orders were sent.
-#[derive(Debug, thiserror::Error)]
-pub enum StationError {
-    /// The link cannot be opened.
-    #[error(transparent)]
-    Line(#[from] OpenError),
-    /// The formation is invalid.
-    #[error(transparent)]
-    Graph(#[from] GraphError),
-    /// No robot was found.
-    #[error(
-        "{0}: no robot found; start `staya bridge SCENARIO --mavlink udpin:HOST:PORT` there, or give more time (--wait) or the key (--key)"
-    )]
-    NoVehicle(String),
-    /// Some of the selected robots were not found.
-    #[error(
-        "{line}: robots {missing} not found, only {heard}; select other robots (--robots) or give more time (--wait)"
-    )]
-    Missing {
-        /// Robots not found.
-        missing: String,
-        /// The link.
-        line: String,
-        /// Robots found.
-        heard: String,
-    },
-    /// Some robots sent no position, which the nearest places need.
-    #[error("robots {0} sent no position (GLOBAL_POSITION_INT); give more time (--wait), or `--places number`")]
-    Nowhere(String),
-    /// The formation in the file has another number of robots.
-    #[error("the formation is for {0} robots, but {1} are selected; select others (--robots)")]
-    Count(usize, usize),
 }
 
 /// Assignment of places to robots.
@@ -163,7 +129,7 @@ impl Station<'_> {
     }
 
     /// Positions are needed for nearest places only.
-    fn gather(&mut self, endpoint: &Endpoint, wanted: &Members, until: Instant) -> Result<BTreeSet<u8>, StationError> {
+    fn gather(&mut self, endpoint: &Endpoint, wanted: &Members, until: Instant) -> Result<BTreeSet<u8>> {
         let mut first = None;
         loop {
             let robots = wanted.robots.as_ref().unwrap_or(&self.heard).clone();
@@ -179,14 +145,20 @@ impl Station<'_> {
                 }
                 continue;
             }
+            let (missing, heard, nowhere) = (numbers(&missing), numbers(&self.heard), numbers(&nowhere));
             return match () {
-                () if self.heard.is_empty() => Err(StationError::NoVehicle(endpoint.to_string())),
-                () if !missing.is_empty() => Err(StationError::Missing {
-                    missing: numbers(&missing),
-                    line: endpoint.to_string(),
-                    heard: numbers(&self.heard),
-                }),
-                () if !nowhere.is_empty() => Err(StationError::Nowhere(numbers(&nowhere))),
+                () if heard.is_empty() => bail!(
+                    "{endpoint}: no robot found; start `staya bridge SCENARIO --mavlink udpin:HOST:PORT` there, or give \
+                     more time (--wait) or the key (--key)"
+                ),
+                () if !missing.is_empty() => bail!(
+                    "{endpoint}: robots {missing} not found, only {heard}; select other robots (--robots) or give more \
+                     time (--wait)"
+                ),
+                () if !nowhere.is_empty() => bail!(
+                    "robots {nowhere} sent no position (GLOBAL_POSITION_INT); give more time (--wait), or \
+                     `--places number`"
+                ),
                 () => Ok(robots),
             };
         }
@@ -209,7 +181,6 @@ impl Station<'_> {
 }
 
 /// Formats numbers as ranges: "1 to 4, 7".
-#[must_use]
 pub fn numbers(robots: &BTreeSet<u8>) -> String {
     let mut runs: Vec<[u8; 2]> = Vec::new();
     for &robot in robots {
@@ -229,7 +200,8 @@ pub fn numbers(robots: &BTreeSet<u8>) -> String {
 /// Sends the orders to the swarm at `endpoint` until all robots confirm them or `wait` is over.
 ///
 /// # Errors
-/// [`StationError`]. Robots without a confirmation are not an error: see [`Given`].
+/// The link cannot be opened, the formation is invalid, or selected robots or their positions are
+/// not found. Robots without a confirmation are not an error: see [`Given`].
 pub fn give(
     endpoint: &Endpoint,
     signing: Option<&mut Signing>,
@@ -237,7 +209,7 @@ pub fn give(
     members: &Members,
     order: &Order,
     wait: Duration,
-) -> Result<Given, StationError> {
+) -> Result<Given> {
     let lines = Lines::open(std::slice::from_ref(endpoint))?;
     let until = Instant::now() + wait;
     let (heard, at, given) = (BTreeSet::new(), BTreeMap::new(), Given::default());
@@ -246,7 +218,11 @@ pub fn give(
     let robots = station.gather(endpoint, members, until)?;
     let mut graph = graph(robots.len())?.turned(members.heading)?;
     if graph.robots() != robots.len() {
-        return Err(StationError::Count(graph.robots(), robots.len()));
+        bail!(
+            "the formation is for {} robots, but {} are selected; select others (--robots)",
+            graph.robots(),
+            robots.len()
+        );
     }
     if members.places == Places::Nearest {
         graph = graph.nearest(&station.positions(&robots));

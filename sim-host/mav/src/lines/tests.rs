@@ -36,7 +36,7 @@ fn pair(listening: &str, calling: &str) -> (Lines, Lines) {
 fn arrives(from: &Lines, to: &Lines, x: i16) -> Received {
     let began = Instant::now();
     while began.elapsed() < PATIENCE {
-        from.send(0, &framed(x));
+        from.send(0, None, &framed(x));
         if let Some(received) = to.receive(Duration::from_millis(100)) {
             to.believe(0, received.peer);
             return received;
@@ -48,10 +48,10 @@ fn arrives(from: &Lines, to: &Lines, x: i16) -> Received {
 fn both_ways(listening: &Lines, calling: &Lines) {
     let received = arrives(calling, listening, 5);
     assert_eq!(goal(&received), 5);
-    listening.send_to(0, received.peer, &framed(6));
+    listening.send(0, Some(received.peer), &framed(6));
     let answer = calling.receive(PATIENCE).expect("an answer");
     assert_eq!(goal(&answer), 6);
-    listening.send(0, &framed(7));
+    listening.send(0, None, &framed(7));
     let answer = calling.receive(PATIENCE).expect("an answer");
     assert_eq!(goal(&answer), 7);
     let bytes = 2 * framed(6).len() as u64;
@@ -113,7 +113,7 @@ fn every_known_peer_receives_frames() {
     for (x, caller) in (0..).zip(&callers) {
         assert_eq!(goal(&arrives(caller, &listening, x)), x);
     }
-    listening.send(0, &framed(9));
+    listening.send(0, None, &framed(9));
     for caller in &callers {
         assert_eq!(goal(&caller.receive(PATIENCE).expect("told")), 9);
     }
@@ -136,15 +136,15 @@ fn unknown_senders_receive_nothing() {
         stranger.send_to(&framed(1), address).expect("sent");
     }
     let friend = open(&format!("udpout:{address}"));
-    friend.send(0, &framed(77));
+    friend.send(0, None, &framed(77));
     let mut heard = 0;
     while let Some(received) = listening.receive(PATIENCE) {
-        listening.send_to(0, received.peer, &framed(2));
-        listening.send(0, &framed(3));
+        listening.send(0, Some(received.peer), &framed(2));
+        listening.send(0, None, &framed(3));
         heard += 1;
         if goal(&received) == 77 {
             listening.believe(0, received.peer);
-            listening.send(0, &framed(4));
+            listening.send(0, None, &framed(4));
             break;
         }
     }
@@ -167,7 +167,7 @@ fn silent_connections_are_closed_for_new_ones() {
         matches!(socket.read(&mut [0; 1]), Ok(0))
     };
     assert!(idle.iter().filter(|socket| ended(socket)).count() > CONNECTIONS);
-    listening.send(0, &framed(3));
+    listening.send(0, None, &framed(3));
     assert_eq!(goal(&friend.receive(PATIENCE).expect("told")), 3);
     assert_eq!(goal(&late.receive(PATIENCE).expect("told")), 3);
 }
@@ -181,8 +181,8 @@ fn an_absent_peer_does_not_block() {
     let lines = lines.map(|text| text.parse().expect("a line"));
     let lines = Lines::open(&lines).expect("lines");
     for _ in 0..50 {
-        lines.send(0, &framed(1));
-        lines.send(1, &framed(1));
+        lines.send(0, None, &framed(1));
+        lines.send(1, None, &framed(1));
     }
     assert_eq!(lines.receive(Duration::ZERO), None);
     assert_eq!(lines.counts(1).frames_out, 0);
@@ -197,7 +197,7 @@ fn a_peer_that_does_not_read_loses_frames_without_blocking() {
     assert!(listening.receive(PATIENCE).is_some());
     let began = Instant::now();
     for _ in 0..400_000 {
-        listening.send(0, &framed(1));
+        listening.send(0, None, &framed(1));
     }
     assert!(listening.counts(0).lost_out > 0, "some frames were dropped");
     assert!(began.elapsed() < PATIENCE);

@@ -35,7 +35,7 @@ fn tick(tick: u32, error: f64) -> TickRow {
         time_s: f64::from(tick) * 0.5,
         formation_error_per_agent: error,
         graph_distance: error * 2.0,
-        packets: PacketCounts { sent: 2, delivered: 10, lost: 1, corrupted: 0, rejected: 0, ..PacketCounts::default() },
+        packets: PacketCounts { sent: 2, delivered: 10, lost: 1, damaged: 0, rejected: 0, ..PacketCounts::default() },
     }
 }
 

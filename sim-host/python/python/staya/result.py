@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Table = Literal["trace", "series"]
 Columns = dict[str, NDArray[Any]]
 
-_MODES = np.array(["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"])
+_MODES = np.array(["idle", "forming", "cruise", "hold", "arrived", "down", "passive"])
 _WAITS = np.array(["team", "stopped", "route", "radio", "turn", "robots", "goal_taken"])
 
 

@@ -357,7 +357,7 @@ impl Engine {
             sent: carried.sent,
             delivered: carried.delivered,
             lost: carried.lost,
-            corrupted: carried.corrupted,
+            damaged: carried.damaged,
             ..refused
         };
         self.packets += packets;

@@ -339,7 +339,7 @@ proptest! {
         prop_assert_eq!(last, 9);
         prop_assert_eq!(sums, outcome.packets);
         prop_assert_eq!(outcome.collisions, 0);
-        prop_assert!(outcome.packets.delivered >= outcome.packets.corrupted);
+        prop_assert!(outcome.packets.delivered >= outcome.packets.damaged);
         prop_assert_eq!(outcome.arrived, outcome.arrival_times.iter().flatten().count());
         prop_assert_eq!(outcome.formation.is_some(), formation);
     }

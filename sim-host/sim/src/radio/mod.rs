@@ -39,7 +39,7 @@ pub struct Counts {
     /// Failed receptions: loss, bursts, blackouts.
     pub lost: u64,
     /// Receptions with at least one flipped bit; also counted as delivered.
-    pub corrupted: u64,
+    pub damaged: u64,
 }
 
 impl Add for Counts {
@@ -50,7 +50,7 @@ impl Add for Counts {
             throttled: self.throttled + other.throttled,
             delivered: self.delivered + other.delivered,
             lost: self.lost + other.lost,
-            corrupted: self.corrupted + other.corrupted,
+            damaged: self.damaged + other.damaged,
         }
     }
 }
@@ -230,7 +230,7 @@ impl Receiver {
                 }
                 continue;
             };
-            let damaged_before = counts.corrupted;
+            let damaged_before = counts.damaged;
             for copy in 0..copies {
                 let after_us = fates.after_us(&mut draws);
                 let bytes = medium.bytes(packet);
@@ -246,10 +246,10 @@ impl Receiver {
                     }
                 };
                 counts.delivered += 1;
-                counts.corrupted += u64::from(is_damaged);
+                counts.damaged += u64::from(is_damaged);
             }
             if let Some(log) = &mut self.log {
-                let is_damaged = counts.corrupted > damaged_before;
+                let is_damaged = counts.damaged > damaged_before;
                 log.push((packet.sender, if is_damaged { Reception::Damaged } else { Reception::Delivered }));
             }
         }

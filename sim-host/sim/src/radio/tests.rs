@@ -152,7 +152,7 @@ fn bits_flip_at_their_rate_but_never_in_the_delimiter() {
         .sum();
     let rate = share(u64::from(flipped), 480_000);
     assert!((0.0095..0.0105).contains(&rate), "{rate}");
-    let hit = share(radio.total().corrupted, 20_000);
+    let hit = share(radio.total().damaged, 20_000);
     assert!((hit - (1.0 - libm::pow(0.99, 24.0))).abs() < 0.01, "{hit}");
     let all = RadioParams { bit_error_rate: 1.0, ..RadioParams::default() };
     assert_eq!(one_way(all, 1).1[0], [!1, !1, !1, 0]);

@@ -2,7 +2,6 @@
 
 use super::{Error, RobotRow, TickRow, write_atomically};
 use staya_controller::agent::Wait;
-use staya_controller::robot::Mode;
 use std::io::Write;
 use std::path::Path;
 
@@ -20,16 +19,16 @@ pub const TRACE: [Column; 21] = [
     ("vx_mps", "number", "m/s", "world velocity, east"),
     ("vy_mps", "number", "m/s", "world velocity, north"),
     ("vz_mps", "number", "m/s", "world velocity, up"),
-    ("mode", "string", "", "idle, forming, cruise, hold, arrived, fault or passive"),
+    ("mode", "string", "", "idle, forming, cruise, hold, arrived, down or passive"),
     ("leader", "integer", "1", "its leader's number, 0 = none"),
-    ("target_x", "integer", "cells", "column of the cell it heads for; empty: there are no cells"),
-    ("target_y", "integer", "cells", "row of the cell it heads for; empty: there are no cells"),
+    ("goal_x_cell", "integer", "cells", "column of the cell it heads for; empty: there are no cells"),
+    ("goal_y_cell", "integer", "cells", "row of the cell it heads for; empty: there are no cells"),
     ("formation_error_cells", "number", "cells", "distance from its place in the formation; empty: it has none"),
     (
         "wait",
         "string",
         "",
-        "formation, request, way, radio, turn, others or place: reason for waiting; empty: it does not wait",
+        "team, stopped, route, radio, turn, robots or goal_taken: reason for waiting; empty: it does not wait",
     ),
     (
         "goal_x_m",
@@ -50,7 +49,7 @@ pub const SERIES: [Column; 9] = [
     ("sent", "integer", "packets", "handed to the radio in this tick"),
     ("delivered", "integer", "packets", "handed to a receiver in this tick"),
     ("lost", "integer", "packets", "lost on the way in this tick"),
-    ("corrupted", "integer", "packets", "delivered with flipped bits in this tick"),
+    ("damaged", "integer", "packets", "delivered with flipped bits in this tick"),
     ("rejected", "integer", "packets", "refused by a receiver in this tick"),
 ];
 
@@ -75,22 +74,13 @@ pub fn write_schema(dir: &Path, name: &str, columns: &[Column]) -> Result<(), Er
 }
 
 pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
-    let mode = match robot.mode {
-        Mode::Idle => "idle",
-        Mode::Forming => "forming",
-        Mode::Cruise => "cruise",
-        Mode::Hold => "hold",
-        Mode::Arrived => "arrived",
-        Mode::Fault => "fault",
-        Mode::Passive => "passive",
-    };
     let ([x, y, z], [vx, vy, vz]) = (robot.motion.position_m, robot.motion.velocity_mps);
     let [goal_x, goal_y, goal_z] = robot.target_m.unwrap_or([f64::NAN; 3]);
     let cell = |x: i16| Number(if robot.has_cells { x.into() } else { f64::NAN });
     append(
         out,
         format_args!(
-            "{},{},{},{},{},{},{},{},{},{},{},{mode},{},{},{},{},{},{},{},{},{}\n",
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
             tick.tick,
             Number(tick.time_s),
             robot.id,
@@ -102,6 +92,7 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
             Number(vx),
             Number(vy),
             Number(vz),
+            robot.mode.name(),
             robot.leader,
             cell(robot.target.x),
             cell(robot.target.y),
@@ -128,7 +119,7 @@ pub fn series_line(out: &mut Vec<u8>, tick: &TickRow) {
             packets.sent,
             packets.delivered,
             packets.lost,
-            packets.corrupted,
+            packets.damaged,
             packets.rejected,
         ),
     );

@@ -87,7 +87,7 @@ pub struct PacketCounts {
     /// Packets lost in transmission.
     pub lost: u64,
     /// Packets delivered with flipped bits.
-    pub corrupted: u64,
+    pub damaged: u64,
     /// Frames refused as damaged, foreign or replayed; with a key, also the three counts below.
     pub rejected: u64,
     /// Frames refused because the tag or signature was missing.
@@ -168,7 +168,7 @@ impl AddAssign for PacketCounts {
         self.sent += other.sent;
         self.delivered += other.delivered;
         self.lost += other.lost;
-        self.corrupted += other.corrupted;
+        self.damaged += other.damaged;
         self.rejected += other.rejected;
     }
 }

@@ -7,7 +7,7 @@ fn tick(tick: u32) -> TickRow {
         time_s: f64::from(tick) * 0.1,
         formation_error_per_agent: 1.5,
         graph_distance: f64::NAN,
-        packets: PacketCounts { sent: 6, delivered: 20, lost: 9, corrupted: 2, rejected: 1, ..PacketCounts::default() },
+        packets: PacketCounts { sent: 6, delivered: 20, lost: 9, damaged: 2, rejected: 1, ..PacketCounts::default() },
     }
 }
 

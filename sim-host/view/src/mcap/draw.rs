@@ -76,28 +76,34 @@ fn colour_of(scene: &Scene, index: usize, mode: u8) -> [f64; 4] {
     }
 }
 
+fn ball(out: &mut Bytes, (at_m, turned): ([f64; 3], f64), radius_m: f64, colour: [f64; 4]) {
+    out.message(9, |out| {
+        out.message(1, |out| pose(out, at_m, turned));
+        out.message(2, |out| vector(out, [2.0 * radius_m; 3]));
+        out.message(3, |out| rgba(out, colour));
+    });
+}
+
+/// Stands on the ground.
+fn cylinder(out: &mut Bytes, ([x, y], turned): ([f64; 2], f64), radius_m: f64, high_m: f64, colour: [f64; 4]) {
+    out.message(10, |out| {
+        out.message(1, |out| pose(out, [x, y, high_m / 2.0], turned));
+        out.message(2, |out| vector(out, [2.0 * radius_m, 2.0 * radius_m, high_m]));
+        out.double(3, 1.0);
+        out.double(4, 1.0);
+        out.message(5, |out| rgba(out, colour));
+    });
+}
+
 pub fn bodies(scene: &Scene, frame: &FrameData, at_ns: u64) -> Vec<u8> {
     let robots = scene.robots.id.len();
     let body = |out: &mut Bytes, index: usize, radius_m: f64, colour: [f64; 4]| {
-        let at_m = frame.position_m[index].map(f64::from);
+        let [x, y, z] = frame.position_m[index].map(f64::from);
         let turned = heading(frame.velocity_mps[index]);
-        let wide = 2.0 * radius_m;
-        if scene.kind == Kind::Space {
-            out.message(9, |out| {
-                out.message(1, |out| pose(out, at_m, turned));
-                out.message(2, |out| vector(out, [wide; 3]));
-                out.message(3, |out| rgba(out, colour));
-            });
-            return;
+        match scene.kind {
+            Kind::Space => ball(out, ([x, y, z], turned), radius_m, colour),
+            _ => cylinder(out, ([x, y], turned), radius_m, radius_m * HEIGHT, colour),
         }
-        let high = radius_m * HEIGHT;
-        out.message(10, |out| {
-            out.message(1, |out| pose(out, [at_m[0], at_m[1], high / 2.0], turned));
-            out.message(2, |out| vector(out, [wide, wide, high]));
-            out.double(3, 1.0);
-            out.double(4, 1.0);
-            out.message(5, |out| rgba(out, colour));
-        });
     };
     let mut update = Bytes::default();
     let bodies = frame.bodies().min(frame.velocity_mps.len());
@@ -152,19 +158,10 @@ pub fn obstacles(scene: &Scene, at_ns: u64) -> Vec<u8> {
                     let ends = points_m.first().into_iter().chain(points_m).copied();
                     wall(out, &ends.collect::<Vec<_>>(), largest_m);
                 }
-                Solid::Shape(Shape::Circle { center_m: [x, y], radius_m }) => out.message(10, |out| {
-                    let high = largest_m.max(radius_m / 4.0);
-                    out.message(1, |out| pose(out, [*x, *y, high / 2.0], 0.0));
-                    out.message(2, |out| vector(out, [2.0 * radius_m, 2.0 * radius_m, high]));
-                    out.double(3, 1.0);
-                    out.double(4, 1.0);
-                    out.message(5, |out| rgba(out, OBSTACLE));
-                }),
-                Solid::Shape(Shape::Ball { center_m, radius_m }) => out.message(9, |out| {
-                    out.message(1, |out| pose(out, *center_m, 0.0));
-                    out.message(2, |out| vector(out, [2.0 * radius_m; 3]));
-                    out.message(3, |out| rgba(out, OBSTACLE));
-                }),
+                Solid::Shape(Shape::Circle { center_m, radius_m }) => {
+                    cylinder(out, (*center_m, 0.0), *radius_m, largest_m.max(radius_m / 4.0), OBSTACLE);
+                }
+                Solid::Shape(Shape::Ball { center_m, radius_m }) => ball(out, (*center_m, 0.0), *radius_m, OBSTACLE),
                 // A half-space has no boundary that could be drawn.
                 Solid::HalfSpace(_) => {}
             }

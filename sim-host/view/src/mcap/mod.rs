@@ -20,13 +20,14 @@ mod schema;
 
 use crate::frame::FrameData;
 use crate::recording::RecordingError;
-use crate::scene::{MODES, Scene};
+use crate::scene::Scene;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use draw::{looking, pose, stamp, vector};
 use mcap::records::MessageHeader;
 use mcap::{McapError, WriteOptions};
 use proto::Bytes;
+use staya_controller::robot::Mode;
 use std::collections::BTreeMap;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -176,9 +177,9 @@ impl<W: Write + Seek> McapWriter<W> {
             return self.log(INFO, "run", &text, at_ns);
         }
         for (index, (mode, before)) in now.iter().zip(&before).enumerate() {
-            let name = |mode: u8| MODES.get(usize::from(mode)).copied().unwrap_or("?");
+            let name = |mode: u8| Mode::from_number(mode).map_or("?", Mode::name);
             if mode != before {
-                let level = if name(*mode) == "fault" { WARNING } else { INFO };
+                let level = if *mode == Mode::Fault as u8 { WARNING } else { INFO };
                 let id = self.scene.robots.id[index];
                 let text = format!("{} after {}", name(*mode), name(*before));
                 self.log(level, &format!("robot {id}"), &text, at_ns)?;

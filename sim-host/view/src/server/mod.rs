@@ -12,6 +12,7 @@ mod metered;
 mod request;
 
 use crate::page::File;
+use anyhow::{Result, anyhow};
 use connection::{Connection, Outcome};
 use mio::net::TcpListener;
 use mio::{Events, Interest, Poll, Token, Waker};
@@ -76,25 +77,6 @@ enum ToPages {
     End,
 }
 
-/// Why pages cannot be served.
-#[derive(Debug, thiserror::Error)]
-pub enum ServeError {
-    /// The address is in use or not available.
-    #[error("cannot listen on {address}: {source}; give another address with --listen, or port 0 for a free port")]
-    Listen {
-        /// The address.
-        address: SocketAddr,
-        /// Error of the system.
-        source: io::Error,
-    },
-    /// The system refused events, random numbers or a thread.
-    #[error("cannot serve pages: {0}; start the command again")]
-    System(io::Error),
-    /// The server thread has ended.
-    #[error("the page server has failed; start the command again and report the messages above")]
-    Ended,
-}
-
 /// Bytes of the messages that the run has not read, for each page. A page is in it until the run
 /// has read that it disconnected, which bounds the number of events.
 type Unheard = BTreeMap<Client, usize>;
@@ -117,15 +99,22 @@ impl Server {
     /// Listens on `address` (port 0 selects a free port) and serves `files`.
     ///
     /// # Errors
-    /// [`ServeError`].
-    pub fn start(address: SocketAddr, files: Vec<File>) -> Result<Self, ServeError> {
-        let mut listener = TcpListener::bind(address).map_err(|source| ServeError::Listen { address, source })?;
-        let address = listener.local_addr().map_err(ServeError::System)?;
-        let token = random_hex().map_err(ServeError::System)?;
-        let poll = Poll::new().map_err(ServeError::System)?;
+    /// The address is in use or not available, or the system refused events, random numbers or a
+    /// thread.
+    pub fn start(address: SocketAddr, files: Vec<File>) -> Result<Self> {
+        let listener = TcpListener::bind(address).map_err(|error| {
+            anyhow!(
+                "cannot listen on {address}: {error}; give another address with --listen, or port 0 for a free port"
+            )
+        })?;
+        Self::serve(listener, files).map_err(|error| anyhow!("cannot serve pages: {error}; start the command again"))
+    }
+
+    fn serve(mut listener: TcpListener, files: Vec<File>) -> io::Result<Self> {
+        let (address, token, poll) = (listener.local_addr()?, random_hex()?, Poll::new()?);
         let registry = poll.registry();
-        registry.register(&mut listener, LISTENER, Interest::READABLE).map_err(ServeError::System)?;
-        let waker = Arc::new(Waker::new(registry, WAKER).map_err(ServeError::System)?);
+        registry.register(&mut listener, LISTENER, Interest::READABLE)?;
+        let waker = Arc::new(Waker::new(registry, WAKER)?);
         let (heard_in, heard) = channel();
         let unheard = Arc::default();
         let (outgoing, out) = channel();
@@ -147,8 +136,7 @@ impl Server {
             counts: Arc::clone(&counts),
         };
         let thread = std::thread::Builder::new().name("pages".to_owned()).spawn(move || pages.run());
-        let thread = Some(thread.map_err(ServeError::System)?);
-        Ok(Self { address, token, heard, unheard, outgoing, latest, counts, waker, thread })
+        Ok(Self { address, token, heard, unheard, outgoing, latest, counts, waker, thread: Some(thread?) })
     }
 
     /// The address that the server listens on.

@@ -2,6 +2,7 @@
 
 use super::Session;
 use super::branch::Branch;
+use super::text::Configuration;
 use crate::frame::FrameData;
 use crate::mind;
 use crate::scene::{self, Mode, Scene};
@@ -12,9 +13,17 @@ use serde_json::{Value, json};
 use staya_sim::scenario::{Intervention, Scenario};
 use staya_sim::world::plane::Shape;
 
+/// The robot and the links of which a page gets details.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Looks {
+    pub robot: Option<usize>,
+    pub links: bool,
+}
+
+/// A request of a page. Pages that only watch make some of them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
-pub(super) enum Wanted {
+pub(crate) enum Wanted {
     Pause,
     Play,
     Step,
@@ -28,12 +37,12 @@ pub(super) enum Wanted {
     Seen { frames: u64 },
     Save,
     Restart { seed: Option<u64> },
-    New { robots: u32, goals: u32, obstacles: u32, seed: u64 },
+    New(Configuration),
     Order { order: Order },
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct NotUnderstood {
+pub(crate) struct NotUnderstood {
     pub text: String,
     /// If not, the sender is not a page.
     pub is_json: bool,
@@ -58,7 +67,7 @@ impl Wanted {
 
 /// Robots by index, positions relative to the scene's origin.
 #[derive(Clone, Debug, Deserialize)]
-pub(super) struct Order(serde_json::Map<String, Value>);
+pub(crate) struct Order(serde_json::Map<String, Value>);
 
 impl Order {
     /// Converts to robot numbers and world coordinates.

@@ -10,48 +10,28 @@ mod memory;
 mod message;
 mod text;
 
-pub(crate) use message::trail;
-pub use text::Configuration;
+pub(crate) use message::{Looks, NotUnderstood, Wanted, trail};
 
 use crate::frame::{FrameData, Framer};
 use crate::mind::Events;
 use crate::pace::{Pace, SLICE};
 use crate::server::{Client, FromPage, Server, WORDS};
+use anyhow::{Result, anyhow};
 use branch::{Branch, Branches, changes_scene};
-use message::Wanted;
 use staya_sim::engine::{Engine, operated};
-use staya_sim::file::{TEXT, read_text};
-use staya_sim::scenario::{Overrides, Scenario, ScenarioError};
-use staya_sim::world::Misplaced;
+use staya_sim::scenario::{Overrides, Scenario};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-const FRAME: Duration = Duration::from_millis(16);
-const STATE: Duration = Duration::from_millis(500);
+pub(crate) const FRAME: Duration = Duration::from_millis(16);
+pub(crate) const STATE: Duration = Duration::from_millis(500);
 const SCENE: Duration = Duration::from_millis(250);
 const FIGURES: Duration = Duration::from_millis(100);
 /// Ticks of one request for past positions.
-const TRAIL: usize = 240;
+pub(crate) const TRAIL: usize = 240;
 /// Limit of deferred requests; the page that sends another one is disconnected.
 const DEFERRED: usize = 256;
-
-/// Why a session cannot start.
-#[derive(Debug, thiserror::Error)]
-pub enum SessionError {
-    /// The scenario is unreadable or invalid.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// The robots do not fit into the scenario.
-    #[error("the robots cannot be placed: {0}; change their starts")]
-    Misplaced(#[from] Misplaced),
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Looks {
-    robot: Option<usize>,
-    links: bool,
-}
 
 /// A run and its pages.
 pub struct Session {
@@ -87,22 +67,14 @@ pub struct Session {
 }
 
 impl Session {
-    /// Loads a scenario file before its first tick.
-    ///
-    /// # Errors
-    /// [`SessionError`].
-    pub fn open(path: &Path, overrides: &Overrides, is_paused: bool) -> Result<Self, SessionError> {
-        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
-        Self::new(text, path, overrides, is_paused)
-    }
-
     /// Loads a scenario from `text`; errors and relative paths refer to `path`.
     ///
     /// # Errors
-    /// [`SessionError`].
-    pub fn new(text: String, path: &Path, overrides: &Overrides, is_paused: bool) -> Result<Self, SessionError> {
+    /// The scenario is invalid, or its robots cannot be placed.
+    pub fn new(text: String, path: &Path, overrides: &Overrides, is_paused: bool) -> Result<Self> {
         let scenario = Scenario::parse(&text, path, overrides)?;
-        let engine = operated(&scenario)?;
+        let engine = operated(&scenario)
+            .map_err(|error| anyhow!("the robots cannot be placed: {error}; change their starts"))?;
         let now = Instant::now();
         let mut session = Self {
             text,
@@ -133,12 +105,6 @@ impl Session {
         };
         session.take_frame();
         Ok(session)
-    }
-
-    /// The scenario.
-    #[must_use]
-    pub const fn scenario(&self) -> &Scenario {
-        &self.scenario
     }
 
     /// Sets the initial speed, simulated seconds per second; `None` for no limit.
@@ -427,13 +393,11 @@ impl Session {
                     error(&wrong.to_string());
                 }
             }
-            Wanted::New { robots, goals, obstacles, seed } => {
+            Wanted::New(configuration) => {
                 let (path, none) = (Path::new("new-run.toml"), Overrides::default());
-                let text = Configuration { robots, goals, obstacles, seed }.scenario();
-                let replaced =
-                    text.and_then(|text| self.replace(text, path, &none, server).map_err(|wrong| wrong.to_string()));
-                if let Err(wrong) = replaced {
-                    error(&wrong);
+                let text = configuration.scenario();
+                if let Err(wrong) = text.and_then(|text| self.replace(text, path, &none, server)) {
+                    error(&wrong.to_string());
                 }
             }
             Wanted::Order { order } => match order.intervention(&self.scenario, self.framer.origin_m()) {
@@ -447,13 +411,7 @@ impl Session {
         self.tell(server);
     }
 
-    fn replace(
-        &mut self,
-        text: String,
-        path: &Path,
-        overrides: &Overrides,
-        server: &Server,
-    ) -> Result<(), SessionError> {
+    fn replace(&mut self, text: String, path: &Path, overrides: &Overrides, server: &Server) -> Result<()> {
         let mut fresh = Self::new(text, path, overrides, self.pace.is_paused())?;
         fresh.pages = self.pages.keys().map(|client| (*client, Looks::default())).collect();
         *self = fresh;

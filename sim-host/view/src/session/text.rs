@@ -1,4 +1,6 @@
 use super::branch::Branch;
+use anyhow::{Result, ensure};
+use serde::Deserialize;
 use staya_controller::rand::Rng;
 use staya_sim::scenario::{Scenario, with_interventions};
 use std::fmt::Write as _;
@@ -36,8 +38,9 @@ pub(super) fn saved(text: &str, scenario: &Scenario, branch: &Branch, tick: u32,
 }
 
 /// Parameters of a run in which robots flock to goals among obstacles (V. E. and V. V. Pavlovsky).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Configuration {
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Configuration {
     /// Number of robots, 1 to 2000.
     pub robots: u32,
     /// Number of goals, 1 to 4.
@@ -53,25 +56,22 @@ impl Configuration {
     ///
     /// # Errors
     /// Names the number that is out of its range, and the range.
-    pub fn scenario(self) -> Result<String, String> {
+    pub fn scenario(self) -> Result<String> {
         let Self { robots, goals, obstacles, seed } = self;
         for (what, count, least, most) in
             [("robots", robots, 1, 2000), ("goals", goals, 1, 4), ("obstacles", obstacles, 0, 200)]
         {
-            if !(least..=most).contains(&count) {
-                return Err(format!("{count} {what} are out of range; give {least} to {most}"));
-            }
+            ensure!((least..=most).contains(&count), "{count} {what} are out of range; give {least} to {most}");
         }
         let side_m = libm::ceil(libm::sqrt(f64::from(robots))) * 1.2 + 3.0;
         let width_m = side_m * 2.0 + 16.0;
         let mut draws = Rng::keyed(seed, RANDOM, robots, obstacles);
         let mut draw = |low: f64, high: f64| low + (high - low) * f64::from(draws.below(1 << 20)) / f64::from(1 << 20);
-        let places: Vec<String> = (0..goals)
-            .map(|goal| {
-                let y = side_m * (f64::from(goal) + 0.5) / f64::from(goals);
-                format!("[{:.2}, {y:.2}]", width_m - side_m / 2.0)
-            })
-            .collect();
+        let place = |goal: u32| {
+            let y = side_m * (f64::from(goal) + 0.5) / f64::from(goals);
+            format!("[{:.2}, {y:.2}]", width_m - side_m / 2.0)
+        };
+        let places: Vec<String> = (0..goals).map(place).collect();
         let mut text = format!(
             "name = \"new-run\"\nseed = {seed}\nticks = 4000\ntick_s = 0.1\n[radio]\nrange_m = 20\n\
              [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"goal_flock\"\nsafety = \"orca\"\n\
@@ -83,8 +83,7 @@ impl Configuration {
         for _ in 0..obstacles {
             let radius_m = draw(0.2, 0.8);
             let (x, y) = (draw(side_m + 2.0, width_m - side_m - 2.0), draw(-1.0, side_m + 1.0));
-            let ball = format!("[[plane.ball]]\ncenter_m = [{x:.2}, {y:.2}]\nradius_m = {radius_m:.2}\n");
-            text.push_str(&ball);
+            let _ = writeln!(text, "[[plane.ball]]\ncenter_m = [{x:.2}, {y:.2}]\nradius_m = {radius_m:.2}");
         }
         let _ = writeln!(text, "# {robots} robots, {goals} goals, {obstacles} obstacles.");
         Ok(text)
@@ -139,7 +138,7 @@ mod tests {
             (9, 1, 201, "201 obstacles are out of range; give 0 to 200"),
         ] {
             let configuration = Configuration { robots, goals, obstacles, seed: 1 };
-            assert_eq!(configuration.scenario(), Err(expected.to_owned()));
+            assert_eq!(configuration.scenario().expect_err(expected).to_string(), expected);
         }
     }
 }

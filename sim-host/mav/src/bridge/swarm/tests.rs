@@ -1,3 +1,4 @@
+use super::super::report::Refused;
 use super::*;
 use crate::geo::{Global, Origin};
 use staya_controller::auth::Key;

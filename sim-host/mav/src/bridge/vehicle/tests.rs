@@ -1,4 +1,4 @@
-use super::super::testing::{Bench, GCS, model, on_grid, origin};
+use super::super::test_support::{Bench, GCS, model, on_grid, origin};
 use super::*;
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Cell;

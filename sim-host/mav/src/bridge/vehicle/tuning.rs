@@ -1,4 +1,4 @@
-use super::super::params::{NotSet, SETPOINT_TIMEOUT};
+use super::super::params::SETPOINT_TIMEOUT;
 use super::{Action, Kind, Out, Vehicle};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
@@ -19,13 +19,11 @@ impl Vehicle {
         match set {
             Ok(SETPOINT_TIMEOUT) => {}
             Ok(name) => out.actions.push(Action::Set(name, wanted.param_value)),
-            Err(NotSet::OutOf([least, greatest])) => {
-                let name = String::from_utf8_lossy(&*wanted.param_id).into_owned();
-                let name = name.trim_end_matches('\0');
-                let text = format!("{name}: give {least} to {greatest}");
+            Err([least, greatest]) => {
+                let name = String::from_utf8_lossy(&*wanted.param_id);
+                let text = format!("{}: give {least} to {greatest}", name.trim_end_matches('\0'));
                 self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
             }
-            Err(NotSet::Unknown) => self.unknown_parameter(out),
         }
     }
 

@@ -38,7 +38,6 @@ pub enum Event {
 
 impl State {
     /// Text for the operator, at most 40 bytes.
-    #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::Silent => "no heartbeat: sends no setpoints",
@@ -55,13 +54,11 @@ impl State {
     }
 
     /// Whether the vehicle follows the companion's setpoints.
-    #[must_use]
     pub const fn has_control(self) -> bool {
         matches!(self, Self::Steering | Self::Stopped | Self::Distrusted)
     }
 
     /// Whether the operator should act.
-    #[must_use]
     pub const fn is_worrying(self) -> bool {
         matches!(self, Self::Silent | Self::Restarted | Self::Stopped | Self::Distrusted)
     }

@@ -1,11 +1,7 @@
 //! Trust in an autopilot's position estimate. An estimator that lost GPS keeps sending positions
 //! that look fresh but drift, so status messages decide. An autopilot that sends none is trusted.
 
-use staya_mavlink::constants::{
-    EKF_GPS_GLITCHING, EKF_UNINITIALIZED, ESTIMATOR_ACCEL_ERROR, ESTIMATOR_ATTITUDE, ESTIMATOR_CONST_POS_MODE,
-    ESTIMATOR_GPS_GLITCH, ESTIMATOR_POS_HORIZ_ABS, ESTIMATOR_VELOCITY_HORIZ, GPS_FIX_TYPE_3D_FIX, MAV_SYS_STATUS_AHRS,
-    MAV_SYS_STATUS_SENSOR_GPS,
-};
+use staya_mavlink::constants::*;
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
@@ -27,7 +23,6 @@ pub enum Doubt {
 }
 
 impl Doubt {
-    #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::Gps => "GPS lost its fix",
@@ -41,6 +36,7 @@ impl Doubt {
 pub struct Health {
     had_fix: bool,
     fixed_at: [Option<Duration>; 2],
+    /// By [`Doubt`].
     is_bad: [bool; 3],
     well_at: Duration,
     pub reports: u64,
@@ -78,12 +74,7 @@ impl Health {
         };
         self.reports += u64::from(doubt == Doubt::Estimator);
         let is_new = is_bad && self.is_trusted(now);
-        let [gps, estimator, sensors] = &mut self.is_bad;
-        match doubt {
-            Doubt::Gps => *gps = is_bad,
-            Doubt::Estimator => *estimator = is_bad,
-            Doubt::Sensors => *sensors = is_bad,
-        }
+        self.is_bad[doubt as usize] = is_bad;
         if self.is_bad.contains(&true) {
             self.well_at = now + WELL_FOR;
         }
@@ -93,9 +84,7 @@ impl Health {
     /// A vehicle that never had a fix does not need GPS.
     fn has_lost_fix(&mut self, receiver: usize, fix_type: u8, now: Duration) -> bool {
         let has_fix = fix_type >= GPS_FIX_TYPE_3D_FIX;
-        if let Some(fixed_at) = self.fixed_at.get_mut(receiver) {
-            *fixed_at = has_fix.then_some(now);
-        }
+        self.fixed_at[receiver] = has_fix.then_some(now);
         self.had_fix |= has_fix;
         let is_fixed = |at: &Option<Duration>| at.is_some_and(|at| now.saturating_sub(at) <= REPORT_VALID);
         self.had_fix && !self.fixed_at.iter().any(is_fixed)

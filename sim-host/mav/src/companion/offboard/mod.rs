@@ -21,10 +21,7 @@ use super::kind::Kind;
 use crate::geo::Global;
 use health::Health;
 use serde::Serialize;
-use staya_mavlink::constants::{
-    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_COMP_ID_AUTOPILOT1,
-    MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_LANDING, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
-};
+use staya_mavlink::constants::*;
 use staya_mavlink::dialect::MavMessage;
 use staya_sim::choice;
 use std::collections::VecDeque;
@@ -139,15 +136,6 @@ enum Control {
     Withdrawn,
 }
 
-/// The last trusted position.
-#[derive(Clone, Copy, Debug)]
-enum Position {
-    Unknown,
-    /// Kept, because it is the best estimate for others.
-    BeforeRestart(Fix),
-    OfThisBoot(Fix),
-}
-
 /// Telemetry since the last restart of the autopilot.
 #[derive(Clone, Debug, Default)]
 struct Boot {
@@ -159,6 +147,9 @@ struct Boot {
     /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
     velocity: Option<(Duration, [f64; 3])>,
     landed: Option<u8>,
+    /// Whether the last trusted position is of this boot. An older one is the best estimate for
+    /// others.
+    has_fix: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -176,15 +167,11 @@ struct Request {
 }
 
 /// Progress of [`Entry::Once`].
-#[derive(Clone, Copy, Debug)]
-enum Entering {
-    /// Not wanted, complete, or stopped by the pilot.
-    Over,
-    Open {
-        request: Option<Request>,
-        /// Command and result of the last acknowledgement, if it was a refusal.
-        refused: Option<(u16, u8)>,
-    },
+#[derive(Clone, Copy, Debug, Default)]
+struct Entering {
+    request: Option<Request>,
+    /// Command and result of the last acknowledgement, if it was a refusal.
+    refused: Option<(u16, u8)>,
 }
 
 /// The last check of the rates at which telemetry arrives.
@@ -224,9 +211,10 @@ pub struct OffboardStateMachine {
     rules: Rules,
     state: State,
     beat: Option<Beat>,
-    position: Position,
+    fix: Option<Fix>,
     boot: Boot,
-    entering: Entering,
+    /// `None` if not wanted, complete, or stopped by the pilot.
+    entering: Option<Entering>,
     quiet_until: Duration,
     streaming_since: Option<Duration>,
     command: Option<(Duration, [f64; 3])>,
@@ -239,7 +227,6 @@ pub struct OffboardStateMachine {
 
 impl OffboardStateMachine {
     /// Creates the state machine of vehicle `system`, which is assumed to have just started.
-    #[must_use]
     pub fn new(system: u8, kind: Kind, rules: Rules) -> Self {
         Self {
             system,
@@ -247,12 +234,9 @@ impl OffboardStateMachine {
             rules,
             state: State::Silent,
             beat: None,
-            position: Position::Unknown,
+            fix: None,
             boot: Boot::default(),
-            entering: match rules.entry {
-                Entry::Wait => Entering::Over,
-                Entry::Once => Entering::Open { request: None, refused: None },
-            },
+            entering: (rules.entry == Entry::Once).then(Entering::default),
             quiet_until: Duration::ZERO,
             streaming_since: None,
             command: None,
@@ -265,32 +249,24 @@ impl OffboardStateMachine {
     }
 
     /// State at the last [`poll`](Self::poll).
-    #[must_use]
     pub const fn state(&self) -> State {
         self.state
     }
 
     /// Counters so far.
-    #[must_use]
     pub const fn tally(&self) -> OffboardCounters {
         self.tally
     }
 
     /// Last trusted position, of any age and any boot.
-    #[must_use]
     pub const fn fix(&self) -> Option<Fix> {
-        match self.position {
-            Position::Unknown => None,
-            Position::BeforeRestart(fix) | Position::OfThisBoot(fix) => Some(fix),
-        }
+        self.fix
     }
 
     /// Last position, if it is fresh and trusted.
-    #[must_use]
     pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
-        let Position::OfThisBoot(fix) = self.position else { return None };
-        let is_fresh = now.saturating_sub(fix.at) <= self.rules.stale;
-        (is_fresh && self.boot.health.is_trusted(now)).then_some(fix)
+        let is_trusted = self.boot.has_fix && self.boot.health.is_trusted(now);
+        self.fix.filter(|fix| is_trusted && now.saturating_sub(fix.at) <= self.rules.stale)
     }
 
     /// Takes the next event for the operator.
@@ -313,16 +289,15 @@ impl OffboardStateMachine {
                 if (at.lat, at.lon) == (0, 0) {
                     return;
                 }
-                let fine = self
-                    .boot
-                    .velocity
-                    .filter(|(heard, _)| now.saturating_sub(*heard).as_secs_f64() * self.rules.position_hz <= 2.0);
+                let is_recent = |heard| now.saturating_sub(heard).as_secs_f64() * self.rules.position_hz <= 2.0;
+                let fine = self.boot.velocity.filter(|(heard, _)| is_recent(*heard));
                 let coarse = [at.vx, at.vy, at.vz].map(|v| f64::from(v) / 100.0);
                 self.tally.positions += 1;
                 if !self.boot.health.is_trusted(now) {
                     return;
                 }
-                self.position = Position::OfThisBoot(Fix {
+                self.boot.has_fix = true;
+                self.fix = Some(Fix {
                     at: now,
                     place: Global::from_e7(at.lat, at.lon, at.alt),
                     above_home_m: f64::from(at.relative_alt) / 1e3,
@@ -374,7 +349,6 @@ impl OffboardStateMachine {
             *control = Control::Withdrawn;
         }
         self.end_entry(None);
-        self.position = self.fix().map_or(Position::Unknown, Position::BeforeRestart);
         self.boot = Boot::default();
         self.check = None;
     }
@@ -413,14 +387,14 @@ impl OffboardStateMachine {
     }
 
     fn end_entry(&mut self, event: Option<Event>) {
-        if let Entering::Open { .. } = std::mem::replace(&mut self.entering, Entering::Over) {
+        if self.entering.take().is_some() {
             self.events.extend(event);
         }
     }
 
     fn acknowledged(&mut self, command: u16, result: u8) {
         const IN_PROGRESS: u8 = 5;
-        let Entering::Open { request: Some(_), refused: last } = &mut self.entering else { return };
+        let Some(Entering { request: Some(_), refused: last }) = &mut self.entering else { return };
         if ![MAV_CMD_DO_SET_MODE, MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_NAV_TAKEOFF].contains(&command) {
             return;
         }
@@ -438,7 +412,7 @@ impl OffboardStateMachine {
         }
         let has_begun = self.state.has_control();
         let [_, _, down_mps] = fix.velocity_ned_mps;
-        let asked_m = self.rules.altitude_m.filter(|_| self.is_entering() && self.rules.takeoff);
+        let asked_m = self.rules.altitude_m.filter(|_| self.entering.is_some() && self.rules.takeoff);
         let is_up = match asked_m {
             Some(altitude_m) => fix.above_home_m >= altitude_m - (altitude_m * 0.1).max(0.5),
             None => has_begun || -down_mps < CLIMB_OVER_MPS,
@@ -450,30 +424,23 @@ impl OffboardStateMachine {
         }
     }
 
-    const fn is_entering(&self) -> bool {
-        matches!(self.entering, Entering::Open { .. })
-    }
-
     fn is_taking_off(&self) -> bool {
         match self.boot.landed {
             Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
             Some(MAV_LANDED_STATE_ON_GROUND) => false,
-            _ => matches!(self.position, Position::OfThisBoot(fix) if fix.above_home_m >= LOW_M),
+            _ => self.boot.has_fix && self.fix.is_some_and(|fix| fix.above_home_m >= LOW_M),
         }
     }
 
     /// The state at `now`: the first rule that applies.
     fn next_state(&self, now: Duration) -> State {
-        let beat = self.beat;
-        let heard = beat.filter(|beat| now.saturating_sub(beat.at) <= self.rules.link_lost);
-        let Some(beat) = heard else {
-            return State::Silent;
-        };
+        let heard = self.beat.filter(|beat| now.saturating_sub(beat.at) <= self.rules.link_lost);
+        let Some(beat) = heard else { return State::Silent };
         let fix = self.fresh_fix(now);
         if self.rules.rehearses {
             return if fix.is_some() { State::Steering } else { State::NoPosition };
         }
-        let enters = self.is_entering() && fix.is_some() && (beat.is_armed || self.rules.arm);
+        let enters = self.entering.is_some() && fix.is_some() && (beat.is_armed || self.rules.arm);
         match beat.control {
             Control::Pilot => return if enters { State::Entering } else { State::Pilot },
             Control::Withdrawn => return State::Restarted,
@@ -484,12 +451,9 @@ impl OffboardStateMachine {
         }
         let Some(fix) = fix else {
             return match self.state {
-                State::Steering | State::Stopped | State::Distrusted if !self.boot.health.is_trusted(now) => {
-                    State::Distrusted
-                }
-                State::Distrusted => State::Distrusted,
-                State::Steering | State::Stopped => State::Stopped,
-                _ => State::NoPosition,
+                last if !last.has_control() => State::NoPosition,
+                State::Steering | State::Stopped if self.boot.health.is_trusted(now) => State::Stopped,
+                _ => State::Distrusted,
             };
         };
         if !self.is_in_air(&fix) {

@@ -1,13 +1,6 @@
-use super::{AUTOPILOT, Kind};
-use staya_mavlink::constants::{
-    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
-    MAV_FRAME_LOCAL_NED,
-};
-use staya_mavlink::dialect::{
-    COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
-    GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GPS2_RAW_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavMessage,
-    SET_POSITION_TARGET_LOCAL_NED_DATA, STATUSTEXT_DATA, SYS_STATUS_DATA,
-};
+use super::{AUTOPILOT, Ask, Kind};
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
 use std::time::Duration;
 
@@ -37,16 +30,13 @@ fn command(system: u8, command: u16, params: [f64; 2], height_m: f64) -> MavMess
     })
 }
 
-pub fn set_mode(system: u8, kind: Kind) -> MavMessage {
-    command(system, MAV_CMD_DO_SET_MODE, [1.0, f64::from(kind.outside_control())], 0.0)
-}
-
-pub fn arm(system: u8) -> MavMessage {
-    command(system, MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0], 0.0)
-}
-
-pub fn takeoff(system: u8, altitude_m: f64) -> MavMessage {
-    command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)
+/// `None` for a takeoff of PX4, which climbs by its setpoints.
+pub fn request(system: u8, kind: Kind, ask: Ask, altitude_m: f64) -> Option<MavMessage> {
+    match ask {
+        Ask::Mode => Some(command(system, MAV_CMD_DO_SET_MODE, [1.0, f64::from(kind.outside_control())], 0.0)),
+        Ask::Arm => Some(command(system, MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0], 0.0)),
+        Ask::Takeoff => (!kind.needs_stream()).then(|| command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)),
+    }
 }
 
 /// Positions, and from flying vehicles the landed state at 2 Hz.

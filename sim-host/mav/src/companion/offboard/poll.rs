@@ -47,7 +47,6 @@ impl OffboardStateMachine {
     }
 
     /// Time of the next message of [`poll`](Self::poll) without new input.
-    #[must_use]
     pub fn due(&self, now: Duration) -> Duration {
         let setpoint = self.setpoint(now).map(|_| self.next_setpoint);
         setpoint.map_or(self.next_heartbeat, |due| due.min(self.next_heartbeat))
@@ -57,10 +56,8 @@ impl OffboardStateMachine {
         const STAND: [f64; 3] = [0.0; 3];
         match self.state {
             State::Steering => {
-                let command = self.command;
-                let command = command.filter(|(at, _)| now.saturating_sub(*at) <= COMMAND_VALID);
-                let velocity = command.map_or(STAND, |(_, velocity)| velocity);
-                Some(self.at_altitude(velocity))
+                let command = self.command.filter(|(at, _)| now.saturating_sub(*at) <= COMMAND_VALID);
+                Some(self.at_altitude(command.map_or(STAND, |(_, velocity)| velocity)))
             }
             State::Stopped | State::Distrusted => Some(STAND),
             State::Entering if self.kind.needs_stream() => Some(self.at_altitude(STAND)),
@@ -120,7 +117,7 @@ impl OffboardStateMachine {
         if ask == Ask::Mode && self.kind.needs_stream() && !self.streaming_since.is_some_and(is_streaming) {
             return;
         }
-        let Entering::Open { request, .. } = &mut self.entering else { return };
+        let Some(Entering { request, .. }) = &mut self.entering else { return };
         let attempt = match *request {
             Some(last) if last.ask == ask && now.saturating_sub(last.at) < RETRY => return,
             Some(last) if last.ask == ask => last.attempt + 1,
@@ -130,25 +127,17 @@ impl OffboardStateMachine {
             return self.end_entry(Some(Event::GaveUp));
         }
         *request = Some(Request { ask, attempt, at: now });
-        match ask {
-            Ask::Mode => out.push(out::set_mode(self.system, self.kind)),
-            Ask::Arm => out.push(out::arm(self.system)),
-            // PX4 climbs by its setpoints.
-            Ask::Takeoff if self.kind.needs_stream() => {}
-            Ask::Takeoff => {
-                let altitude_m = self.rules.altitude_m.unwrap_or(0.0);
-                out.push(out::takeoff(self.system, altitude_m));
-            }
-        }
+        out.extend(out::request(self.system, self.kind, ask, self.rules.altitude_m.unwrap_or(0.0)));
     }
 
     fn rehearse_entry(&mut self, out: &mut Vec<MavMessage>) {
-        let Entering::Open { .. } = std::mem::replace(&mut self.entering, Entering::Over) else { return };
+        if self.entering.take().is_none() {
+            return;
+        }
         let Rules { arm, takeoff, altitude_m, .. } = self.rules;
-        out.push(out::set_mode(self.system, self.kind));
-        out.extend(arm.then(|| out::arm(self.system)));
-        let height = altitude_m.filter(|_| takeoff && !self.kind.needs_stream());
-        out.extend(height.map(|altitude_m| out::takeoff(self.system, altitude_m)));
+        let asks = [(Ask::Mode, true), (Ask::Arm, arm), (Ask::Takeoff, takeoff && altitude_m.is_some())];
+        let asks = asks.into_iter().filter(|(_, is_asked)| *is_asked);
+        out.extend(asks.filter_map(|(ask, _)| out::request(self.system, self.kind, ask, altitude_m.unwrap_or(0.0))));
     }
 
     /// Zero velocity, if the companion has control; send it a few times before the end.

@@ -1,4 +1,5 @@
 mod entry;
+pub(crate) mod replay;
 mod telemetry;
 
 use super::*;

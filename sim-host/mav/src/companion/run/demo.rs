@@ -5,15 +5,9 @@ use crate::companion::config::{Config, VehicleSetup};
 use crate::companion::offboard::{AUTOPILOT, Entry};
 use crate::framed::framed;
 use crate::geo::{Origin, enu, ned};
-use crate::{Counts, Peer, Received, Tlog};
-use staya_mavlink::constants::{
-    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
-    MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF,
-};
-use staya_mavlink::dialect::{
-    COMMAND_ACK_DATA, COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
-    GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA, MavMessage,
-};
+use crate::{Peer, Received, Tlog};
+use staya_mavlink::constants::*;
+use staya_mavlink::dialect::*;
 use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::mavlink_core::MessageData as _;
 use staya_sim::record;
@@ -38,7 +32,6 @@ pub struct Demo {
     origin: Origin,
     autopilots: Vec<Autopilot>,
     frames: VecDeque<Received>,
-    counts: Vec<Counts>,
     tlog: Option<Tlog>,
 }
 
@@ -82,7 +75,6 @@ impl Demo {
             origin: config.origin,
             autopilots: config.vehicles.iter().map(autopilot).collect(),
             frames: VecDeque::new(),
-            counts: vec![Counts::default(); config.lines.len()],
             tlog,
         }
     }
@@ -98,11 +90,7 @@ impl Demo {
             for autopilot in &mut self.autopilots {
                 autopilot.advance(self.now);
                 for message in autopilot.telemetry(self.now, &self.origin) {
-                    let received = autopilot.packed(&message);
-                    let counts = &mut self.counts[received.line];
-                    counts.frames_in += 1;
-                    counts.bytes_in += received.frame.len() as u64;
-                    self.frames.push_back(received);
+                    self.frames.push_back(autopilot.packed(&message));
                 }
             }
         }
@@ -232,8 +220,6 @@ impl Machine for Demo {
     }
 
     fn send(&mut self, line: usize, _: Option<Peer>, frame: &[u8]) {
-        self.counts[line].frames_out += 1;
-        self.counts[line].bytes_out += frame.len() as u64;
         let Some(message) = RawFrame::new(frame).and_then(|frame| frame.message()) else { return };
         let target = match &message {
             MavMessage::COMMAND_LONG(command) => command.target_system,
@@ -254,10 +240,6 @@ impl Machine for Demo {
             }
             _ => {}
         }
-    }
-
-    fn counts(&self, line: usize) -> Counts {
-        self.counts[line]
     }
 
     fn log(&mut self, frame: &[u8]) -> Result<(), record::Error> {

@@ -2,7 +2,7 @@
 
 use crate::companion::medium::Medium;
 use crate::companion::roll::KeyWatch;
-use crate::{Counts, Lines, Peer, Received, Tlog};
+use crate::{Lines, Peer, Received, Tlog};
 use staya_controller::auth::Key;
 use staya_sim::record;
 use std::io::{self, Write as _};
@@ -18,11 +18,8 @@ pub trait Machine {
 
     fn send(&mut self, line: usize, peer: Option<Peer>, frame: &[u8]);
 
-    fn believe(&mut self, _line: usize, _peer: Peer) {}
-
-    fn counts(&self, line: usize) -> Counts;
-
-    fn trouble(&self, _line: usize) -> Option<String> {
+    /// `None` without links to real autopilots.
+    fn lines(&self) -> Option<&Lines> {
         None
     }
 
@@ -70,22 +67,11 @@ impl Machine for Host {
     }
 
     fn send(&mut self, line: usize, peer: Option<Peer>, frame: &[u8]) {
-        match peer {
-            Some(peer) => self.lines.send_to(line, peer, frame),
-            None => self.lines.send(line, frame),
-        }
+        self.lines.send(line, peer, frame);
     }
 
-    fn believe(&mut self, line: usize, peer: Peer) {
-        self.lines.believe(line, peer);
-    }
-
-    fn counts(&self, line: usize) -> Counts {
-        self.lines.counts(line)
-    }
-
-    fn trouble(&self, line: usize) -> Option<String> {
-        self.lines.trouble(line)
+    fn lines(&self) -> Option<&Lines> {
+        Some(&self.lines)
     }
 
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8])) {

@@ -1,6 +1,4 @@
-use staya_mavlink::constants::{
-    MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF, MAV_CMD_SET_MESSAGE_INTERVAL,
-};
+use staya_mavlink::constants::*;
 use staya_mavlink::dialect::{COMMAND_LONG_DATA, MavMessage};
 use staya_mavlink::mavlink_core::Message as _;
 

@@ -1,5 +1,4 @@
 use super::{Companions, FEW_TIMESTAMPS, LOOK, Link, Vehicle, shown, status_text};
-use crate::companion::config::Config;
 use crate::companion::offboard::{AUTOPILOT, State};
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
 use staya_controller::agent::Event as AgentEvent;
@@ -37,13 +36,17 @@ impl Companions<'_> {
         }
     }
 
+    fn trouble(&self, line: usize) -> Option<String> {
+        self.machine.lines()?.trouble(line)
+    }
+
     pub(super) fn look_at_links(&mut self, now: Duration) {
         if now < self.next_look {
             return;
         }
         self.next_look = now + LOOK;
         for index in 0..self.links.len() {
-            let trouble = self.machine.trouble(index);
+            let trouble = self.trouble(index);
             let link = &mut self.links[index];
             if trouble != link.trouble {
                 let line = match &trouble {
@@ -114,7 +117,7 @@ impl Companions<'_> {
         self.tell(index, &text);
     }
 
-    pub(super) fn report(&self, config: &Config, seconds: f64, interrupted: bool) -> CompanionReport {
+    pub(super) fn report(&self, seconds: f64, interrupted: bool) -> CompanionReport {
         let vehicles = self.vehicles.iter().map(|vehicle| VehicleReport {
             robot: vehicle.setup.robot.0,
             system: vehicle.setup.system,
@@ -122,7 +125,7 @@ impl Companions<'_> {
             state: vehicle.offboard.state(),
             agent: vehicle.controller.agent().mode(),
             has_arrived: vehicle.has_arrived,
-            position_m: vehicle.offboard.fix().and_then(|fix| self.origin.to_enu_m(&fix.place)),
+            position_m: vehicle.offboard.fix().and_then(|fix| self.config.origin.to_enu_m(&fix.place)),
             tally: vehicle.offboard.tally(),
             packets_heard: vehicle.heard,
             packets_refused: vehicle.refused,
@@ -131,13 +134,13 @@ impl Companions<'_> {
         let links = self.links.iter().enumerate().filter(|_| !self.options.demo);
         let links = links.map(|(line, Link { name, signing, .. })| LineReport {
             link: name.clone(),
-            counts: self.machine.counts(line),
-            trouble: self.machine.trouble(line),
+            counts: self.machine.lines().map(|lines| lines.counts(line)).unwrap_or_default(),
+            trouble: self.trouble(line),
             refused: signing.as_ref().map_or(0, |signing| signing.counts().refused()),
             is_exhausted: signing.as_ref().is_some_and(|signing| signing.left() == 0),
         });
         CompanionReport {
-            scenario: config.scenario.name.clone(),
+            scenario: self.config.scenario.name.clone(),
             seconds,
             interrupted,
             dry_run: self.options.dry_run,

@@ -1,8 +1,8 @@
 mod replayed;
 
 use super::*;
+use crate::Peer;
 use crate::geo::Global;
-use crate::{Counts, Peer};
 use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
 use staya_mavlink::frame::{MAX_FRAME_LEN, encode_message};
 use staya_sim::record;
@@ -168,16 +168,6 @@ impl Machine for Shared {
         }
     }
 
-    fn believe(&mut self, _: usize, _: Peer) {}
-
-    fn counts(&self, _: usize) -> Counts {
-        Counts::default()
-    }
-
-    fn trouble(&self, _: usize) -> Option<String> {
-        None
-    }
-
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8])) {
         if !self.0.borrow_mut().fails(Call::HearOthers) {
             heard(&[]);
@@ -244,7 +234,7 @@ fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<Comp
     let ended = catch_unwind(AssertUnwindSafe(move || {
         let (seconds, interrupted) = companions.run(|| true, &mut |_| {});
         companions.say_farewell();
-        companions.report(config, seconds, interrupted)
+        companions.report(seconds, interrupted)
     }));
     (Rc::into_inner(world).expect("the loop has ended").into_inner(), ended.ok())
 }
@@ -327,7 +317,7 @@ fn used_up_timestamps_are_reported_while_signing_is_possible() {
     let last = (1 << 48) - 1;
     companions.links[0].signing = Some(Signing::new(staya_controller::auth::Key::new([7; 32]), 0, last - 3));
     let (seconds, _) = companions.run(|| true, &mut |_| {});
-    let report = companions.report(&config, seconds, false);
+    let report = companions.report(seconds, false);
     drop(companions);
     let world = world.borrow();
     assert_eq!(world.lines.iter().filter(|line| line.contains("signing timestamps are nearly used up")).count(), 1);
@@ -350,7 +340,7 @@ fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
 
 #[test]
 fn silent_autopilots_end_the_run_with_their_links_named() {
-    let options = Options { wait: Some(Duration::from_secs(3)), ..Options::default() };
+    let options = Options { wait: 3.0, ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(Some((Call::Receive, Failure::From(1))))));
     let config = config();
     let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(world)));
@@ -366,8 +356,8 @@ fn simulated_vehicles_of_each_kind_arrive_and_the_demo_ends() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions");
     for name in ["six-rovers-crossing", "six-copters-crossing", "six-px4-crossing", "one-rover"] {
         let config = Config::load(&folder.join(format!("{name}.toml"))).unwrap();
-        let mut options = Options { demo: true, quiet: true, ..Options::default() };
-        let report = run(&config, &mut options, || true, |_| {}).unwrap();
+        let options = Options { demo: true, quiet: true, ..Options::default() };
+        let report = run(&config, &options, None, || true, |_| {}).unwrap();
         assert!(report.seconds < 60.0 && report.links.is_empty(), "{name}: {report}");
         for vehicle in &report.vehicles {
             let height_m = vehicle.position_m.expect("a position")[2];

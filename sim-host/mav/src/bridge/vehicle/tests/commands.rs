@@ -20,15 +20,15 @@ fn arming_enables_motion_and_disarming_stops_it() {
 #[test]
 fn disarming_in_the_air_or_while_moving_needs_force() {
     let mut bench = Bench::new(flying());
-    bench.tick(|sample| sample.position_m[2] = 2.0);
+    bench.tick(|sample| sample.motion.position_m[2] = 2.0);
     let arm = MAV_CMD_COMPONENT_ARM_DISARM;
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_TEMPORARILY_REJECTED);
     assert_eq!(bench.command(arm, two(0.0, ARM_DISARM_FORCE)), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.wish(), Some(Wish::Off));
     let mut bench = Bench::new(model());
-    bench.tick(|sample| sample.velocity_mps = [0.0, -0.3, 0.0]);
+    bench.tick(|sample| sample.motion.velocity_mps = [0.0, -0.3, 0.0]);
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_TEMPORARILY_REJECTED);
-    bench.tick(|sample| sample.velocity_mps = [0.01, 0.0, 0.0]);
+    bench.tick(|sample| sample.motion.velocity_mps = [0.01, 0.0, 0.0]);
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
 }
 
@@ -66,14 +66,14 @@ fn takeoff_and_landing_end_at_their_heights() {
     };
     let frame = MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME;
     assert_eq!(bench.command_int(above_the_sea), frame);
-    bench.tick(|sample| sample.position_m[2] = 4.0);
+    bench.tick(|sample| sample.motion.position_m[2] = 4.0);
     let again = bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(4.0));
     assert_eq!(again, MAV_RESULT_TEMPORARILY_REJECTED, "it is in the air");
     assert_eq!(bench.command(MAV_CMD_NAV_LAND, [NAN; 7]), MAV_RESULT_ACCEPTED);
     assert_eq!((bench.vehicle.mode, place_mm(bench.wish())), (FlightMode::LAND, [3000, 5000, 0]));
-    bench.tick(|sample| sample.position_m[2] = 1.0);
+    bench.tick(|sample| sample.motion.position_m[2] = 1.0);
     assert_eq!(bench.wish(), None);
-    bench.tick(|sample| sample.position_m[2] = 0.01);
+    bench.tick(|sample| sample.motion.position_m[2] = 0.01);
     assert_eq!((bench.wish(), bench.vehicle.is_armed), (Some(Wish::Off), false));
     let landed = bench.command(MAV_CMD_NAV_TAKEOFF, takeoff(4.0));
     assert_eq!(landed, MAV_RESULT_TEMPORARILY_REJECTED, "not armed");
@@ -82,10 +82,10 @@ fn takeoff_and_landing_end_at_their_heights() {
 #[test]
 fn a_returning_vehicle_lands_at_home() {
     let mut bench = Bench::new(flying());
-    bench.tick(|sample| sample.position_m = [30.0, 40.0, 9.0]);
+    bench.tick(|sample| sample.motion.position_m = [30.0, 40.0, 9.0]);
     assert_eq!(bench.command(MAV_CMD_NAV_RETURN_TO_LAUNCH, NONE), MAV_RESULT_ACCEPTED);
     assert_eq!(place_mm(bench.wish()), [3000, 5000, 9000]);
-    bench.tick(|sample| sample.position_m = [3.0, 5.04, 9.0]);
+    bench.tick(|sample| sample.motion.position_m = [3.0, 5.04, 9.0]);
     assert_eq!((bench.vehicle.mode, place_mm(bench.wish())[2]), (FlightMode::LAND, 0));
 }
 
@@ -147,8 +147,8 @@ fn a_parameter_is_set_within_limits_and_always_reported() {
     let count = bench.vehicle.parameters.count();
     let list = MavMessage::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA { target_system: 7, target_component: 1 });
     assert!(bench.give(list).messages.is_empty(), "the listing is sent one by one");
-    while bench.vehicle.is_listing() {
-        bench.vehicle.list_one(&mut bench.out);
+    while let Some(told) = bench.vehicle.parameters.next_listed() {
+        bench.out.messages.push(MavMessage::PARAM_VALUE(told));
     }
     assert_eq!(bench.out.messages.len(), count);
     let read = |index| {

@@ -20,12 +20,12 @@ fn a_mission_runs_item_by_item() {
         })
     };
     for expected in [None, None, None, Some(1)] {
-        let out = bench.tick(|sample| sample.position_m = [10.0, 0.02, 0.0]);
+        let out = bench.tick(|sample| sample.motion.position_m = [10.0, 0.02, 0.0]);
         assert_eq!(reached(out), expected);
     }
     assert!((place_mm(bench.wish())[1] - 10_000).abs() < 10);
     assert_eq!(reached(bench.tick(|_| {})), None);
-    let out = bench.tick(|sample| sample.position_m = [10.0, 10.0, 0.0]);
+    let out = bench.tick(|sample| sample.motion.position_m = [10.0, 10.0, 0.0]);
     assert_eq!(reached(out), Some(2));
     assert_eq!((bench.wish(), is_on_mission(&bench)), (Some(Wish::Hold), false));
     assert_eq!(bench.texts(), ["mission done: holding"]);
@@ -74,7 +74,7 @@ fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     assert_eq!(reached(&bench.out), [1]);
     assert!(bench.out.actions.contains(&Action::Set("speed_mps", 0.5)));
     assert!((place_mm(bench.wish())[0] - 10_000).abs() < 10);
-    let out = bench.tick(|sample| sample.position_m = [10.0, 0.0, 0.0]);
+    let out = bench.tick(|sample| sample.motion.position_m = [10.0, 0.0, 0.0]);
     assert_eq!(reached(out), [2, 3]);
     assert!(out.actions.contains(&Action::Set("speed_mps", 2.0)));
     assert_eq!(bench.texts(), ["mission speed 10 m/s limited to 2"]);
@@ -96,13 +96,13 @@ fn speed_wait_and_camera_items_do_not_stop_a_mission() {
 #[test]
 fn a_landing_at_the_end_of_a_mission_is_reached_on_the_ground() {
     let mut bench = Bench::new(flying());
-    bench.tick(|sample| sample.position_m = [0.0, 0.0, 5.0]);
+    bench.tick(|sample| sample.motion.position_m = [0.0, 0.0, 5.0]);
     let landing = MISSION_ITEM_INT_DATA { command: MAV_CMD_NAV_LAND, ..item(1, 0.0, 0.0) };
     assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), landing]), MAV_MISSION_ACCEPTED);
     assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.vehicle.mode, FlightMode::Land { is_item: true });
     assert!(reached(bench.tick(|_| {})).is_empty());
-    assert_eq!(reached(bench.tick(|sample| sample.position_m[2] = 0.0)), [1]);
+    assert_eq!(reached(bench.tick(|sample| sample.motion.position_m[2] = 0.0)), [1]);
     assert!(!bench.vehicle.is_armed);
 }
 

@@ -17,7 +17,7 @@ fn setpoints_of_each_frame_and_mask_become_goals() {
     };
     assert_eq!((waypoint.velocity_mps, until), (Vec3::new(0.5, 1.0, 0.0), valid));
     // The vehicle heads east, so right is south.
-    bench.tick(|sample| sample.velocity_mps = [1.0, 0.0, 0.0]);
+    bench.tick(|sample| sample.motion.velocity_mps = [1.0, 0.0, 0.0]);
     for frame in [8, 9] {
         let Some(Wish::Velocity { velocity_mps: v, .. }) = set(&mut bench, local(0xDC7, frame)) else {
             panic!("a velocity");
@@ -69,7 +69,7 @@ fn masks_in_public_use_are_accepted() {
 fn setpoints_in_space_have_heights() {
     let mut bench = guided(flying());
     assert_eq!(place_mm(set(&mut bench, local(0xDF8, 1))), [20_000, 10_000, 3000]);
-    bench.tick(|sample| sample.position_m[2] = 7.0);
+    bench.tick(|sample| sample.motion.position_m[2] = 7.0);
     assert_eq!(place_mm(set(&mut bench, local(0xDFC, 1)))[2], 7000, "the mask excludes z");
     let Some(Wish::Velocity { velocity_mps, .. }) = set(&mut bench, local(0xDC7, 1)) else {
         panic!("a velocity");

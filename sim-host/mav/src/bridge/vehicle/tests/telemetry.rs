@@ -73,8 +73,8 @@ fn every_streamed_message_can_be_requested_once() {
 fn positions_are_north_east_down_and_on_the_earth() {
     let mut bench = Bench::new(flying());
     bench.tick(|sample| {
-        sample.position_m = [100.0, 200.0, 30.0];
-        sample.velocity_mps = [3.0, -4.0, 1.0];
+        sample.motion.position_m = [100.0, 200.0, 30.0];
+        sample.motion.velocity_mps = [3.0, -4.0, 1.0];
     });
     let Some(MavMessage::LOCAL_POSITION_NED(local)) = bench.vehicle.telemetry(32) else {
         panic!("a position");
@@ -101,7 +101,7 @@ fn heartbeats_report_mode_and_arming() {
     let beat = heartbeat(&bench);
     assert_eq!((beat.mavtype, beat.autopilot, beat.custom_mode), (10, 3, 10));
     assert_eq!((beat.base_mode & 0x81, beat.system_status), (0x81, MAV_STATE_ACTIVE));
-    bench.tick(|sample| sample.mode = Mode::Fault);
+    bench.tick(|sample| sample.status.mode = Mode::Fault);
     assert_eq!(heartbeat(&bench).system_status, MAV_STATE_CRITICAL);
     bench.command(MAV_CMD_COMPONENT_ARM_DISARM, NONE);
     let beat = heartbeat(&bench);
@@ -140,8 +140,8 @@ fn a_robot_that_is_down_is_silent_and_loses_its_mode() {
     bench.give(MavMessage::PING(PING_DATA::DEFAULT));
     assert!(bench.out.messages.is_empty());
     bench.sample.is_up = true;
-    let (parameters, sample) = (bench.vehicle.parameters.clone(), bench.sample);
-    bench.vehicle.restart(parameters, sample, &mut bench.out);
+    let parameters = bench.vehicle.parameters.clone();
+    bench.vehicle.restart(parameters, (bench.time_us, bench.sample), &mut bench.out);
     assert_eq!(bench.texts(), ["restarted"]);
     assert_eq!((bench.vehicle.mode, bench.vehicle.mission.len()), (FlightMode::Auto, 2));
     assert_eq!(bench.vehicle.uptime_us(), 0);
@@ -159,7 +159,7 @@ fn events_and_setpoint_timeouts_are_reported_as_texts() {
     let lost = [2, 3].map(|id| Event::NeighborLost(staya_controller::robot::RobotId(id)));
     let (sample, mut out) = (bench.sample, Out::default());
     let events = [arrived, lost[0], lost[1]];
-    bench.vehicle.observe(sample, &events, 9_000_000, &mut out);
+    bench.vehicle.observe((bench.time_us, sample), &events, 9_000_000, &mut out);
     bench.out = out;
     assert_eq!(bench.texts(), ["arrived", "robot 2 is lost"]);
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::companion::replay::Recording;
+use crate::companion::offboard::tests::replay::Recording;
 
 struct Replay {
     now: Duration,
@@ -28,16 +28,6 @@ impl Machine for Replay {
     }
 
     fn send(&mut self, _: usize, _: Option<Peer>, _: &[u8]) {}
-
-    fn believe(&mut self, _: usize, _: Peer) {}
-
-    fn counts(&self, _: usize) -> Counts {
-        Counts::default()
-    }
-
-    fn trouble(&self, _: usize) -> Option<String> {
-        None
-    }
 
     fn hear_others(&mut self, _: &mut dyn FnMut(&[u8])) {}
 

@@ -1,4 +1,4 @@
-use super::model::{Sample, VehicleModel};
+use super::model::VehicleModel;
 use super::params::Parameters;
 use super::streams::Streams;
 use super::vehicle::{Out, Vehicle};
@@ -6,9 +6,11 @@ use crate::geo::{Global, Origin};
 use staya_controller::agent::{Wish, parameters};
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::parameters::Parameter;
-use staya_controller::robot::Mode;
+use staya_controller::robot::{Mode, RobotId};
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
+use staya_sim::engine::{Observation, Status};
+use staya_sim::record::Motion;
 use staya_sim::terrain::Terrain;
 use std::sync::Arc;
 
@@ -39,15 +41,14 @@ pub(super) fn on_grid() -> VehicleModel {
     VehicleModel { grid: Some(land), max_speed_mps: 0.0, radius_m: 0.0, ..model() }
 }
 
-pub(super) fn sample() -> Sample {
-    Sample {
-        time_us: 0,
-        position_m: [3.0, 5.0, 0.0],
-        velocity_mps: [0.0; 3],
-        cell: Cell::new(1, 2),
-        mode: Mode::Cruise,
-        wish: Wish::Own,
+pub(super) fn sample() -> Observation {
+    Observation {
+        motion: Motion { cell: Cell::new(1, 2), position_m: [3.0, 5.0, 0.0], velocity_mps: [0.0; 3] },
+        status: Status { mode: Mode::Cruise, leader: RobotId::NONE, target: Cell::new(1, 2), wait: None },
+        boot: 0,
         is_up: true,
+        wish: Wish::Own,
+        neighbors: 0,
     }
 }
 
@@ -57,7 +58,8 @@ pub(super) fn greatest() -> Vec<(&'static Parameter, f32)> {
 
 pub(super) struct Bench {
     pub(super) vehicle: Vehicle,
-    pub(super) sample: Sample,
+    pub(super) sample: Observation,
+    pub(super) time_us: u64,
     pub(super) out: Out,
 }
 
@@ -75,8 +77,9 @@ impl Bench {
         let streams = Streams::new(10.0, 0.0);
         let sample = sample();
         Self {
-            vehicle: Vehicle::new(7, Arc::new(model), parameters, streams, sample, true),
+            vehicle: Vehicle::new(7, Arc::new(model), parameters, streams, (0, sample), true),
             sample,
+            time_us: 0,
             out: Out::default(),
         }
     }
@@ -122,12 +125,11 @@ impl Bench {
         acks[0]
     }
 
-    pub(super) fn tick(&mut self, change: impl FnOnce(&mut Sample)) -> &Out {
-        self.sample.time_us += 100_000;
+    pub(super) fn tick(&mut self, change: impl FnOnce(&mut Observation)) -> &Out {
+        self.time_us += 100_000;
         change(&mut self.sample);
         self.out = Out::default();
-        let now_us = self.sample.time_us;
-        self.vehicle.observe(self.sample, &[], now_us, &mut self.out);
+        self.vehicle.observe((self.time_us, self.sample), &[], self.time_us, &mut self.out);
         &self.out
     }
 

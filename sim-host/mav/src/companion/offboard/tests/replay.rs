@@ -1,5 +1,4 @@
-use super::kind::Kind;
-use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules};
+use super::*;
 use crate::geo::{Global, Origin};
 use flate2::read::GzDecoder;
 use staya_mavlink::dialect::MavMessage;
