@@ -386,4 +386,4 @@ def test_a_wrong_configuration_is_an_error_with_its_place(tmp_path, staya):
     config.write_text('scenario = "none.toml"\norigin = { latitude_deg = 91, longitude_deg = 0 }\n')
     process = staya("companion", config)
     assert process.wait() == 1
-    assert "config.toml:2: origin: not a position on the Earth" in process.output()
+    assert "config.toml:2:10: origin: not a position on the Earth" in process.output()

@@ -2,6 +2,7 @@
 
 use staya_lab::study::movingai::MovingAi;
 use staya_lab::study::{Given, Study as _};
+use staya_sim::scenario::Source;
 use staya_tests::root;
 use std::collections::BTreeMap;
 
@@ -9,9 +10,10 @@ use std::collections::BTreeMap;
 const TOLERANCE_PERCENT: f64 = 0.1;
 
 fn answers(scen: &str, parameters: &str) -> BTreeMap<String, f64> {
-    let table = format!("[study]\nscen = '{scen}'\n{parameters}").parse().expect("TOML");
+    let text = format!("[study]\nscen = '{scen}'\n{parameters}");
     let path = root().join("plan.toml");
-    let job = MovingAi.read(&Given { table, path: &path, measures: &[], seed: 0 }).expect("sound");
+    let source = Source::new(&path, &text).expect("TOML");
+    let job = MovingAi.read(&Given { source, measures: &[], seed: 0 }).expect("sound");
     let values = job(&|_| true).expect("answers").values;
     values.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
 }

@@ -7,6 +7,7 @@ use staya_controller::orca::{HalfPlane, HalfSpaces as _, MovingBall, Params, Vel
 use staya_controller::rand::Rng;
 use staya_controller::scalar::Q16;
 use staya_voxel::{Header, Model, VoxelNeighbor, obstacles, velocity_half_plane};
+use std::path::Path;
 
 type V = Vec2<f64>;
 
@@ -173,18 +174,22 @@ fn errors_name_the_point_where_a_function_cannot_be_modelled() {
 fn rooms_parse_and_errors_name_the_field() {
     let room = Room::read(
         "outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]\n[[circle]]\ncenter = [1.0, 0.5]\nradius = 0.2",
+        Path::new("room.toml"),
     )
     .unwrap();
     let function = room.function(System::R0);
     for (at, is_wall) in [([1.0, 0.5], true), ([1.5, 0.5], false), ([2.1, 0.5], true), ([0.5, -0.1], true)] {
         assert_eq!(function.value(at) > 0.0, is_wall, "{at:?}");
     }
-    let refused = |text: &str| Room::read(text).unwrap_err().to_string();
-    assert!(refused("outline = [[0.0, 0.0], [1.0, 0.0]]").contains("outline: give three corners"));
+    let refused = |text: &str| Room::read(text, Path::new("room.toml")).unwrap_err().to_string();
+    assert!(
+        refused("outline = [[0.0, 0.0], [1.0, 0.0]]")
+            .contains("room.toml:1:11: outline: this is not a polygon; give three corners")
+    );
     let square = "outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]\n";
-    assert!(refused(&format!("{square}[[circle]]\ncenter = [0.0, 0.0]\nradius = 0.0")).contains("circle 1: radius"));
-    assert!(refused(&format!("{square}[[polygon]]\ncorners = []")).contains("polygon 1: corners"));
-    assert!(refused(&format!("{square}door = 1")).contains("line 2"));
+    assert!(refused(&format!("{square}[[circle]]\ncenter = [0.0, 0.0]\nradius = 0.0")).contains("circle[0].radius"));
+    assert!(refused(&format!("{square}[[polygon]]\ncorners = []")).contains("polygon[0].corners"));
+    assert!(refused(&format!("{square}door = 1")).contains("room.toml:2:1: door: unknown field"));
 }
 
 #[test]

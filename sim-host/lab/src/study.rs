@@ -10,9 +10,7 @@ mod walk;
 
 use crate::error::SweepError;
 use crate::measure::Job;
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
-use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source};
+use staya_sim::scenario::{Overrides, Read, Scenario, ScenarioError, Source};
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
@@ -59,18 +57,11 @@ pub const ALL: [&dyn Study; 5] = [&boids::Boids, &flock::Flock, &movingai::Movin
 #[derive(Clone, Debug)]
 pub struct Given<'a> {
     /// Fields of the scenario and, in `study`, of the study.
-    pub table: toml::Table,
-    /// File that names of files are relative to.
-    pub path: &'a Path,
+    pub source: Source<'a>,
     /// Measures of the plan; empty while it is read.
     pub measures: &'a [String],
     /// Seed of the run.
     pub seed: u64,
-}
-
-#[derive(Deserialize)]
-struct Only<T> {
-    study: T,
 }
 
 impl Given<'_> {
@@ -78,11 +69,8 @@ impl Given<'_> {
     ///
     /// # Errors
     /// A field is unknown, missing, or of another type.
-    pub fn parameters<T: DeserializeOwned>(&self) -> Result<T, ScenarioError> {
-        let own = self.table.get("study").cloned().unwrap_or_else(|| toml::Table::new().into());
-        let table = toml::Table::from_iter([("study".to_owned(), own)]);
-        let text = toml::to_string(&table).unwrap_or_default();
-        Ok(Source::new(self.path, &text)?.read::<Only<T>>(LIST)?.study)
+    pub fn parameters<T: Read>(&self) -> Result<T, ScenarioError> {
+        self.source.read_table("study", LIST)
     }
 
     /// The scenario: all fields except the study's.
@@ -90,15 +78,13 @@ impl Given<'_> {
     /// # Errors
     /// The scenario is wrong.
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
-        let mut table = self.table.clone();
-        table.remove("study");
-        let text = toml::to_string(&table).unwrap_or_default();
-        Scenario::parse(&text, self.path, &Overrides { seed: Some(self.seed), ticks: None })
+        let mut source = self.source.clone();
+        source.remove("study");
+        Scenario::read(source, &Overrides { seed: Some(self.seed), ticks: None })
     }
 
     /// An error about a parameter of the study.
     pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> SweepError {
-        let (path, field) = (self.path.to_owned(), format!("study.{field}"));
-        ScenarioError::Field { path, line: 1, field, what: what.into(), remedy: remedy.into() }.into()
+        self.source.error(&format!("study.{field}"), what, remedy).into()
     }
 }

@@ -8,14 +8,16 @@ mod nearest;
 pub mod station;
 
 use crate::framed::Frame;
-use serde::Deserialize;
 use staya_controller::agent::{Grid, GridOrder, Protocol as _, TEMPLATE, TemplatePart};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateError, rotated};
 use staya_controller::wire::{Header, Message};
 use staya_mavlink::wire::{MAX_ROBOT, encode};
+use staya_sim::scenario::Source;
+use staya_sim::table;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// System id of the ground station.
 pub const STATION: u8 = 255;
@@ -121,15 +123,18 @@ pub enum GraphError {
     #[error("robot {0} has more than {TEMPLATE} neighbours; give it fewer edges")]
     Neighbors(usize),
     /// The file is invalid.
-    #[error("{0}; a formation's file has `places = [[0, 0], [-3, 3]]` and `edges = [[1, 2]]`")]
+    #[error("{0}")]
     File(String),
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct GraphFile {
-    places: Vec<[i32; 2]>,
-    edges: Vec<[u32; 2]>,
+table! {
+    /// A formation's file.
+    pub struct GraphFile {
+        /// Cell of each robot relative to the first.
+        pub places: Vec<[i32; 2]>;
+        /// Pairs of robot numbers that are neighbours.
+        pub edges: Vec<[u32; 2]>;
+    }
 }
 
 impl Graph {
@@ -151,12 +156,13 @@ impl Graph {
         }
     }
 
-    /// Parses `places` and `edges` as in a scenario's `[robots.formation]`.
+    /// Parses `places` and `edges` as in a scenario's `[robots.formation]`. Errors name `path`.
     ///
     /// # Errors
     /// [`GraphError`]: invalid text, or too many, too far, colliding or unconnected places.
-    pub fn parse(text: &str) -> Result<Self, GraphError> {
-        let file: GraphFile = toml::from_str(text).map_err(|error| GraphError::File(error.to_string()))?;
+    pub fn parse(text: &str, path: &Path) -> Result<Self, GraphError> {
+        let file = Source::new(path, text).and_then(|source| source.read("scenarios/README.md"));
+        let file: GraphFile = file.map_err(|error| GraphError::File(error.to_string()))?;
         if file.places.first() != Some(&[0, 0]) {
             return Err(GraphError::First);
         }

@@ -8,6 +8,7 @@
 //! and north deviates from y by about d tan(latitude) / R (2 mrad at 10 km and 55 degrees).
 //! Velocities are *not* corrected for that angle.
 
+use staya_sim::table;
 use std::f64::consts::PI;
 
 const A_M: f64 = 6_378_137.0;
@@ -16,17 +17,17 @@ const E2: f64 = FLATTENING * (2.0 - FLATTENING);
 /// Largest distance from the origin, metres.
 pub const FAR_M: f64 = 1_000_000.0;
 
-/// A geographic position (WGS 84).
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Global {
-    /// Latitude, degrees north, -90 to 90.
-    pub latitude_deg: f64,
-    /// Longitude, degrees east, -180 to 180.
-    pub longitude_deg: f64,
-    /// Altitude, metres. All positions of a swarm use the same reference, such as sea level.
-    #[serde(default)]
-    pub altitude_m: f64,
+table! {
+    /// A geographic position (WGS 84).
+    #[derive(Copy, PartialEq)]
+    pub struct Global {
+        /// Latitude, degrees north, -90 to 90.
+        pub latitude_deg: f64;
+        /// Longitude, degrees east, -180 to 180.
+        pub longitude_deg: f64;
+        /// Altitude, metres. All positions of a swarm use the same reference, such as sea level.
+        pub altitude_m: f64 = 0.0;
+    }
 }
 
 impl Global {

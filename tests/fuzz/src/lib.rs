@@ -7,6 +7,7 @@
 mod keys;
 mod mavlink;
 mod messages;
+mod scenario;
 mod sealed;
 mod templates;
 mod wire;
@@ -14,6 +15,7 @@ mod wire;
 pub use keys::keys;
 pub use mavlink::mavlink_decode;
 pub use messages::messages_model;
+pub use scenario::scenario;
 pub use sealed::sealed;
 pub use templates::templates;
 pub use wire::wire_decode;
@@ -61,5 +63,10 @@ mod tests {
     #[test]
     fn templates_invariants_hold_for_random_bytes() {
         on_random_bytes(templates, 2_000, 1_000);
+    }
+
+    #[test]
+    fn scenario_invariants_hold_for_random_bytes() {
+        on_random_bytes(scenario, 3_000, 100);
     }
 }

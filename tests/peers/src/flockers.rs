@@ -29,7 +29,7 @@ pub fn flock(boids: u32) -> Flock {
     let plan = plan();
     let side = (boids as f32 * plan.area_per_boid).sqrt();
     let whole = (side / plan.closest).floor().max(3.0) * plan.closest;
-    plan.flock_on(boids, [whole; 2])
+    plan.flock_on(boids, [whole; 2], 1)
 }
 
 #[derive(Clone, Copy, Debug)]

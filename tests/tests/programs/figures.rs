@@ -93,7 +93,7 @@ fn wrong_changes_are_refused_in_one_line() {
     for (arguments, remedy) in [
         (&["swap", "--set", "count=0", "--set", "radius_m=2"][..], "plane.robots.circle.count: 0 is out of range"),
         (&["swap", "--axis", "count=4,8"], "give as many values of each of them"),
-        (&["swap", "--set", "tick_s=0"], "swap/scenario.toml:6: tick_s: 0 is out of range"),
+        (&["swap", "--set", "tick_s=0"], "swap/scenario.toml:6:10: tick_s: 0 is out of range"),
         (&["swap", "--set", "radio.loss=1.5"], "radio.loss: 1.5 is not a probability"),
         (&["swap", "--set", "radio.los=1"], "unknown field `los`"),
         (&["swap", "--axis", "radio.loss"], "give FIELD=VALUE"),

@@ -144,7 +144,7 @@ fn errors_are_one_line_with_place_and_remedy() {
     fs::write(&wrong, good.replace("range_m = 150", "range_m = 150\nloss = 60")).expect("write");
     let wrong = refusal(&["run", wrong.to_str().expect("UTF-8"), "--out", &out]);
     let line = good.lines().position(|l| l == "range_m = 150").expect("the line") + 2;
-    let place = format!("wrong.toml:{line}: radio.loss: 60 is not a probability; give a number from 0 to 1");
+    let place = format!("wrong.toml:{line}:8: radio.loss: 60 is not a probability; give a number from 0 to 1");
     assert!(wrong.contains(&place), "{wrong}");
     assert!(!Path::new(&out).exists(), "nothing was begun");
 

@@ -130,7 +130,7 @@ pub fn room(file: Option<&Path>) -> Result<Room> {
     let Some(file) = file else { return Ok(Room::default()) };
     let text = read_text(file, TEXT)
         .map_err(|error| anyhow!("cannot read {}: {error}; {}", file.display(), read_remedy(&error)))?;
-    Room::read(&text).with_context(|| file.display().to_string())
+    Ok(Room::read(&text, file)?)
 }
 
 /// Equal steps along all axes, `resolution` nodes along the longest, at least two along others.

@@ -8,7 +8,6 @@ use super::{Given, Study};
 use crate::error::SweepError;
 use crate::measure::{Job, draw, measure};
 use crate::probe;
-use serde::Deserialize;
 use staya_controller::agent::{GOALS, GuidanceSetup, SafetySetup};
 use staya_controller::body::Body;
 use staya_controller::digest::{chained, digest};
@@ -26,6 +25,7 @@ use staya_sim::nearby::{Cells, Query, Search as _, Space};
 use staya_sim::record::{Motion, PacketCounts, RobotRow, TickRow};
 use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
 use staya_sim::world::plane::{Clearance, Solid};
+use staya_sim::{choice, table};
 use std::path::{Path, PathBuf};
 
 const STARTS: u32 = 0x0046_0101;
@@ -38,28 +38,31 @@ const TRIES: u32 = 1000;
 #[derive(Debug)]
 pub struct Flock;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Knowledge {
-    /// Agents that receive packets.
-    #[default]
-    Packets,
-    /// Exact places and velocities of all robots in the law's range.
-    All,
+choice! {
+    /// Knowledge of a robot about the others.
+    pub enum Knowledge {
+        /// Agents that receive packets.
+        Packets = "packets",
+        /// Exact places and velocities of all robots in the law's range.
+        All = "all",
+    }
 }
 
-/// Discs of random sizes at random places.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Scattered {
-    count: u32,
-    /// Smallest and largest radius. Default: points.
-    #[serde(default)]
-    radius_m: [f64; 2],
-    from_m: [f64; 2],
-    to_m: [f64; 2],
-    /// Least distance of two edges.
-    gap_m: f64,
+table! {
+    /// Discs of random sizes at random places.
+    #[derive(Copy)]
+    pub struct Scattered {
+        /// Number of discs.
+        pub count: u32;
+        /// Smallest and largest radius. Default: points.
+        pub radius_m: [f64; 2] = [0.0; 2];
+        /// South-west corner.
+        pub from_m: [f64; 2];
+        /// North-east corner.
+        pub to_m: [f64; 2];
+        /// Least distance of two edges.
+        pub gap_m: f64;
+    }
 }
 
 impl Scattered {
@@ -85,17 +88,18 @@ impl Scattered {
     }
 }
 
-/// Starts in squares of rows, one square for each group of robots.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Squares {
-    /// South-west corners of the squares.
-    from_m: Vec<[f64; 2]>,
-    spacing_m: f64,
-    /// Largest random offset of a start along each axis.
-    noise_m: f64,
-    /// Largest random offset of a square but the first to the north or south.
-    shift_m: f64,
+table! {
+    /// Starts in squares of rows, one square for each group of robots.
+    pub struct Squares {
+        /// South-west corners of the squares.
+        pub from_m: Vec<[f64; 2]>;
+        /// Distance of two rows.
+        pub spacing_m: f64;
+        /// Largest random offset of a start along each axis.
+        pub noise_m: f64;
+        /// Largest random offset of a square but the first to the north or south.
+        pub shift_m: f64;
+    }
 }
 
 impl Squares {
@@ -115,40 +119,27 @@ impl Squares {
     }
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct Parameters {
-    knows: Knowledge,
-    /// Number of nearest robots that each robot knows with exact knowledge.
-    nearest: usize,
-    /// Speed limit of alpha flocks with exact knowledge; the paper has none.
-    fastest_mps: f64,
-    /// Gains c2 of alpha flocks, instead of 2 sqrt(c1).
-    c2_alpha: Option<f32>,
-    c2_gamma: Option<f32>,
-    /// Standard deviation of starts along each axis, instead of the scenario's starts.
-    deviation_m: [f64; 3],
-    /// Starts instead of the scenario's.
-    squares: Option<Squares>,
-    /// Balls besides those of the scenario.
-    forest: Option<Scattered>,
-    /// Goals instead of those of the scenario, in its plane.
-    goals: Option<Scattered>,
-}
-
-impl Default for Parameters {
-    fn default() -> Self {
-        Self {
-            knows: Knowledge::Packets,
-            nearest: usize::MAX,
-            fastest_mps: f64::MAX,
-            c2_alpha: None,
-            c2_gamma: None,
-            deviation_m: [0.0; 3],
-            squares: None,
-            forest: None,
-            goals: None,
-        }
+table! {
+    /// Parameters of a run.
+    pub struct Parameters {
+        /// Knowledge of a robot about the others. Default: `"packets"`.
+        pub knows: Knowledge = Knowledge::Packets;
+        /// Number of nearest robots that each robot knows with exact knowledge.
+        pub nearest: usize = usize::MAX;
+        /// Speed limit of alpha flocks with exact knowledge; the paper has none.
+        pub fastest_mps: f64 = f64::MAX;
+        /// Gain c2 of alpha flocks for neighbours, instead of 2 sqrt(c1).
+        pub c2_alpha: Option<f32>;
+        /// Gain c2 of alpha flocks for the reference, instead of 2 sqrt(c1).
+        pub c2_gamma: Option<f32>;
+        /// Standard deviation of starts along each axis, instead of the scenario's starts.
+        pub deviation_m: [f64; 3] = [0.0; 3];
+        /// Starts instead of the scenario's.
+        pub squares: Option<Squares>;
+        /// Balls besides those of the scenario.
+        pub forest: Option<Scattered>;
+        /// Goals instead of those of the scenario, in its plane.
+        pub goals: Option<Scattered>;
     }
 }
 
@@ -179,23 +170,22 @@ impl Study for Flock {
     }
 
     fn read(&self, given: &Given<'_>) -> Result<Job, SweepError> {
-        let (run, measures) = (Run::read(given)?, given.measures.to_vec());
+        let (run, measures) = (Run::read(given, given.parameters()?)?, given.measures.to_vec());
         Ok(Box::new(move |watch| measure(&run.scenario, &measures, watch, &|each| run.simulate(each))))
     }
 
     fn draw(&self, given: &Given<'_>, title: &str, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
-        let run = Run::read(given)?;
+        let run = Run::read(given, given.parameters()?)?;
         draw(&run.scenario, given.measures, &|each| run.simulate(each), title, stem)
     }
 }
 
 impl Run {
-    /// Reads and checks the fields of a run.
+    /// Reads the scenario of a run and checks it with the parameters.
     ///
     /// # Errors
     /// Names the field that is wrong.
-    pub fn read(given: &Given<'_>) -> Result<Self, SweepError> {
-        let parameters: Parameters = given.parameters()?;
+    pub fn read(given: &Given<'_>, parameters: Parameters) -> Result<Self, SweepError> {
         let mut scenario = given.scenario()?;
         let Some(plane) = scenario.plane.as_mut().filter(|plane| plane.torus_m.is_none()) else {
             return Err(given.error("knows", "the scenario has no open plane", "name a scenario in the plane"));

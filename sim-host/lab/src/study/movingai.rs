@@ -13,11 +13,11 @@ use crate::measure::{Job, Measured, Watch, write_table};
 use crate::optimal;
 use crate::walk::{Task, holds};
 use rayon::prelude::*;
-use serde::Deserialize;
 use staya_controller::cost::Gain;
 use staya_controller::rand::Rng;
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
+use staya_sim::table;
 use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
 use staya_stats::Summary;
@@ -28,33 +28,32 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct MovingAi;
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    scen: PathBuf,
-    /// Default: the file that the scenario names, in its folder.
-    map: Option<PathBuf>,
-    /// Radius of the robot's window, cells; 0: the whole map.
-    #[serde(default = "five")]
-    radius: u8,
-    /// Visited cells that the robot remembers, 6 bytes each.
-    #[serde(default = "walk::visits")]
-    visits: u32,
-    /// Cells with learned travel costs, 8 bytes each.
-    #[serde(default = "walk::learned")]
-    learned: u32,
-    #[serde(default)]
-    exit: ExitRule,
-    #[serde(default)]
-    replan: Replan,
-    a0: Option<f64>,
-    a1: Option<f64>,
-    a2: Option<f64>,
-    a3: Option<f64>,
-}
-
-const fn five() -> u8 {
-    5
+table! {
+    /// Parameters of a run.
+    pub struct Parameters {
+        /// The benchmark's queries.
+        pub scen: PathBuf;
+        /// Default: the file that the scenario names, in its folder.
+        pub map: Option<PathBuf>;
+        /// Radius of the robot's window, cells; 0: the whole map.
+        pub radius: u8 = 5;
+        /// Visited cells that the robot remembers, 6 bytes each.
+        pub visits: u32 = walk::VISITS;
+        /// Cells with learned travel costs, 8 bytes each.
+        pub learned: u32 = walk::LEARNED;
+        /// Which border cells of the window end a route: `"best"` or `"ray"`.
+        pub exit: ExitRule = ExitRule::default();
+        /// When to plan: `"each_cell"` or `"until_changed"`.
+        pub replan: Replan = Replan::default();
+        /// Weight of travel time, 0 to 4095.
+        pub a0: Option<f64>, 0.0..=4095.0, "";
+        /// Extra ticks for a cell that another robot occupies, 0 to 4095.
+        pub a1: Option<f64>, 0.0..=4095.0, "";
+        /// Ticks per earlier visit of a cell, 0 to 4095.
+        pub a2: Option<f64>, 0.0..=4095.0, "";
+        /// Ticks per cell of distance from the exit to the goal, 0 to 4095.
+        pub a3: Option<f64>, 0.0..=4095.0, "";
+    }
 }
 
 /// Result of one query; lengths in cells.
@@ -119,15 +118,14 @@ impl Study for MovingAi {
 
 fn benchmark(given: &Given<'_>) -> Result<Benchmark, SweepError> {
     let parameters: Parameters = given.parameters()?;
-    let folder = given.path.parent().unwrap_or(Path::new(""));
-    let scen = folder.join(&parameters.scen);
+    let scen = given.source.file(&parameters.scen);
     let wrong = |what: String, remedy: &str| SweepError::new(scen.display(), what, remedy);
     let queries = parse_scen(&read(&scen)?, &scen)?;
     let Some(first) = queries.first() else {
         return Err(wrong("no queries".to_owned(), "each line after the first one is a query"));
     };
     let beside = scen.with_file_name(Path::new(&first.map).file_name().unwrap_or_default());
-    let map = parameters.map.as_ref().map_or(beside, |map| folder.join(map));
+    let map = parameters.map.as_ref().map_or(beside, |map| given.source.file(map));
     if parameters.map.is_none() && !map.is_file() {
         let what = format!("its map {} is not beside it ({} does not exist)", first.map, map.display());
         return Err(wrong(what, "put it there, or name it by study.map"));
@@ -152,18 +150,16 @@ fn benchmark(given: &Given<'_>) -> Result<Benchmark, SweepError> {
         return Err(given.error("radius", what, "give at most 126, or 0 for the whole map"));
     }
     let default = RouteParams::default();
-    let gain = |name: &str, value: Option<f64>, usual: Gain| match value {
-        None => Ok(usual),
-        Some(value) if (0.0..=4095.0).contains(&value) => Ok(Gain::from_sixteenths(libm::round(value * 16.0) as u16)),
-        Some(value) => Err(given.error(name, format!("{value} is out of range"), "give 0 to 4095")),
+    let gain = |value: Option<f64>, usual: Gain| {
+        value.map_or(usual, |value| Gain::from_sixteenths(libm::round(value * 16.0) as u16))
     };
     let params = RouteParams {
         radius: if sees_map { u8::MAX } else { parameters.radius },
         exit: parameters.exit,
-        a0: gain("a0", parameters.a0, default.a0)?,
-        a1: gain("a1", parameters.a1, default.a1)?,
-        a2: gain("a2", parameters.a2, default.a2)?,
-        a3: gain("a3", parameters.a3, default.a3)?,
+        a0: gain(parameters.a0, default.a0),
+        a1: gain(parameters.a1, default.a1),
+        a2: gain(parameters.a2, default.a2),
+        a3: gain(parameters.a3, default.a3),
         ..default
     };
     let maker = maker(given, parameters.visits, parameters.learned)?;

@@ -11,7 +11,6 @@ use crate::error::SweepError;
 use crate::measure::{Job, Measured};
 use crate::optimal;
 use crate::walk::{Task, Walk};
-use serde::Deserialize;
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
 use staya_controller::route::RouteParams;
@@ -19,6 +18,7 @@ use staya_plot::canvas::{Anchor, Canvas, Stroke, Text};
 use staya_plot::colour::{INK, PALETTE, WHITE};
 use staya_plot::map::{FOOTER, Map};
 use staya_sim::scenario::Scenario;
+use staya_sim::table;
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -31,20 +31,19 @@ const MAX_RADIUS: u8 = 126;
 #[derive(Debug)]
 pub struct Route;
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    /// Radius of the robot's window, cells, instead of the scenario's, which is at most 16.
-    radius: Option<u8>,
-    /// Visited cells that the robot remembers.
-    #[serde(default = "walk::visits")]
-    visits: u32,
-    /// Cells with learned travel costs.
-    #[serde(default = "walk::learned")]
-    learned: u32,
-    /// Stationary robots in random cells, avoided with weight a1.
-    #[serde(default)]
-    parked: u32,
+table! {
+    /// Parameters of a run.
+    #[derive(Copy)]
+    pub struct Parameters {
+        /// Radius of the robot's window, cells, instead of the scenario's, which is at most 16.
+        pub radius: Option<u8>;
+        /// Visited cells that the robot remembers.
+        pub visits: u32 = walk::VISITS;
+        /// Cells with learned travel costs.
+        pub learned: u32 = walk::LEARNED;
+        /// Stationary robots in random cells, avoided with weight a1.
+        pub parked: u32 = 0;
+    }
 }
 
 /// A checked run.

@@ -8,7 +8,7 @@
 //! A cost of one means no group, or no arrivals, or twice the time. The result is judged on runs
 //! that the search has not used, beside the default gains.
 
-use super::flock::Run;
+use super::flock::{self, Run};
 use super::{Given, Study};
 use crate::error::SweepError;
 use crate::measure::{Job, Measured, Watch, measure};
@@ -17,9 +17,9 @@ use argmin::solver::particleswarm::ParticleSwarm;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng as _;
 use rayon::prelude::*;
-use serde::Deserialize;
 use staya_controller::agent::GuidanceSetup;
-use staya_sim::scenario::{Field, Scenario};
+use staya_sim::scenario::{Field, Scenario, Source};
+use staya_sim::table;
 use std::path::PathBuf;
 
 /// The defaults of the figure: K2 / K1, K3 / K1, R_nbh in R_MinDist.
@@ -38,22 +38,18 @@ const MEASURES: [&str; 3] = ["company.together", "company.arrived", "company.hal
 #[derive(Debug)]
 pub struct Tune;
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(default)]
-struct Parameters {
-    /// Particles of the search.
-    particles: u32,
-    /// Moves of the particles: the search evaluates particles times (moves + 1) costs.
-    moves: u32,
-    /// Runs of a cost.
-    runs: u32,
-    /// Runs that judge the result.
-    judged: u32,
-}
-
-impl Default for Parameters {
-    fn default() -> Self {
-        Self { particles: 10, moves: 12, runs: 2, judged: 20 }
+table! {
+    /// Parameters of a search.
+    pub struct Parameters {
+        part flock: flock::Parameters;
+        /// Particles of the search.
+        pub particles: u32 = 10, 2.0..=1e4, "";
+        /// Moves of the particles: the search evaluates particles times (moves + 1) costs.
+        pub moves: u32 = 12, 1.0..=1e4, "";
+        /// Runs of a cost.
+        pub runs: u32 = 2, 1.0..=1e4, "";
+        /// Runs that judge the result.
+        pub judged: u32 = 20, 1.0..=1e4, "";
     }
 }
 
@@ -82,30 +78,19 @@ impl Study for Tune {
 
     fn read(&self, given: &Given<'_>) -> Result<Job, SweepError> {
         let parameters: Parameters = given.parameters()?;
-        let Parameters { particles, moves, runs, judged } = parameters;
-        for (name, value, least) in
-            [("particles", particles, 2), ("moves", moves, 1), ("runs", runs, 1), ("judged", judged, 1)]
-        {
-            if !(least..=10_000).contains(&value) {
-                return Err(given.error(name, format!("{value} is out of range"), format!("give {least} to 10,000")));
-            }
-        }
-        let mut table = given.table.clone();
-        if let Some(toml::Value::Table(study)) = table.get_mut("study") {
-            ["particles", "moves", "runs", "judged"].iter().for_each(|name| drop(study.remove(*name)));
-        }
-        let run = Run::read(&Given { table: table.clone(), ..given.clone() })?;
+        let run = Run::read(given, parameters.flock.clone())?;
         let wrong = || given.error("particles", "the scenario has no goal flock", "name one with a goal flock");
         let (straight_s, k1, unit_m) = way(&run.scenario).ok_or_else(wrong)?;
-        let search =
-            Search { parameters, table, path: given.path.to_owned(), straight_s, k1, unit_m, seed: given.seed };
+        let (text, path) = (given.source.written(), given.source.path().to_owned());
+        let search = Search { parameters, text, path, straight_s, k1, unit_m, seed: given.seed };
         Ok(Box::new(move |watch| search.tuned(watch)))
     }
 }
 
 struct Search {
     parameters: Parameters,
-    table: toml::Table,
+    /// Fields of the scenario and the study.
+    text: String,
     path: PathBuf,
     straight_s: f64,
     k1: f64,
@@ -117,15 +102,17 @@ impl Search {
     /// Mean cost of runs `first..first + count` with these gains. Runs are parallel and summed in
     /// order.
     fn cost(&self, [k2, k3, neighborhood]: [f64; 3], first: u64, count: u32, watch: &Watch<'_>) -> Result<f64, String> {
-        let mut table = self.table.clone();
+        let mut source = Source::new(&self.path, &self.text).map_err(|error| error.to_string())?;
         let fields = [("k2", self.k1 * k2), ("k3", self.k1 * k3), ("neighborhood_m", self.unit_m * neighborhood)];
-        for (name, value) in fields {
-            let field = Field::read(&format!("plane.goal_flock.{name}")).ok_or("a field")?;
-            field.set(&mut table, value.into())?;
+        let fields = fields.map(|(name, value)| (format!("plane.goal_flock.{name}"), format!("{value:?}")));
+        for (name, value) in &fields {
+            source.set(&Field::read(name).ok_or("a field")?, value)?;
         }
+        let text = source.written();
         let run = |seed: u64| {
-            let given = Given { table: table.clone(), path: &self.path, measures: &[], seed };
-            let run = Run::read(&given).map_err(|error| error.to_string())?;
+            let source = Source::new(&self.path, &text).map_err(|error| error.to_string())?;
+            let given = Given { source, measures: &[], seed };
+            let run = Run::read(&given, self.parameters.flock.clone()).map_err(|error| error.to_string())?;
             let measured = measure(&run.scenario, &MEASURES.map(str::to_owned), watch, &|each| run.simulate(each))?;
             let [together, arrived, half_s] = MEASURES.map(|name| measured.values.get(name).copied().flatten());
             let half_s = half_s.unwrap_or(f64::from(run.scenario.ticks) * run.scenario.tick_s());
@@ -140,7 +127,7 @@ impl Search {
     }
 
     fn tuned(&self, watch: &Watch<'_>) -> Result<Measured, String> {
-        let Parameters { particles, moves, runs, judged } = self.parameters;
+        let Parameters { particles, moves, runs, judged, .. } = self.parameters;
         let [low, high] = BOUNDS.map(|bound| bound.to_vec());
         let swarm = ParticleSwarm::new((low, high), particles as usize)
             .with_inertia_factor(INERTIA)
@@ -215,11 +202,13 @@ mod tests {
 
     fn read(fields: &str) -> Result<Measured, String> {
         let scenario = include_str!("../../../../papers/pav/goals/scenario.toml").replace("count = 225", "count = 12");
-        let mut table: toml::Table = scenario.parse().unwrap();
-        table.insert("ticks".into(), 300.into());
-        let study = table["study"].as_table_mut().unwrap();
-        study.extend(fields.parse::<toml::Table>().unwrap());
-        let given = Given { table, path: Path::new("s.toml"), measures: &[], seed: 3 };
+        let mut source = Source::new(Path::new("s.toml"), &scenario).unwrap();
+        for field in ["ticks = 300"].into_iter().chain(fields.lines()) {
+            let (name, value) = field.split_once(" = ").unwrap();
+            let name = if name == "ticks" { name.to_owned() } else { format!("study.{name}") };
+            source.set(&Field::read(&name).unwrap(), value).unwrap();
+        }
+        let given = Given { source, measures: &[], seed: 3 };
         Tune.read(&given).map_err(|error| error.to_string())?(&|_| true)
     }
 

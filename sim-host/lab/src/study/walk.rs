@@ -79,14 +79,10 @@ fn made<const M: usize, const L: usize>() -> Box<dyn Walks> {
 }
 
 /// Default size of the memory of visits.
-pub const fn visits() -> u32 {
-    64
-}
+pub const VISITS: u32 = 64;
 
 /// Default size of the memory of learned costs, which the robots of scenarios have too.
-pub const fn learned() -> u32 {
-    256
-}
+pub const LEARNED: u32 = 256;
 
 /// Excess of a value over the best one, percent.
 pub fn percent(ours: f64, best: f64) -> f64 {

@@ -16,11 +16,13 @@ pub use axes::Change;
 use axes::{Axis, SCENARIO};
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
-use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source, nearest};
+use staya_sim::scenario::{Field, Location, Read as _, ScenarioError, Source, nearest};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use table::{Files, HistogramTable, PictureTable, PlanFile, SeedRange, Seeds};
+use table::{Files, HistogramTable, PlanFile, SeedRange, Seeds};
 pub use table::{GainTable, PlotTable};
+use toml::Spanned;
+use toml::de::DeValue;
 
 const LIST: &str = "docs/sweeps.md";
 /// Some hundred megabytes of rows.
@@ -41,6 +43,8 @@ pub struct Plan {
     axes: Vec<Axis>,
     /// Axes that advance together, as ranges of `axes`; groups are crossed with each other.
     groups: Vec<Range<usize>>,
+    /// Fields with one value for all runs, as TOML, and their places in the plan.
+    set: Vec<(Field, String, Location)>,
     seeds: Vec<u64>,
     measures: Vec<String>,
     /// Requested pictures; empty for the default.
@@ -57,11 +61,11 @@ pub struct Plan {
     fingerprint: u64,
 }
 
-/// A scenario with the fields that all runs share.
+/// The file of a scenario.
 #[derive(Clone, Debug)]
 struct Base {
     path: PathBuf,
-    table: toml::Table,
+    text: String,
 }
 
 /// Changes of a plan by the command line.
@@ -86,6 +90,8 @@ pub struct Run<'a> {
     pub point: u64,
     /// Value of each axis, in order.
     pub values: Vec<&'a Value>,
+    /// The same as TOML.
+    texts: Vec<String>,
     /// Seed of the run.
     pub seed: u64,
 }
@@ -123,8 +129,8 @@ impl Plan {
             return Err(source.error("name", what, "use 1 to 100 letters, digits, - and _").into());
         }
         let study = file.study.as_deref().map(|name| find_study(&source, name)).transpose()?;
-        let mut bases = match &file.scenario {
-            None if study.is_some() => vec![Base { path: path.to_owned(), table: toml::Table::new() }],
+        let bases = match &file.scenario {
+            None if study.is_some() => vec![Base { path: path.to_owned(), text: String::new() }],
             None => Vec::new(),
             Some(Files::One(name)) => vec![Base::read(&source, "scenario", name)?],
             Some(Files::List(names)) => (0..)
@@ -138,15 +144,14 @@ impl Plan {
         let mut all = axes::read(&source, &file, bases.iter().map(Base::name).collect())?;
         all.change(&changes.fields)?;
         let axes::Axes { axes, groups, set } = all;
-        for (field, value, span) in set {
-            let wrong = |what| source.error_at(span.clone(), field.name(), what, "name a field of the scenario");
-            bases.iter_mut().try_for_each(|base| field.set(&mut base.table, value.toml()).map_err(wrong))?;
-        }
-        for (axis, base) in axes.iter().flat_map(|axis| bases.iter().map(move |base| (axis, base))) {
-            axes::check_kind(&source, axis, axis.field.get(&base.table))?;
+        let set = set.into_iter().map(|(field, value, span)| (field, value.toml(), source.location(span.start)));
+        let set: Vec<_> = set.collect();
+        let scenarios: Vec<_> = bases.iter().map(|base| base.source(path, &set)).collect::<Result<_, _>>()?;
+        for (axis, scenario) in axes.iter().flat_map(|axis| scenarios.iter().map(move |base| (axis, base))) {
+            axes::check_kind(&source, axis, scenario.get(axis.field.name()))?;
         }
         let seeds = match &file.seeds {
-            None => vec![bases[0].table.get("seed").and_then(toml::Value::as_integer).map_or(0, i64::unsigned_abs)],
+            None => vec![scenarios[0].get("seed").and_then(|seed| u64::read(seed).ok()).unwrap_or_default()],
             Some(seeds) => check_seeds(&source, seeds)?,
         };
         let mut plan = Self {
@@ -157,6 +162,7 @@ impl Plan {
             bases,
             axes,
             groups,
+            set,
             seeds: changes.seeds(seeds, file.seeds.as_ref()),
             measures: Vec::new(),
             plots: Vec::new(),
@@ -179,19 +185,19 @@ impl Plan {
         let reference = file.reference.map(|name| Reference::load(&plan, &source.file(&name)));
         plan.reference = reference.transpose()?;
         plan.gains = check_gains(&source, &plan, file.gain)?;
-        let choice = |at: &toml::Table, field: String| match Choice::read(&plan, at, &source, &field) {
+        let choice = |field: String| match Choice::read(&plan, &source, &field) {
             Ok(choice) => Ok(Some(choice)),
             // The point is not among those of a changed plan.
             Err(_) if !changes.fields.is_empty() => Ok(None),
             Err(error) => Err(error),
         };
         let (mut pictures, mut histograms) = (Vec::new(), Vec::new());
-        for (index, PictureTable { at }) in file.picture.iter().enumerate() {
-            pictures.extend(choice(at, format!("picture[{index}].where"))?);
+        for index in 0..file.picture.len() {
+            pictures.extend(choice(format!("picture[{index}].where"))?);
         }
-        for (index, HistogramTable { figure, at }) in file.histogram.into_iter().enumerate() {
+        for (index, HistogramTable { figure, .. }) in file.histogram.into_iter().enumerate() {
             check_measured(&source, &plan, &format!("histogram[{index}].figure"), &figure)?;
-            histograms.extend(choice(&at, format!("histogram[{index}].where"))?.map(|choice| (figure, choice)));
+            histograms.extend(choice(format!("histogram[{index}].where"))?.map(|choice| (figure, choice)));
         }
         (plan.pictures, plan.histograms) = (pictures, histograms);
         // Limits are those of the unchanged plan; a changed one is another study.
@@ -329,7 +335,8 @@ impl Plan {
                 values[index] = &self.axes[index].values[at];
             }
         }
-        Run { number, point, values, seed: self.seeds[(number % self.seeds()) as usize] }
+        let texts = values.iter().map(|value| value.toml()).collect();
+        Run { number, point, values, texts, seed: self.seeds[(number % self.seeds()) as usize] }
     }
 
     /// Most parallel runs on a machine; 1 for timed runs, which need it for themselves.
@@ -353,26 +360,21 @@ impl Plan {
     }
 
     /// Fields of a run, not checked.
-    pub(crate) fn given(&self, run: &Run<'_>) -> Result<Given<'_>, ScenarioError> {
-        let base = self.base(run);
-        let mut table = base.table.clone();
-        for (axis, value) in self.axes.iter().zip(&run.values).filter(|(axis, _)| axis.field.name() != SCENARIO) {
-            axis.field.set(&mut table, value.toml()).map_err(|what| ScenarioError::Field {
-                path: self.path.clone(),
-                line: axis.line.max(1),
-                field: axis.field.name().to_owned(),
-                what,
-                remedy: "name a field of the scenario".to_owned(),
-            })?;
+    pub(crate) fn given<'a>(&'a self, run: &'a Run<'_>) -> Result<Given<'a>, ScenarioError> {
+        let mut source = self.base(run).source(&self.path, &self.set)?;
+        for (axis, value) in self.axes.iter().zip(&run.texts).filter(|(axis, _)| axis.field.name() != SCENARIO) {
+            source
+                .set(&axis.field, value)
+                .map_err(|what| obstructed(&self.path, axis.place.unwrap_or(Location::START), &axis.field, what))?;
         }
-        Ok(Given { table, path: &base.path, measures: &self.measures, seed: run.seed })
+        Ok(Given { source, measures: &self.measures, seed: run.seed })
     }
 
     /// A run whose fields are checked.
     pub(crate) fn job(&self, run: &Run<'_>) -> Result<Job, SweepError> {
         let given = self.given(run)?;
         if let Some(study) = self.study.filter(|study| !study.takes_scenario())
-            && let Some(field) = given.table.keys().find(|field| *field != "study")
+            && let Some(field) = given.source.root().keys().map(Spanned::get_ref).find(|field| *field != "study")
         {
             let what = format!("{field} is given, but there is no scenario in study {}", study.name());
             return Err(SweepError::new(self.path.display(), what, "give fields of study.* only"));
@@ -394,35 +396,25 @@ impl Plan {
 
     /// Converts an error of a generated scenario to places in the user's files.
     pub(super) fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
-        let ScenarioError::Field { field, what, remedy, .. } = error else {
+        let ScenarioError::Field { path, place, field, what, remedy } = error else {
             return error;
         };
-        let is_below =
-            |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
-        let is_meant = |axis: &&Axis| {
-            let name = axis.field.name();
-            axis.line > 0 && !field.is_empty() && (is_below(name, &field) || is_below(&field, name))
-        };
-        if let Some(axis) = self.axes.iter().find(is_meant) {
+        let mut meant = self.axes.iter().filter(|axis| axis.field.is_about(&field));
+        if let Some((axis, place)) = meant.find_map(|axis| Some((axis, axis.place?))) {
             let field = axis.field.name().to_owned();
             let is_word = axis.is_range && what.contains("quotes");
             let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
-            return ScenarioError::Field { path: self.path.clone(), line: axis.line, field, what, remedy };
+            return ScenarioError::Field { path: self.path.clone(), place, field, what, remedy };
         }
         let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
         let values = values.join(", ");
         let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
-        let path = &self.base(run).path;
-        let text = read_text(path, TEXT).unwrap_or_default();
-        match Source::new(path, &text) {
-            Ok(source) => source.error(&field, what, remedy),
-            Err(error) => error,
-        }
+        ScenarioError::Field { path, place, field, what, remedy }
     }
 
     /// Covers everything that rows depend on: fields, values, seeds, figures, the scenario's files.
     fn digest(&self) -> u64 {
-        let text = |base: &Base| toml::to_string(&base.table).unwrap_or_default();
+        let text = |base: &Base| base.source(&self.path, &self.set).map(|source| source.written()).unwrap_or_default();
         let format = self.study.map_or(FORMAT, |study| chained(FORMAT, digest(study.name().as_bytes())));
         let mut all = self.bases.iter().fold(format, |all, base| chained(all, digest(text(base).as_bytes())));
         let mut add = |bytes: &[u8]| all = chained(all, digest(bytes));
@@ -440,9 +432,11 @@ impl Plan {
 
     fn files(&self) -> Vec<PathBuf> {
         let mut files = Vec::new();
-        for Base { path, table } in &self.bases {
-            let mut words = Vec::new();
-            collect_words(&toml::Value::Table(table.clone()), &mut words);
+        for base in &self.bases {
+            let (path, mut words) = (&base.path, Vec::new());
+            if let Ok(source) = base.source(&self.path, &self.set) {
+                source.root().values().for_each(|node| collect_words(node.get_ref(), &mut words));
+            }
             for value in self.axes.iter().flat_map(|axis| &axis.values) {
                 if let Value::Word(word) = value {
                     words.push(word.clone());
@@ -469,13 +463,16 @@ impl Base {
         let text = read_text(&path, TEXT).map_err(|error| {
             source.error(field, format!("{}: {error}", path.display()), "names are relative to the plan's file")
         })?;
-        match text.parse() {
-            Ok(table) => Ok(Self { path, table }),
-            // The reader of scenarios finds the line.
-            Err(_) => Err(Scenario::parse(&text, &path, &Overrides::default())
-                .err()
-                .unwrap_or_else(|| source.error(field, "it is not TOML", "name a scenario"))),
+        Ok(Self { path, text })
+    }
+
+    /// The fields of the scenario with those that all runs share.
+    fn source<'a>(&'a self, plan: &Path, set: &'a [(Field, String, Location)]) -> Result<Source<'a>, ScenarioError> {
+        let mut source = Source::new(&self.path, &self.text)?;
+        for (field, value, place) in set {
+            source.set(field, value).map_err(|what| obstructed(plan, *place, field, what))?;
         }
+        Ok(source)
     }
 
     /// Value of the axis of scenarios.
@@ -505,11 +502,16 @@ fn find_study(source: &Source<'_>, name: &str) -> Result<&'static dyn Study, Sce
     })
 }
 
-fn collect_words(value: &toml::Value, words: &mut Vec<String>) {
+fn obstructed(plan: &Path, place: Location, field: &Field, what: String) -> ScenarioError {
+    let (path, field, remedy) = (plan.to_owned(), field.name().to_owned(), "name a field of the scenario".to_owned());
+    ScenarioError::Field { path, place, field, what, remedy }
+}
+
+fn collect_words(value: &DeValue<'_>, words: &mut Vec<String>) {
     match value {
-        toml::Value::String(word) => words.push(word.clone()),
-        toml::Value::Array(list) => list.iter().for_each(|value| collect_words(value, words)),
-        toml::Value::Table(table) => table.values().for_each(|value| collect_words(value, words)),
+        DeValue::String(word) => words.push(word.to_string()),
+        DeValue::Array(list) => list.iter().for_each(|node| collect_words(node.get_ref(), words)),
+        DeValue::Table(table) => table.values().for_each(|node| collect_words(node.get_ref(), words)),
         _ => {}
     }
 }

@@ -1,19 +1,19 @@
 //! Random samples in 0..1: functions of seed, axis and number only.
 
-use serde::Deserialize;
 use staya_controller::rand::Rng;
+use staya_sim::choice;
 
 const PLACE: u32 = u32::from_be_bytes(*b"swpl");
 const ORDER: u32 = u32::from_be_bytes(*b"swor");
 
-/// Sampling method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Kind {
-    /// Independent values.
-    Random,
-    /// One sample in each equal part of each axis (McKay, Beckman and Conover 1979).
-    LatinHypercube,
+choice! {
+    /// Sampling method.
+    pub enum Kind {
+        /// Independent values.
+        Random = "random",
+        /// One sample in each equal part of each axis (McKay, Beckman and Conover 1979).
+        LatinHypercube = "latin_hypercube",
+    }
 }
 
 /// O(count).

@@ -1,7 +1,9 @@
 //! Values of scenario fields, and figures of runs.
 
+use staya_sim::scenario::inline;
 use staya_stats::Summary;
 use std::fmt::{self, Display, Formatter};
+use toml::de::DeValue;
 
 /// Value of a scenario field or a table cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,17 +21,30 @@ pub enum Value {
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 impl Value {
-    pub(crate) fn read(value: &toml::Value) -> Result<Self, String> {
+    pub(crate) fn read(value: &DeValue<'_>) -> Result<Self, String> {
         match value {
-            toml::Value::Integer(number) => Ok(Self::Whole(*number)),
-            toml::Value::Float(number) if number.is_nan() => Err("nan is not a value".to_owned()),
-            toml::Value::Float(number) => Ok(Self::Number(*number)),
-            toml::Value::Boolean(truth) => Ok(Self::Truth(*truth)),
-            toml::Value::String(word) => {
-                let is_cell = !word.is_empty() && !word.contains([',', '"']) && !word.contains(char::is_control);
-                if is_cell { Ok(Self::Word(word.clone())) } else { Err(format!("{word:?} has no place in a table")) }
+            DeValue::Integer(number) => {
+                let number = i64::from_str_radix(number.as_str(), number.radix());
+                number.map(Self::Whole).map_err(|_| format!("{} is too large", inline(value)))
             }
-            other => Err(format!("{other} is neither a number nor a word")),
+            DeValue::Float(number) => match number.as_str().parse() {
+                Ok(number) if !f64::is_nan(number) => Ok(Self::Number(number)),
+                _ => Err("nan is not a value".to_owned()),
+            },
+            DeValue::Boolean(truth) => Ok(Self::Truth(*truth)),
+            DeValue::String(word) => {
+                let is_cell = !word.is_empty() && !word.contains([',', '"']) && !word.contains(char::is_control);
+                if is_cell { Ok(word.as_ref().into()) } else { Err(format!("{word:?} has no place in a table")) }
+            }
+            other => Err(format!("{} is neither a number nor a word", inline(other))),
+        }
+    }
+
+    /// Parses a TOML value; other text is a word.
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        match DeValue::parse(text) {
+            Ok(value) => Self::read(value.get_ref()),
+            Err(_) => Self::read(&DeValue::String(text.into())),
         }
     }
 
@@ -48,12 +63,13 @@ impl Value {
         }
     }
 
-    pub(crate) fn toml(&self) -> toml::Value {
+    /// The value as TOML.
+    pub(crate) fn toml(&self) -> String {
         match self {
-            Self::Whole(number) => toml::Value::Integer(*number),
-            Self::Number(number) => toml::Value::Float(*number),
-            Self::Truth(truth) => toml::Value::Boolean(*truth),
-            Self::Word(word) => toml::Value::String(word.clone()),
+            Self::Whole(number) => number.to_string(),
+            Self::Number(number) => format!("{number:?}"),
+            Self::Truth(truth) => truth.to_string(),
+            Self::Word(word) => inline(&DeValue::String(word.into())),
         }
     }
 }
@@ -161,10 +177,11 @@ mod tests {
             assert_eq!(value.to_string(), text);
         }
         for bad in ["a,b", "say \"so\"", "", "a\nb"] {
-            assert!(Value::read(&toml::Value::String(bad.into())).is_err(), "{bad:?}");
+            assert!(Value::read(&DeValue::String(bad.into())).is_err(), "{bad:?}");
         }
-        assert!(Value::read(&toml::Value::Float(f64::NAN)).is_err());
-        assert!(Value::read(&toml::Value::Array(Vec::new())).is_err());
+        for bad in ["nan", "[]", "{}", "99999999999999999999"] {
+            assert!(Value::parse(bad).is_err(), "{bad}");
+        }
     }
 
     proptest! {

@@ -1,9 +1,9 @@
 use super::{number, signing};
 use crate::Endpoint;
 use crate::formation::station::{Given, Members, Places, give, numbers};
-use crate::formation::{Graph, Order, Shape};
+use crate::formation::{Graph, GraphError, Order, Shape};
 use crate::tlog::micros_since_1970;
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
 use staya_console::{Ended, Global, print, print_json};
 use staya_controller::grid::{Cell, Dir};
@@ -153,7 +153,10 @@ impl FormationArgs {
             bail!("`{}` is not a shape; give {names}, or a .toml file", self.shape);
         }
         let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-        Graph::parse(&text).with_context(|| path.display().to_string())
+        Graph::parse(&text, path).map_err(|error| match error {
+            GraphError::File(text) => anyhow!(text),
+            other => anyhow!("{}: {other}", path.display()),
+        })
     }
 
     fn table(&self, given: &Given) -> String {

@@ -5,12 +5,12 @@ use super::medium::MediumSetup;
 use super::offboard::{Entry, Rules};
 use crate::Endpoint;
 use crate::geo::{Global, Origin};
-use serde::Deserialize;
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::robot::RobotId;
 use staya_sim::file::{TEXT, read_text};
-use staya_sim::scenario::{Overrides, PlaneSetup, Scenario, ScenarioError, Source, within};
-use std::net::{Ipv4Addr, SocketAddr};
+use staya_sim::scenario::{Overrides, PlaneSetup, Scenario, ScenarioError, Source};
+use staya_sim::{defaults, table};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -18,76 +18,92 @@ const LIST: &str = "docs/autopilots.md";
 const SYSTEMS: u32 = 254;
 const RADIUS: u8 = 16;
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ConfigFile {
-    scenario: PathBuf,
-    origin: Global,
-    #[serde(default)]
-    air: AirTable,
-    link_key: Option<PathBuf>,
-    #[serde(default)]
-    rules: RulesTable,
-    #[serde(default)]
-    vehicle: Vec<VehicleTable>,
-}
-
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct AirTable {
-    multicast: Option<String>,
-    interface: Option<Ipv4Addr>,
-    bind: Option<String>,
-    peers: Vec<String>,
-    tunnel: bool,
-    key: Option<PathBuf>,
-    overlap_s: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct RulesTable {
-    entry: Entry,
-    arm: bool,
-    takeoff: bool,
-    altitude_m: Option<f64>,
-    stale_s: f64,
-    link_lost_s: f64,
-    setpoint_hz: f64,
-    position_hz: f64,
-    lag_s: f64,
-    reach_m: f64,
-    error_m: f64,
-}
-
-impl Default for RulesTable {
-    fn default() -> Self {
-        Self {
-            entry: Entry::Wait,
-            arm: false,
-            takeoff: false,
-            altitude_m: None,
-            stale_s: 1.0,
-            link_lost_s: 3.0,
-            setpoint_hz: 20.0,
-            position_hz: 10.0,
-            lag_s: 0.5,
-            reach_m: 10_000.0,
-            error_m: 10.0,
-        }
+table! {
+    /// A whole file.
+    pub struct ConfigFile {
+        /// Path of the scenario.
+        pub scenario: PathBuf;
+        /// Geographic position of the scenario's (0, 0).
+        pub origin: Global;
+        /// Network to companions in other processes.
+        pub air: AirTable = Default::default();
+        /// File with the key of links.
+        pub link_key: Option<PathBuf>;
+        /// Rules of control.
+        pub rules: RulesTable = Default::default();
+        /// Vehicles controlled by this process.
+        pub vehicle: Vec<VehicleTable> = Vec::new();
     }
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct VehicleTable {
-    robot: u32,
-    system: Option<u32>,
-    link: String,
-    autopilot: Kind,
-    goal_deg: Option<[f64; 2]>,
-    altitude_m: Option<f64>,
+table! {
+    /// `[air]`.
+    pub struct AirTable {
+        /// Multicast group and port.
+        pub multicast: Option<String>;
+        /// Address of the interface for multicast.
+        pub interface: Option<String>;
+        /// Own address, with `peers`.
+        pub bind: Option<String>;
+        /// Addresses of the other companions.
+        pub peers: Vec<String> = Vec::new();
+        /// Whether packets travel in the vehicles' links.
+        pub tunnel: bool = false;
+        /// File with the key of packets.
+        pub key: Option<PathBuf>;
+        /// Time for which the old packet key stays valid. Default: 60 s.
+        pub overlap_s: f64 = 60.0, 2.0..=86_400.0, "seconds";
+    }
 }
+
+table! {
+    /// `[rules]`.
+    #[derive(Copy)]
+    pub struct RulesTable {
+        /// Selection of the external control mode.
+        pub entry: Entry = Entry::Wait;
+        /// Whether the companion arms.
+        pub arm: bool = false;
+        /// Whether it takes off.
+        pub takeoff: bool = false;
+        /// Takeoff height above home.
+        pub altitude_m: Option<f64>, 0.5..=1000.0, "metres";
+        /// Age at which telemetry is stale.
+        pub stale_s: f64 = 1.0, 0.1..=60.0, "seconds";
+        /// Silence after which a link is lost.
+        pub link_lost_s: f64 = 3.0, 1.5..=60.0, "seconds";
+        /// Rate of setpoints.
+        pub setpoint_hz: f64 = 20.0, 3.0..=100.0, "Hz; PX4 needs more than 2";
+        /// Requested rate of positions.
+        pub position_hz: f64 = 10.0, 1.0..=100.0, "Hz";
+        /// Lag of the vehicle's velocity control.
+        pub lag_s: f64 = 0.5, 0.0..=10.0, "seconds";
+        /// Largest distance from the origin.
+        pub reach_m: f64 = 10_000.0, 1.0..=500_000.0, "metres";
+        /// Largest position error.
+        pub error_m: f64 = 10.0, 0.0..=50.0, "metres";
+    }
+}
+
+table! {
+    /// `[[vehicle]]`.
+    pub struct VehicleTable {
+        /// Number of the robot in the scenario.
+        pub robot: u32;
+        /// MAVLink system id. Default: the robot's number.
+        pub system: Option<u32>;
+        /// Link to the autopilot.
+        pub link: String;
+        /// The autopilot.
+        pub autopilot: Kind;
+        /// Goal: latitude and longitude.
+        pub goal_deg: Option<[f64; 2]>;
+        /// Takeoff height above home.
+        pub altitude_m: Option<f64>, 0.5..=1000.0, "metres";
+    }
+}
+
+defaults!(AirTable, RulesTable);
 
 /// A vehicle controlled by this process.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,8 +185,6 @@ impl Config {
         let Some(plane) = scenario.plane.clone() else {
             return Err(no_plane(&source));
         };
-        let overlap_s = file.air.overlap_s.unwrap_or(60.0);
-        within(&source, "air.overlap_s", overlap_s, 2.0, 86_400.0, "seconds")?;
         let beside = |path: &PathBuf| source.file(path);
         let (key, link_key) = (file.air.key.as_ref().map(beside), file.link_key.as_ref().map(beside));
         scenario.files.extend(source.files());
@@ -180,7 +194,7 @@ impl Config {
             origin,
             air,
             key,
-            overlap: Duration::from_secs_f64(overlap_s),
+            overlap: Duration::from_secs_f64(file.air.overlap_s),
             link_key,
             lines,
             vehicles,
@@ -224,17 +238,6 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
 }
 
 fn check_rules(source: &Source<'_>, rules: &RulesTable) -> Result<(), ScenarioError> {
-    for (field, value, low, high, unit) in [
-        ("stale_s", rules.stale_s, 0.1, 60.0, "seconds"),
-        ("link_lost_s", rules.link_lost_s, 1.5, 60.0, "seconds"),
-        ("setpoint_hz", rules.setpoint_hz, 3.0, 100.0, "Hz; PX4 needs more than 2"),
-        ("position_hz", rules.position_hz, 1.0, 100.0, "Hz"),
-        ("lag_s", rules.lag_s, 0.0, 10.0, "seconds"),
-        ("reach_m", rules.reach_m, 1.0, 500_000.0, "metres"),
-        ("error_m", rules.error_m, 0.0, 50.0, "metres"),
-    ] {
-        within(source, &format!("rules.{field}"), value, low, high, unit)?;
-    }
     if rules.arm && rules.entry != Entry::Once {
         let what = "only the pilot arms with entry \"wait\"";
         return Err(source.error("rules.arm", what, "give rules.entry = \"once\", or remove it"));
@@ -266,7 +269,12 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioErr
             let given = address(source, "air.multicast", group)?;
             match given {
                 SocketAddr::V4(group) if group.ip().is_multicast() && group.port() > 0 => {
-                    Ok(MediumSetup::Multicast { group, interface: table.interface.unwrap_or(Ipv4Addr::UNSPECIFIED) })
+                    let interface = table.interface.as_deref().unwrap_or("0.0.0.0");
+                    let interface = interface.parse().map_err(|_| {
+                        let what = format!("`{interface}` is not an IPv4 address");
+                        source.error("air.interface", what, "give that of an own interface, as in 192.168.1.7")
+                    })?;
+                    Ok(MediumSetup::Multicast { group, interface })
                 }
                 _ => {
                     let what = format!("`{group}` is not an IPv4 multicast group");
@@ -342,13 +350,6 @@ fn vehicles(
                 let remedy = "give each vehicle its own id (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
                 return Err(source.error(&field("system"), what, remedy));
             }
-        }
-        if let Some(altitude_m) = table.altitude_m.or(file.rules.altitude_m) {
-            let name = match table.altitude_m {
-                Some(_) => field("altitude_m"),
-                None => String::from("rules.altitude_m"),
-            };
-            within(source, &name, altitude_m, 0.5, 1000.0, "metres")?;
         }
         let rules = rules(&file.rules, table, scenario.safety(index).kind());
         if file.rules.takeoff && table.autopilot.flies() && rules.altitude_m.is_none() {

@@ -1,7 +1,8 @@
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use staya_sim::scenario::{Node, Read, Wrong, word};
 
 /// An autopilot and its type of vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Kind {
     /// ArduPilot Rover.
     #[serde(rename = "ardupilot-rover")]
@@ -10,11 +11,26 @@ pub enum Kind {
     #[serde(rename = "ardupilot-copter")]
     ArduCopter,
     /// PX4 on a flying vehicle.
-    #[serde(rename = "px4-copter", alias = "px4")]
+    #[serde(rename = "px4-copter")]
     Px4Copter,
     /// PX4 on a ground vehicle.
     #[serde(rename = "px4-rover")]
     Px4Rover,
+}
+
+impl Read for Kind {
+    const KIND: &'static str = "a name in quotes";
+
+    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
+        let names = [
+            ("ardupilot-rover", Self::ArduRover),
+            ("ardupilot-copter", Self::ArduCopter),
+            ("px4-copter", Self::Px4Copter),
+            ("px4-rover", Self::Px4Rover),
+            ("px4", Self::Px4Copter),
+        ];
+        word(node, &names)
+    }
 }
 
 /// The third byte of the custom mode in a PX4 heartbeat.

@@ -75,7 +75,7 @@ fn a_heading_turns_the_shape() {
 #[test]
 fn a_file_parses_and_its_errors_are_reported() {
     let text = "places = [[0, 0], [-3, 3], [-3, -3]]\nedges = [[1, 2], [3, 1], [1, 3]]";
-    let graph = Graph::parse(text).expect("a formation");
+    let graph = Graph::parse(text, Path::new("v.toml")).expect("a formation");
     assert_eq!((graph.robots(), graph.edges.as_slice()), (3, &[(0, 1), (0, 2)][..]));
     for (text, piece) in [
         ("places = [[1, 0]]\nedges = []", "first place is not [0, 0]"),
@@ -85,14 +85,15 @@ fn a_file_parses_and_its_errors_are_reported() {
         ("places = [[0, 0], [3, 0]]\nedges = []", "robot 2 is not connected to robot 1"),
         ("places = [[0, 0], [0, 0]]\nedges = [[1, 2]]", "places 1 and 2 would share a cell"),
         ("places = [[0, 0], [40000, 0]]\nedges = [[1, 2]]", "robot 2 would be off any map"),
-        ("places = [[0, 0]]\nedge = []", "unknown field `edge`"),
+        ("places = [[0, 0]]\nedge = []", "v.toml:2:1: edge: unknown field `edge`"),
     ] {
-        let error = Graph::parse(text).expect_err(text).to_string();
+        let error = Graph::parse(text, Path::new("v.toml")).expect_err(text).to_string();
         assert!(error.contains(piece), "{text}: {error}");
     }
     let star: Vec<_> = (2..=10).map(|other| format!("[1, {other}]")).collect();
     let places: Vec<_> = (0..10).map(|x| format!("[{x}, 0]")).collect();
-    let graph = Graph::parse(&format!("places = [{}]\nedges = [{}]", places.join(","), star.join(",")));
+    let graph =
+        Graph::parse(&format!("places = [{}]\nedges = [{}]", places.join(","), star.join(",")), Path::new("v.toml"));
     let order = Order { goal: None, to_all: true, boot: 0, version: 0 };
     let ten: Vec<u8> = (1..=10).collect();
     assert_eq!(orders(&graph.expect("a formation"), &ten, &order), Err(GraphError::Neighbors(1)));

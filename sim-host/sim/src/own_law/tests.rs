@@ -161,7 +161,10 @@ fn an_operator_sees_and_tunes_a_named_law() {
 fn a_wrong_name_place_or_parameter_is_refused_with_a_remedy() {
     let refused = |law: &str| scenario(law).unwrap_err();
     let spelled = refused("[law]\nname = \"convoi\"");
-    assert!(spelled.contains("convoy.toml:6: law.name: ") && spelled.contains("did you mean \"convoy\"?"), "{spelled}");
+    assert!(
+        spelled.contains("convoy.toml:6:8: law.name: ") && spelled.contains("did you mean \"convoy\"?"),
+        "{spelled}"
+    );
     let unknown = refused("[law]\nname = \"convoy\"\nparameters = { pase_mps = 1 }");
     assert!(unknown.contains("law.parameters.pase_mps") && unknown.contains("\"pace_mps\""), "{unknown}");
     let fast = refused("[law]\nname = \"convoy\"\nparameters = { pace_mps = 9 }");

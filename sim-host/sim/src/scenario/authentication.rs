@@ -1,6 +1,5 @@
 //! `[authentication]` and `[[attack]]`: the swarm's key, and attackers.
 
-use super::ranges::within;
 use super::source::Source;
 use super::{
     Attack, AttackKind, AttackTable, AuthenticationTable, KeyRotation, Lie, Robot, Roll, ScenarioError, ScenarioFile,
@@ -12,9 +11,6 @@ use staya_controller::robot::RobotId;
 use staya_controller::wire::Format;
 use staya_mavlink::any::max_robot;
 use std::path::Path;
-
-/// Largest coordinate in metres, measured from the south-west corner: the range of a packet field.
-const FARTHEST_M: f64 = 2_000_000.0;
 
 pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<Option<Keys>, ScenarioError> {
     let Some(table) = &file.authentication else {
@@ -88,13 +84,7 @@ fn keeping(
         return Err(source.error("plane.order", "robots with keys of their own take no order to all", remedy));
     }
     let place_m = table.place_m.unwrap_or_default();
-    for value in place_m {
-        within(source, "authentication.place_m", value, -FARTHEST_M, FARTHEST_M, "metres")?;
-    }
-    let ticks = |field: &str, seconds: f64| {
-        within(source, &format!("authentication.{field}"), seconds, 0.0, 1e9, "seconds")?;
-        Ok(libm::ceil(seconds / file.tick_s) as u32)
-    };
+    let ticks = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
     let mut rolls = Vec::new();
     for (index, roll) in table.roll.iter().enumerate() {
         let revoke: Vec<_> = roll.revoke.iter().map(|&number| RobotId(number)).collect();
@@ -104,10 +94,10 @@ fn keeping(
             let remedy = "give numbers of robots of this scenario";
             return Err(source.error(&field, format!("there is no robot {stranger}"), remedy));
         }
-        rolls.push(Roll { tick: ticks(&format!("roll[{index}].at_s"), roll.at_s)?, revoke });
+        rolls.push(Roll { tick: ticks(roll.at_s), revoke });
     }
     rolls.sort_by_key(|roll| roll.tick);
-    let overlap_ticks = ticks("overlap_s", table.overlap_s.unwrap_or(5.0))?;
+    let overlap_ticks = ticks(table.overlap_s.unwrap_or(5.0));
     Ok(KeyRotation { master: master.clone(), place_m, overlap_ticks, rolls })
 }
 
@@ -133,15 +123,11 @@ fn attack(
         return Err(source.error(field, "kind = \"insider\" requires lies, and no other kind has them", remedy));
     }
     let has_ghosts = table.lies.contains(&Lie::Ghosts);
-    let ghosts = table.ghosts.unwrap_or(16);
-    if table.ghosts.is_some() && !has_ghosts || !(1..=100).contains(&ghosts) {
-        let remedy = "give 1 to 100, with lies = [\"ghosts\"]";
-        return Err(source.error(
-            &format!("{field}.ghosts"),
-            "the number of ghosts is out of range, or lies does not contain \"ghosts\"",
-            remedy,
-        ));
+    if table.ghosts.is_some() && !has_ghosts {
+        let what = "lies does not contain \"ghosts\"";
+        return Err(source.error(&format!("{field}.ghosts"), what, "give lies = [\"ghosts\"], or leave it out"));
     }
+    let ghosts = table.ghosts.unwrap_or(16);
     let lure_m = match (table.kind, table.lure_m, table.delay_s) {
         (AttackKind::Replay, None, _) => [0.0; 2],
         (AttackKind::Forge | AttackKind::Unsigned | AttackKind::Insider, Some(lure_m), None) => lure_m,
@@ -158,16 +144,7 @@ fn attack(
             return Err(source.error(field, "only a replay has a delay", remedy));
         }
     };
-    for (name, place) in [("place_m", table.place_m), ("lure_m", lure_m)] {
-        for value in place {
-            let field = format!("{field}.{name}");
-            within(source, &field, value, -FARTHEST_M, FARTHEST_M, "metres")?;
-        }
-    }
-    let tick = |name: &str, seconds: f64| {
-        within(source, &format!("{field}.{name}"), seconds, 0.0, 1e9, "seconds")?;
-        Ok(libm::ceil(seconds / file.tick_s) as u32)
-    };
+    let tick = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
     let last = robots.last().map_or(RobotId(1), |robot| robot.id);
     let claims = table.claims.map_or(last, RobotId);
     let most = max_robot(file.radio.format, true);
@@ -181,14 +158,11 @@ fn attack(
     }
     if has_ghosts && claims.0.max(last.0) + u32::from(ghosts) > most.0 {
         let remedy = format!("give fewer; numbers end at {}", most.0);
-        return Err(source.error(
-            &format!("{field}.ghosts"),
-            format!("there are not enough robot numbers for {ghosts} ghosts"),
-            remedy,
-        ));
+        let what = format!("there are not enough robot numbers for {ghosts} ghosts");
+        return Err(source.error(&format!("{field}.ghosts"), what, remedy));
     }
-    let from_tick = tick("from_s", table.from_s)?;
-    let to_tick = table.to_s.map_or(Ok(u32::MAX), |s| tick("to_s", s))?;
+    let from_tick = tick(table.from_s);
+    let to_tick = table.to_s.map_or(u32::MAX, tick);
     if to_tick <= from_tick {
         let remedy = "give a tick or more after from_s";
         return Err(source.error(&format!("{field}.to_s"), "the attack is over before its first tick", remedy));
@@ -200,7 +174,7 @@ fn attack(
         to_tick,
         lure_m,
         claims,
-        delay_ticks: tick("delay_s", table.delay_s.unwrap_or(10.0))?,
+        delay_ticks: tick(table.delay_s.unwrap_or(10.0)),
         lies: table.lies.clone(),
         ghosts: if has_ghosts { ghosts } else { 0 },
     })

@@ -2,9 +2,9 @@
 
 use super::intervention::tick;
 use super::params::{FormationLaw, GridTable};
-use super::ranges::{micros, short, within};
+use super::ranges::{micros, short};
 use super::source::Source;
-use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
+use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable, UniformTable};
 use crate::file::has_memory;
 use crate::radio;
 use crate::terrain::generate::{self, LandPlan};
@@ -17,16 +17,13 @@ use std::path::Path;
 pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if file.name.is_empty() || file.name.len() > 100 || !file.name.chars().all(allowed) {
-        return Err(source.error(
-            "name",
-            format!("{:?} cannot name a folder of results", file.name),
-            "use 1 to 100 letters, digits, - and _",
-        ));
+        let remedy = "use 1 to 100 letters, digits, - and _";
+        return Err(source.error("name", format!("{:?} cannot name a folder of results", file.name), remedy));
     }
     if file.ticks == 0 {
         return Err(source.error("ticks", "a run needs at least one tick", "give 1 or more"));
     }
-    within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
+    Ok(())
 }
 
 /// Refuses events after the last of `ticks`.
@@ -75,46 +72,22 @@ pub(super) fn numbers(
 pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let radio = &file.radio;
     if radio.range_m.is_nan() || radio.range_m < 0.0 {
-        return Err(source.error(
-            "radio.range_m",
-            format!("{} is not a distance", short(radio.range_m)),
-            "give metres, 0 or more, or inf",
-        ));
-    }
-    for (field, value) in [
-        ("radio.loss", radio.loss),
-        ("radio.duplicate", radio.duplicate),
-        ("radio.reorder", radio.reorder),
-        ("radio.bit_error_rate", radio.bit_error_rate),
-    ] {
-        probability(source, field, value)?;
-    }
-    for (field, value) in [
-        ("radio.delay_ms", radio.delay_ms),
-        ("radio.jitter_ms", radio.jitter_ms),
-        ("radio.reorder_ms", radio.reorder_ms),
-    ] {
-        within(source, field, value, 0.0, 600_000.0, "milliseconds")?;
+        let remedy = "give metres, 0 or more, or inf";
+        return Err(source.error("radio.range_m", format!("{} is not a distance", short(radio.range_m)), remedy));
     }
     if let Some(burst) = &radio.burst {
-        probability(source, "radio.burst.loss", burst.loss)?;
-        within(source, "radio.burst.share", burst.share, 0.0, 0.99, "(share of time)")?;
         let least_ms = file.tick_s * 1000.0 / (1.0 - burst.share);
         if !(burst.mean_ms >= least_ms && burst.mean_ms <= 600_000.0) {
-            return Err(source.error(
-                "radio.burst.mean_ms",
-                format!("{} is out of range", short(burst.mean_ms)),
-                format!("with this tick and share, give {least_ms:.1} to 600000 milliseconds"),
-            ));
+            let what = format!("{} is out of range", short(burst.mean_ms));
+            let remedy = format!("with this tick and share, give {least_ms:.1} to 600000 milliseconds");
+            return Err(source.error("radio.burst.mean_ms", what, remedy));
         }
     }
     for (index, [from, to]) in radio.blackout_s.iter().enumerate() {
         if !(*from >= 0.0 && from < to && to.is_finite()) {
-            return Err(source.error(
-                &format!("radio.blackout_s[{index}]"),
-                format!("[{}, {}] is not a time span", short(*from), short(*to)),
-                "give [from, to] in seconds after the start with 0 <= from < to",
-            ));
+            let what = format!("[{}, {}] is not a time span", short(*from), short(*to));
+            let remedy = "give [from, to] in seconds after the start with 0 <= from < to";
+            return Err(source.error(&format!("radio.blackout_s[{index}]"), what, remedy));
         }
     }
     Ok(())
@@ -134,14 +107,6 @@ pub(super) fn moves(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Scen
         _ => ("moves", "a cell has 4 or 8 neighbours", "give 4 or 8"),
     };
     Err(source.error(&format!("grid.{field}"), what, remedy))
-}
-
-fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), ScenarioError> {
-    if (0.0..=1.0).contains(&value) {
-        return Ok(());
-    }
-    let what = format!("{} is not a probability", short(value));
-    Err(source.error(field, what, "give a number from 0 to 1"))
 }
 
 /// Measured lower bound of the memory per robot in bytes: agent, neighbours and packets.
@@ -177,50 +142,40 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
         return Err(source.error("terrain", "it is missing", "say what land is meant"));
     };
     let has_map = table.file.is_some() || file.scouting.as_ref().is_some_and(|scouting| scouting.map.is_some());
-    if !has_map && source.stands("terrain.load") {
+    if !has_map && source.has("terrain.load") {
         let remedy = "give terrain.file, or leave it out";
         return Err(source.error("terrain.load", "only map files are converted", remedy));
     }
-    let plan = |width, height, classes, seed: Option<u64>| LandPlan {
-        width,
-        height,
-        classes,
-        seed: seed.unwrap_or(file.seed),
+    let plan = |size: UniformTable| {
+        let UniformTable { width, height, classes, seed } = size;
+        LandPlan { width, height, classes, seed: seed.unwrap_or(file.seed) }
     };
     let (field, made) = match (&table.file, table.uniform, table.natural, table.entropy) {
         (Some(name), None, None, None) => ("terrain.file", load(source, table, name)),
-        (None, Some(t), None, None) => {
-            let plan = plan(t.width, t.height, t.classes, t.seed);
-            ("terrain.uniform", generate::uniform(&plan))
-        }
+        (None, Some(size), None, None) => ("terrain.uniform", generate::uniform(&plan(size))),
         (None, None, Some(t), None) => {
-            let plan = plan(t.width, t.height, t.classes, t.seed);
+            let plan = plan(t.size);
             let made = generate::natural_by(&plan, t.obstacles, t.norm, t.hills);
             let order = |land| if t.shuffled { generate::shuffled(&land, plan.seed) } else { Ok(land) };
             ("terrain.natural", made.and_then(order))
         }
         (None, None, None, Some(t)) => {
-            let plan = plan(t.width, t.height, t.classes, t.seed);
             let wanted = generate::ByMetrics {
                 entropy: t.entropy,
                 entropy_tolerance: t.entropy_tolerance,
                 total_edge: t.total_edge,
                 edge_tolerance: t.edge_tolerance,
             };
-            ("terrain.entropy", generate::by_metrics(&plan, &wanted))
+            ("terrain.entropy", generate::by_metrics(&plan(t.size), &wanted))
         }
         _ => {
-            return Err(source.error(
-                "terrain",
-                "it is not clear what land is meant",
-                "give exactly one of file, uniform, natural, entropy",
-            ));
+            let remedy = "give exactly one of file, uniform, natural, entropy";
+            return Err(source.error("terrain", "it is not clear what land is meant", remedy));
         }
     };
     let made = made.map_err(|error| terrain_error(source, field, &error))?;
     let mut terrain = cropped(source, table, made)?;
     if let Some(cell_m) = table.cell_m {
-        within(source, "terrain.cell_m", cell_m, 0.001, 100_000.0, "metres")?;
         terrain.cell_m = cell_m;
     }
     Ok(terrain)
@@ -259,19 +214,13 @@ fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> Scen
 pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let in_formation = file.in_formation();
     if !in_formation && source.has("formation") {
-        return Err(source.error(
-            "formation",
-            "these robots keep no formation",
-            "give robots.formation, or leave this table out",
-        ));
+        let remedy = "give robots.formation, or leave this table out";
+        return Err(source.error("formation", "these robots keep no formation", remedy));
     }
     law_only(source, file)?;
     if in_formation && matches!(file.route.replan, Some(Replan::UntilChanged)) {
-        return Err(source.error(
-            "route.replan",
-            "robots in formation search in each cell",
-            "give \"each_cell\", or leave it out",
-        ));
+        let remedy = "give \"each_cell\", or leave it out";
+        return Err(source.error("route.replan", "robots in formation search in each cell", remedy));
     }
     Ok(())
 }
@@ -288,7 +237,7 @@ fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioErro
         if is_paper { &["waits", "lead", "closes_ranks", "footprint", "recovery"] } else { &["crowd"] };
     for name in foreign {
         let field = format!("formation.{name}");
-        if source.stands(&field) {
+        if source.has(&field) {
             return Err(source.error(&field, format!("the law \"{law}\" has no use for it"), "leave it out"));
         }
     }
@@ -298,7 +247,7 @@ fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioErro
             return Err(source.error("formation.waits", what, "leave it out"));
         }
         for name in ["formation.halt_cells", "formation.resume_cells"] {
-            if source.stands(name) {
+            if source.has(name) {
                 return Err(source.error(name, "with waits = false no robot waits", "leave out one of the two"));
             }
         }
@@ -339,15 +288,9 @@ pub(super) fn faults(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot])
     for (index, fault) in file.fault.iter().enumerate() {
         let robot = RobotId(fault.robot);
         if robots.binary_search_by_key(&robot, |r| r.id).is_err() {
-            return Err(source.error(
-                &format!("fault[{index}].robot"),
-                format!("there is no robot {}", fault.robot),
-                "give the number of a robot of this scenario",
-            ));
-        }
-        for (name, seconds) in [("at_s", fault.at_s), ("down_s", fault.down_s)] {
-            let field = format!("fault[{index}].{name}");
-            within(source, &field, seconds, 0.0, 1e9, "seconds")?;
+            let what = format!("there is no robot {}", fault.robot);
+            let remedy = "give the number of a robot of this scenario";
+            return Err(source.error(&format!("fault[{index}].robot"), what, remedy));
         }
         let tick = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
         faults.push(Fault { robot, from_tick: tick(fault.at_s), to_tick: tick(fault.at_s + fault.down_s) });

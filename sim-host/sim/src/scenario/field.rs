@@ -1,130 +1,97 @@
-//! Paths of scenario fields, with functions that read and set them.
+//! Paths of scenario fields, with a function that sets them.
 
+use super::read::Node;
 use std::fmt::{self, Display, Formatter};
-use toml::Value;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// Path of a field, such as `radio.loss` or `plane.group[0].count`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Field {
-    name: String,
-    /// Table names down to the field, each with the list indices that follow it.
-    steps: Vec<(String, Vec<usize>)>,
-}
+pub struct Field(String);
 
 impl Field {
     /// Parses a path; `None` if it is malformed.
     pub fn read(name: &str) -> Option<Self> {
-        let steps = name.split('.').map(|step| {
-            let (name, places) = step.split_at(step.find('[').unwrap_or(step.len()));
-            let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-            let places = places.split_inclusive(']').map(|place| {
-                let digits = place.strip_prefix('[')?.strip_suffix(']')?;
-                digits.parse().ok().filter(|place: &usize| place.to_string() == digits)
-            });
-            let places = places.collect::<Option<Vec<usize>>>()?;
-            (!name.is_empty() && name.chars().all(is_name)).then(|| (name.to_owned(), places))
-        });
-        Some(Self { name: name.to_owned(), steps: steps.collect::<Option<_>>()? })
+        let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        let is_index = |place: &str| {
+            let digits = place.strip_prefix('[').and_then(|place| place.strip_suffix(']'));
+            digits.is_some_and(|digits| digits.parse().is_ok_and(|index: usize| index.to_string() == digits))
+        };
+        let is_step = |step: &str| {
+            let (name, indices) = step.split_at(step.find('[').unwrap_or(step.len()));
+            !name.is_empty() && name.chars().all(is_name) && indices.split_inclusive(']').all(is_index)
+        };
+        name.split('.').all(is_step).then(|| Self(name.to_owned()))
     }
 
     /// The path as text.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.0
     }
 
-    /// Value of the field in `scenario`; `None` if it is absent.
-    pub fn get<'a>(&self, scenario: &'a toml::Table) -> Option<&'a Value> {
-        let mut table = Some(scenario);
-        let mut value = None;
-        for (name, places) in &self.steps {
-            value = table?.get(name);
-            for &place in places {
-                value = value?.get(place);
+    /// Whether `field` is this field or a part of it.
+    pub fn has(&self, field: &str) -> bool {
+        is_below(field, &self.0)
+    }
+
+    /// Whether `field` is this field, a part of it, or a table with it.
+    pub fn is_about(&self, field: &str) -> bool {
+        !field.is_empty() && (is_below(field, &self.0) || is_below(&self.0, field))
+    }
+
+    /// Sets the field and creates missing tables. Its place is that of the replaced value or else
+    /// of the table. The error says what is in the way.
+    pub(super) fn set<'a>(&self, root: &mut Node<'a>, to: DeValue<'a>) -> Result<(), String> {
+        let (mut node, mut name) = (root, "");
+        for step in self.0.split(['.', '[']) {
+            let span = node.span();
+            node = match (node.get_mut(), step.strip_suffix(']')) {
+                (DeValue::Table(table), None) => {
+                    let key = Spanned::new(span.clone(), step.to_owned().into());
+                    table.entry(key).or_insert_with(|| Spanned::new(span, DeValue::Table(DeTable::new())))
+                }
+                (DeValue::Array(list), Some(index)) => {
+                    let count = list.len();
+                    let element = index.parse().ok().and_then(|index: usize| list.get_mut(index));
+                    element.ok_or_else(|| format!("{name} has {count} elements, counted from 0"))?
+                }
+                (_, None) => return Err(format!("{name} is not a table in the scenario")),
+                (_, Some(_)) => return Err(format!("{name} is not a list in the scenario")),
+            };
+            if !step.ends_with(']') {
+                name = step;
             }
-            table = value?.as_table();
         }
-        value
-    }
-
-    /// Sets the field and creates missing tables. The error says what is in the way.
-    pub fn set(&self, scenario: &mut toml::Table, to: Value) -> Result<(), String> {
-        let Some(((last, places), tables)) = self.steps.split_last() else {
-            return Err("it has no name".to_owned());
-        };
-        let mut table = scenario;
-        for (name, places) in tables {
-            let entry = table.entry(name).or_insert_with(|| Value::Table(toml::Table::new()));
-            table = element(entry, name, places)?
-                .as_table_mut()
-                .ok_or_else(|| format!("{name} is not a table in the scenario"))?;
-        }
-        if places.is_empty() {
-            table.insert(last.clone(), to);
-            return Ok(());
-        }
-        let list = table.get_mut(last).ok_or_else(|| format!("{last} is not in the scenario"))?;
-        *element(list, last, places)? = to;
+        *node = moved(to, &node.span());
         Ok(())
     }
 }
 
-fn element<'a>(mut value: &'a mut Value, name: &str, places: &[usize]) -> Result<&'a mut Value, String> {
-    for &place in places {
-        let list = value.as_array_mut().ok_or_else(|| format!("{name} is not a list in the scenario"))?;
-        let count = list.len();
-        value = list.get_mut(place).ok_or_else(|| format!("{name} has {count} elements, counted from 0"))?;
-    }
-    Ok(value)
+/// A value of another text with all its parts at `span`.
+fn moved<'a>(value: DeValue<'a>, span: &Range<usize>) -> Node<'a> {
+    let inner = |node: Node<'a>| moved(node.into_inner(), span);
+    let value = match value {
+        DeValue::Array(list) => DeValue::Array(list.into_iter().map(inner).collect()),
+        DeValue::Table(table) => {
+            let entry = |(key, node): (Spanned<_>, _)| (Spanned::new(span.clone(), key.into_inner()), inner(node));
+            DeValue::Table(table.into_iter().map(entry).collect())
+        }
+        value => value,
+    };
+    Spanned::new(span.clone(), value)
+}
+
+/// Whether `field` is `above`, or a part of it.
+fn is_below(field: &str, above: &str) -> bool {
+    field.strip_prefix(above).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 impl Display for Field {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.name)
+        f.write_str(&self.0)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SCENARIO: &str = "ticks = 5\n[plane]\nradius_m = 1\n[[plane.group]]\nfrom_m = [1, 2]\n[[plane.group]]\n";
-
-    fn set(name: &str) -> Result<toml::Table, String> {
-        let mut scenario = SCENARIO.parse().expect("TOML");
-        Field::read(name).expect("a name").set(&mut scenario, Value::Integer(7)).map(|()| scenario)
-    }
-
-    #[test]
-    fn a_field_is_found_set_and_made() {
-        for name in ["ticks", "plane.radius_m", "plane.group[1].count", "radio.burst.share", "plane.group[0].from_m[1]"]
-        {
-            let changed = set(name).unwrap_or_else(|what| panic!("{name}: {what}"));
-            assert_eq!(Field::read(name).and_then(|field| field.get(&changed).cloned()), Some(Value::Integer(7)));
-            let mut before: toml::Table = SCENARIO.parse().expect("TOML");
-            Field::read(name).expect("a name").set(&mut before, Value::Integer(7)).expect("a place");
-            assert_eq!(before, changed);
-        }
-        let scenario = SCENARIO.parse().expect("TOML");
-        assert_eq!(Field::read("plane.group[2].count").expect("a name").get(&scenario), None);
-    }
-
-    #[test]
-    fn an_obstruction_on_the_path_is_named() {
-        for (name, what) in [
-            ("plane.group[2].count", "group has 2 elements, counted from 0"),
-            ("plane.radius_m.x", "radius_m is not a table in the scenario"),
-            ("ticks[0]", "ticks is not a list in the scenario"),
-            ("plane.order[0]", "order is not in the scenario"),
-            ("order[0].at_s", "order is not a list in the scenario"),
-        ] {
-            assert_eq!(set(name).expect_err(name), what);
-        }
-    }
-
-    #[test]
-    fn malformed_paths_are_refused() {
-        for bad in ["", ".", "a.", "a[", "a[]", "a[-1]", "a[+1]", "a[01]", "a]0[", "a b", "[0]", "a[0]b", "a..b"] {
-            assert_eq!(Field::read(bad), None, "{bad:?}");
-        }
-    }
-}
+mod tests;

@@ -1,17 +1,15 @@
 //! Interventions: changes to a running simulation, made by hand in the viewer or listed as
 //! `[[intervention]]` in a scenario.
 
-use super::de::table;
 use super::ranges::{micros, short};
 use super::source::{ScenarioError, Source};
-use super::{Robot, Scenario, ScenarioFile};
+use super::{Robot, Scenario, ScenarioFile, nearest};
 use crate::world::Refusal;
 use crate::world::plane::{FAR_M, Shape};
-use serde::de::{Deserializer, Error as _};
+use crate::{kinds, table};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::parameters;
 use staya_controller::robot::RobotId;
-use std::sync::LazyLock;
 
 /// One change to a running simulation. Robots are named by id; places are world metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,7 +35,6 @@ pub enum Intervention {
         /// Id of the robot; `None`: all.
         robot: Option<u32>,
         /// Name of the parameter.
-        #[serde(deserialize_with = "parameter")]
         name: String,
         /// New value.
         value: f32,
@@ -59,7 +56,6 @@ pub enum Intervention {
     /// Adds an obstacle to the plane.
     Solid {
         /// Shape of the obstacle.
-        #[serde(deserialize_with = "table")]
         solid: Shape,
     },
     /// Moves an obstacle instantly.
@@ -83,21 +79,33 @@ pub enum Intervention {
     },
 }
 
-fn parameter<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| parameters().map(|row| row.name).collect());
-    let name = String::deserialize(deserializer)?;
-    if NAMES.contains(&name.as_str()) { Ok(name) } else { Err(D::Error::unknown_variant(&name, &NAMES)) }
-}
+kinds!(Intervention {
+    Goal = "goal" { robot, place_m },
+    Waypoint = "waypoint" { goal, place_m },
+    Parameter = "parameter" { robot, name, value },
+    Down = "down" { robot, for_s },
+    Radio = "radio" { loss, range_m },
+    Solid = "solid" { solid },
+    Move = "move" { index, by_m },
+    Remove = "remove" { index },
+    Cell = "cell" { cell, class },
+});
 
-/// `[[intervention]]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InterventionTable {
-    /// Time after the start, seconds.
-    pub at_s: f64,
-    /// The intervention, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
-    #[serde(rename = "do", deserialize_with = "table")]
-    pub what: Intervention,
+kinds!(Shape {
+    Circle = "circle" { center_m, radius_m },
+    Segment = "segment" { from_m, to_m },
+    Polygon = "polygon" { points_m },
+    Ball = "ball" { center_m, radius_m },
+});
+
+table! {
+    /// `[[intervention]]`.
+    pub struct InterventionTable {
+        /// Time after the start, seconds.
+        pub at_s: f64, 0.0..=14_400_000.0, "seconds";
+        /// The intervention, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
+        pub r#do: Intervention;
+    }
 }
 
 impl Intervention {
@@ -132,8 +140,14 @@ impl Intervention {
                 }
             }
             Self::Parameter { name, value, .. } => {
-                let known = parameters().find(|row| row.name == name);
-                let [least, greatest] = known.map_or([f32::MIN, f32::MAX], |row| row.range);
+                let Some(row) = parameters().find(|row| row.name == name) else {
+                    let remedy = match nearest(name, parameters().map(|row| row.name)) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => "give a name of tests/golden/parameters.txt".to_owned(),
+                    };
+                    return Err(Refusal::new("name", format!("unknown value `{name}`"), remedy));
+                };
+                let [least, greatest] = row.range;
                 if !(least..=greatest).contains(value) {
                     let what = format!("{} is out of range", short((*value).into()));
                     return Err(Refusal::new("value", what, format!("give {least} to {greatest}")));
@@ -176,12 +190,11 @@ pub(super) fn interventions(
     let mut interventions = Vec::with_capacity(file.intervention.len());
     for (index, table) in file.intervention.iter().enumerate() {
         let field = |name: &str| format!("intervention[{index}].{name}");
-        super::ranges::within(source, &field("at_s"), table.at_s, 0.0, 4000.0 * 3600.0, "seconds")?;
         table
-            .what
+            .r#do
             .check(robots)
             .map_err(|refusal| source.error(&field(&format!("do.{}", refusal.field)), refusal.what, refusal.remedy))?;
-        interventions.push((tick(table.at_s, file.tick_s), table.what.clone()));
+        interventions.push((tick(table.at_s, file.tick_s), table.r#do.clone()));
     }
     interventions.sort_by_key(|(tick, _)| *tick);
     Ok(interventions)
@@ -217,47 +230,30 @@ pub fn with_interventions(text: &str, tick_us: u32, done: &[(u32, Intervention)]
     for (tick, what) in done {
         let micros = u64::from(*tick) * u64::from(tick_us);
         let (seconds, micros) = (micros / 1_000_000, micros % 1_000_000);
-        let what = toml::Value::try_from(what).expect("an intervention is a table of numbers, words and lists");
-        text.push_str(&format!("\n[[intervention]]\nat_s = {seconds}.{micros:06}\ndo = {what}\n"));
+        let mut fields = serde_json::to_value(what).expect("an intervention is a table of numbers, words and lists");
+        if let Intervention::Radio { range_m: Some(f64::INFINITY), .. } = what {
+            fields["range_m"] = INFINITE.into();
+        }
+        text.push_str(&format!("\n[[intervention]]\nat_s = {seconds}.{micros:06}\ndo = {}\n", inline(&fields)));
     }
     text
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// In JSON, infinity is null like an absent field.
+const INFINITE: &str = "inf";
 
-    #[test]
-    fn multiples_of_a_tick_convert_exactly() {
-        for tick_s in [0.1, 0.05, 0.3, 1.0, 0.007, 60.0] {
-            for number in [0_u32, 1, 3, 7, 1001, 70_000] {
-                let micros = u64::from(number) * u64::from(super::micros(tick_s));
-                assert_eq!(tick(micros as f64 / 1e6, tick_s), number, "{tick_s} {number}");
-            }
+/// Fields as TOML in one line.
+fn inline(fields: &serde_json::Value) -> String {
+    match fields {
+        serde_json::Value::Object(fields) => {
+            let given = fields.iter().filter(|(_, value)| !value.is_null());
+            let given: Vec<_> = given.map(|(name, value)| format!("{name} = {}", inline(value))).collect();
+            format!("{{ {} }}", given.join(", "))
         }
-        assert_eq!(tick(0.15, 0.1), 2);
-    }
-
-    #[test]
-    fn invalid_interventions_are_refused_with_a_remedy() {
-        let robots = [Robot { id: RobotId(3), start: Default::default(), goal: Default::default() }];
-        let polygon = |points_m| Intervention::Solid { solid: Shape::Polygon { points_m } };
-        let wrong = [
-            Intervention::Goal { robot: Some(2), place_m: [0.0; 3] },
-            Intervention::Goal { robot: Some(3), place_m: [f64::NAN, 0.0, 0.0] },
-            Intervention::Parameter { robot: None, name: "share".into(), value: 2.0 },
-            Intervention::Down { robot: 3, for_s: Some(-1.0) },
-            Intervention::Radio { loss: Some(1.5), range_m: None },
-            Intervention::Radio { loss: None, range_m: Some(f64::NAN) },
-            polygon(vec![[0.0; 2]; 2]),
-            polygon(vec![[f64::INFINITY, 0.0]; 3]),
-            Intervention::Solid { solid: Shape::Circle { center_m: [0.0; 2], radius_m: 0.0 } },
-            Intervention::Move { index: 0, by_m: [f64::NAN, 0.0] },
-        ];
-        for intervention in wrong {
-            let refusal = intervention.check(&robots).unwrap_err();
-            assert!(!refusal.remedy.is_empty(), "{intervention:?}");
-        }
-        assert_eq!(Intervention::Goal { robot: Some(3), place_m: [1.0; 3] }.check(&robots), Ok(()));
+        serde_json::Value::String(text) if text == INFINITE => text.clone(),
+        other => other.to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests;

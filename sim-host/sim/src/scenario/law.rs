@@ -1,12 +1,13 @@
 //! `[law]`: a law that the program adds, instead of those of Staya.
 
-use super::de::nearest;
 use super::ranges;
+use super::read::nearest;
 use super::source::{ScenarioError, Source};
 use super::{PlaneSetup, ScenarioFile};
 use crate::own_law::{NEGOTIATION, Own, named};
+use crate::table;
 use crate::terrain::Terrain;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use staya_controller::agent::{AnySurroundings, CellState, InCell, InCells, InPlane, Law, OnGrid};
 use staya_controller::geom::Vec2;
 use staya_controller::negotiation::Moves;
@@ -16,16 +17,15 @@ use std::collections::BTreeMap;
 /// at 0.7 cells.
 const WIDEST: f64 = 0.35;
 
-/// `[law]`: all robots have a law that the program adds with
-/// [`add_law`](crate::engine::add_law). The guidance still decides which goals the file gives.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LawTable {
-    /// The name that the program gives to the law.
-    pub name: String,
-    /// Parameters of the law by their names. Default: those of the law.
-    #[serde(default)]
-    pub parameters: BTreeMap<String, f64>,
+table! {
+    /// `[law]`: all robots have a law that the program adds with
+    /// [`add_law`](crate::engine::add_law). The guidance still decides which goals the file gives.
+    pub struct LawTable {
+        /// The name that the program gives to the law.
+        pub name: String;
+        /// Parameters of the law by their names. Default: those of the law.
+        pub parameters: BTreeMap<String, f64> = Default::default();
+    }
 }
 
 /// A law that the program adds, with its parameters.

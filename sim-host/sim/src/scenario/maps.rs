@@ -1,27 +1,26 @@
 //! `[maps]`: exchange of terrain maps between robots.
 
 use super::params::FormationLaw;
-use super::ranges::within;
 use super::source::Source;
 use super::{PlaneSetup, ScenarioError, ScenarioFile};
-use serde::Deserialize;
+use crate::{defaults, table};
 use staya_controller::agent::RouteSetup;
 use staya_controller::land::MapParams;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::time::Duration;
 
-/// Longest time for which a map entry is kept, seconds: half the range of the robots' clocks.
-const LONGEST_S: f64 = 2100.0;
-
-/// `[maps]`: robots that plan on terrain exchange what they see of it.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct MapsTable {
-    /// Whether maps are exchanged. Default: false.
-    pub share: bool,
-    /// How long received map entries are kept, seconds, 1 to 2100. Default: 600.
-    pub forget_after_s: Option<f64>,
+table! {
+    /// `[maps]`: robots that plan on terrain exchange what they see of it.
+    #[derive(Copy)]
+    pub struct MapsTable {
+        /// Whether maps are exchanged. Default: false.
+        pub share: bool = false;
+        /// How long received map entries are kept, seconds, 1 to 2100. Default: 600.
+        pub forget_after_s: Option<f64>, 1.0..=2100.0, "s";
+    }
 }
+
+defaults!(MapsTable);
 
 pub(super) fn sharing(
     source: &Source<'_>,
@@ -31,7 +30,6 @@ pub(super) fn sharing(
 ) -> Result<Option<MapParams>, ScenarioError> {
     let mut params = MapParams::default();
     if let Some(seconds) = file.maps.forget_after_s {
-        within(source, "maps.forget_after_s", seconds, 1.0, LONGEST_S, "s")?;
         params.forget_after = Duration::from_micros((seconds * 1e6) as i32);
     }
     if !file.maps.share {

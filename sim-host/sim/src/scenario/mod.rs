@@ -4,8 +4,7 @@
 
 mod authentication;
 mod check;
-mod de;
-pub use de::nearest;
+pub use read::nearest;
 mod field;
 mod fingerprint;
 mod formation;
@@ -17,12 +16,14 @@ mod params;
 mod plane;
 mod plausibility;
 mod ranges;
+mod read;
 mod robots;
 mod schema;
 mod scouting;
 mod setting;
 mod setup;
 mod source;
+mod write;
 
 pub use field::Field;
 pub use formation::FormationEntry;
@@ -38,14 +39,15 @@ pub use plane::{
 };
 pub use plausibility::PlausibilityTable;
 pub use ranges::within;
+pub use read::{AnyTable, Field as Read, Fields, Line, Node, Table, Wrong, empty, plain, word};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,
     MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, TerrainTable, UniformTable,
 };
 pub use setting::{Setting, text_with, with_settings};
-pub use source::ScenarioError;
-pub use source::Source;
+pub use source::{Location, ScenarioError, Source};
+pub use write::{fields, inline};
 
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
@@ -221,12 +223,21 @@ impl Scenario {
     /// # Errors
     /// See [`Scenario::load`].
     pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
-        Self::build(text, path, overrides, u32::MAX)
+        Self::read(Source::new(path, text)?, overrides)
+    }
+
+    /// Like [`Scenario::parse`], for parsed fields.
+    ///
+    /// # Errors
+    /// See [`Scenario::load`].
+    pub fn read(source: Source<'_>, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        Self::build(source, overrides, u32::MAX)
     }
 
     /// Refuses events that are later than `ticks`, than the text's ticks, and than the override's.
-    fn build(text: &str, path: &Path, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
-        let source = Source::new(path, text)?;
+    fn build(mut source: Source<'_>, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
+        let parameters = source.json();
+        plane::inherit(source.root_mut());
         let mut file: ScenarioFile = source.read(LIST)?;
         let ticks = ticks.max(file.ticks);
         file.seed = overrides.seed.unwrap_or(file.seed);
@@ -330,7 +341,7 @@ impl Scenario {
             plausibility: PlausibilityLimits::ANY,
             attacks,
             files: source.files(),
-            parameters: parameters(&source, &file),
+            parameters: with_overrides(parameters, &file),
         };
         scenario.plausibility = plausibility::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
         Ok(scenario)
@@ -364,8 +375,8 @@ impl Scenario {
     }
 }
 
-fn parameters(source: &Source<'_>, file: &ScenarioFile) -> serde_json::Value {
-    let mut fields: serde_json::Value = source.read(LIST).unwrap_or_default();
+/// The fields of the file with overrides applied, without secrets.
+fn with_overrides(mut fields: serde_json::Value, file: &ScenarioFile) -> serde_json::Value {
     if let Some(fields) = fields.as_object_mut() {
         fields.insert("seed".into(), file.seed.into());
         fields.insert("ticks".into(), file.ticks.into());

@@ -4,7 +4,7 @@
 use super::ranges::{range, row, set, within};
 use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
-use serde::Deserialize;
+use crate::{choice, defaults, names, table};
 use staya_controller::agent::RouteSetup;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{FormationParams, NEVER, Prediction, Recovery};
@@ -13,109 +13,103 @@ use staya_controller::parameters::Value as _;
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_papers::criteria::PublishedParams;
-use std::fmt;
 
-/// `[grid]`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct GridTable {
-    /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
-    pub norm: Norm,
-    /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
-    pub corner_cutting: bool,
-    /// Number of neighbours of a cell to which robots move, 4 or 8. Default: 8.
-    pub moves: u8,
-    /// Whether all robots move at once, as in POGEMA; for 4 neighbours. Default: false.
-    pub simultaneous: bool,
-}
-
-impl Default for GridTable {
-    fn default() -> Self {
-        Self { norm: Norm::default(), corner_cutting: false, moves: 8, simultaneous: false }
+table! {
+    /// `[grid]`.
+    #[derive(Copy)]
+    pub struct GridTable {
+        /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
+        pub norm: Norm = Default::default();
+        /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
+        pub corner_cutting: bool = false;
+        /// Number of neighbours of a cell to which robots move, 4 or 8. Default: 8.
+        pub moves: u8 = 8;
+        /// Whether all robots move at once, as in POGEMA; for 4 neighbours. Default: false.
+        pub simultaneous: bool = false;
     }
 }
 
 const MAX_RADIUS: u8 = 16;
 
-/// `[route]`: windowed routing (KUZ sections 3 and 5). Coefficients are rounded to sixteenths.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RouteTable {
-    /// Sight, cells in each direction, 1 to 16.
-    pub radius: Option<u8>,
-    /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
-    pub exit: Option<ExitRule>,
-    /// When to plan: `"each_cell"` or `"until_changed"` (keeps its plan; not in formations).
-    pub replan: Option<Replan>,
-    /// Weight of travel time, 0 to 4095.
-    pub a0: Option<f64>,
-    /// Extra ticks for a cell that another robot occupies, 0 to 4095.
-    pub a1: Option<f64>,
-    /// Ticks per earlier visit of a cell, 0 to 4095.
-    pub a2: Option<f64>,
-    /// Ticks per cell of distance from the exit to the goal, 0 to 4095.
-    pub a3: Option<f64>,
-    /// Weighted shuffle: a move that costs this many more ticks than another is half as likely to
-    /// be tried first, 0 to 4095. 0: cheapest first, without randomness.
-    pub halved_per_ticks: Option<f64>,
-}
-
-/// The laws of formation keeping by name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FormationLaw {
-    /// Staya's: the top leader chooses the route and waits ([`staya_controller::formation`]).
-    #[default]
-    Staya,
-    /// The paper's: each robot weighs its own route ([`PublishedParams`]).
-    Paper,
-    /// Staya's, with routes to the future positions of places ([`staya_papers::Course`]).
-    Lookahead,
-}
-
-impl fmt::Display for FormationLaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Staya => "staya",
-            Self::Paper => "paper",
-            Self::Lookahead => "lookahead",
-        })
+table! {
+    /// `[route]`: windowed routing (KUZ sections 3 and 5). Coefficients are rounded to sixteenths.
+    #[derive(Copy)]
+    pub struct RouteTable {
+        /// Sight, cells in each direction, 1 to 16.
+        pub radius: Option<u8>, 1.0..=16.0, "cells";
+        /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
+        pub exit: Option<ExitRule>;
+        /// When to plan: `"each_cell"` or `"until_changed"` (keeps its plan; not in formations).
+        pub replan: Option<Replan>;
+        /// Weight of travel time, 0 to 4095.
+        pub a0: Option<f64>;
+        /// Extra ticks for a cell that another robot occupies, 0 to 4095.
+        pub a1: Option<f64>;
+        /// Ticks per earlier visit of a cell, 0 to 4095.
+        pub a2: Option<f64>;
+        /// Ticks per cell of distance from the exit to the goal, 0 to 4095.
+        pub a3: Option<f64>;
+        /// Weighted shuffle: a move that costs this many more ticks than another is half as likely
+        /// to be tried first, 0 to 4095. 0: cheapest first, without randomness.
+        pub halved_per_ticks: Option<f64>, 0.0..=4095.0, "";
     }
 }
 
-/// `[formation]`: keeping a formation (KUZ section 7); for `robots.formation` only.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FormationTable {
-    /// The law: `"staya"`; `"lookahead"` (`"staya"` with followers that plan to where their places
-    /// will be); `"paper"` (as published by A. V. Kuznetsov). The last two are for the grid only.
-    pub law: Option<FormationLaw>,
-    /// Largest number of graph edges between robots that count as neighbours, 1 or more; no robot
-    /// may have more than 8 neighbours. Default: the largest of 3, 2, 1 that fits.
-    pub rho: Option<u8>,
-    /// Distance from its place within which a neighbour counts as found, cells.
-    pub eps: Option<u8>,
-    /// Cost of distance from the own place, ticks per cell, 0 to 4095; rounded to sixteenths.
-    pub gain: Option<f64>,
-    /// Lag of a follower at which the top leader waits (r0), 0 to 900 cells.
-    pub halt_cells: Option<f64>,
-    /// Lag at which the waiting leader continues, cells; at most `halt_cells`.
-    pub resume_cells: Option<f64>,
-    /// Whether the top leader waits for followers; not with `law = "paper"`, nor in the plane.
-    pub waits: Option<bool>,
-    /// Missing or surplus robots above which others are asked to turn; with `law = "paper"`.
-    pub crowd: Option<u8>,
-    /// How far ahead of the top leader's cell the followers aim, cells.
-    pub lead: Option<u8>,
-    /// Weight of the land under followers in the leader's costs, 0 to 1; rounded to sixteenths.
-    pub footprint: Option<f64>,
-    /// Whether robots behind a dead robot move up a place each; otherwise its place stays empty.
-    pub closes_ranks: Option<bool>,
-    /// Prediction of others: `"constant"` (as announced) or `"reflexive"` (as this robot decides).
-    pub prediction: Option<Prediction>,
-    /// Reaction of the top leader to lag: `"wait"` or `"def"` (go where the others are heading).
-    pub recovery: Option<Recovery>,
+choice! {
+    /// The laws of formation keeping by name.
+    #[derive(Default)]
+    pub enum FormationLaw {
+        /// Staya's: the top leader chooses the route and waits ([`staya_controller::formation`]).
+        #[default]
+        Staya = "staya",
+        /// The paper's: each robot weighs its own route ([`PublishedParams`]).
+        Paper = "paper",
+        /// Staya's, with routes to the future positions of places ([`staya_papers::Course`]).
+        Lookahead = "lookahead",
+    }
 }
+
+table! {
+    /// `[formation]`: keeping a formation (KUZ section 7); for `robots.formation` only.
+    #[derive(Copy)]
+    pub struct FormationTable {
+        /// The law: `"staya"`; `"lookahead"` (`"staya"` with followers that plan to where their
+        /// places will be); `"paper"` (as published by A. V. Kuznetsov). The last two are for the
+        /// grid only.
+        pub law: Option<FormationLaw>;
+        /// Largest number of graph edges between robots that count as neighbours, 1 or more; no
+        /// robot may have more than 8 neighbours. Default: the largest of 3, 2, 1 that fits.
+        pub rho: Option<u8>;
+        /// Distance from its place within which a neighbour counts as found, cells.
+        pub eps: Option<u8>;
+        /// Cost of distance from the own place, ticks per cell, 0 to 4095; rounded to sixteenths.
+        pub gain: Option<f64>;
+        /// Lag of a follower at which the top leader waits (r0), 0 to 900 cells.
+        pub halt_cells: Option<f64>;
+        /// Lag at which the waiting leader continues, cells; at most `halt_cells`.
+        pub resume_cells: Option<f64>;
+        /// Whether the top leader waits for followers; not with `law = "paper"`, nor in the plane.
+        pub waits: Option<bool>;
+        /// Missing or surplus robots above which others are asked to turn; with `law = "paper"`.
+        pub crowd: Option<u8>;
+        /// How far ahead of the top leader's cell the followers aim, cells.
+        pub lead: Option<u8>;
+        /// Weight of the land under followers in the leader's costs, 0 to 1; rounded to sixteenths.
+        pub footprint: Option<f64>, 0.0..=1.0, "(a share)";
+        /// Whether robots behind a dead robot move up a place each; otherwise its place stays
+        /// empty.
+        pub closes_ranks: Option<bool>;
+        /// Prediction of others: `"constant"` (as announced) or `"reflexive"` (as this robot
+        /// decides).
+        pub prediction: Option<Prediction>;
+        /// Reaction of the top leader to lag: `"wait"` or `"def"` (go where the others are
+        /// heading).
+        pub recovery: Option<Recovery>;
+    }
+}
+
+names!(Norm, ExitRule, Replan, Prediction, Recovery);
+defaults!(GridTable, RouteTable, FormationTable);
 
 pub(super) fn sight(file: &ScenarioFile) -> u8 {
     file.route.radius.unwrap_or(RouteParams::default().radius)
@@ -124,13 +118,6 @@ pub(super) fn sight(file: &ScenarioFile) -> u8 {
 pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteSetup, ScenarioError> {
     let (table, grid) = (&file.route, &file.grid);
     let mut radius = sight(file);
-    if !(1..=MAX_RADIUS).contains(&radius) {
-        return Err(source.error(
-            "route.radius",
-            format!("a window of radius {radius} is out of range"),
-            format!("give 1 to {MAX_RADIUS} cells"),
-        ));
-    }
     if let Some(scouting) = &file.scouting {
         let wide = scouting.radius.unwrap_or(MAX_RADIUS);
         within(source, "scouting.radius", wide.into(), radius.into(), MAX_RADIUS.into(), "cells")?;
@@ -143,7 +130,6 @@ pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteS
         set(source, &format!("route.{name}"), value, &mut params, name)?;
     }
     let halving = table.halved_per_ticks.unwrap_or_default();
-    within(source, "route.halved_per_ticks", halving, 0.0, 4095.0, "")?;
     let sharpness = match Gain::nearest(halving as f32) {
         Gain::ZERO => Sharpness::Greedy,
         halving => Sharpness::HalvedPer(halving),
@@ -167,7 +153,6 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
         params.resume_lag = units(cells);
     }
     if let Some(share) = table.footprint {
-        within(source, "formation.footprint", share, 0.0, 1.0, "(a share)")?;
         params.footprint = libm::round(share * 16.0) as u8;
     }
     if table.waits == Some(false) {

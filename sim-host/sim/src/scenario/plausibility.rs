@@ -1,9 +1,8 @@
 //! `[plausibility]`: limits within which received beacons count as plausible.
 
-use super::ranges::within;
 use super::source::Source;
 use super::{PlaneSetup, Robot, Scenario, ScenarioError, ScenarioFile};
-use serde::Deserialize;
+use crate::{defaults, table};
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
@@ -15,23 +14,27 @@ const SLACK_RADII: f64 = 4.0;
 /// Ticks for which a robot must be consistent after a jump: the age at which a beacon is stale.
 const SETTLE_TICKS: u32 = 4;
 
-/// `[plausibility]`: plausibility limits on beacons. The defaults accept every honest robot.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlausibilityTable {
-    /// Whether beacons are checked. Default: true.
-    pub bounded: Option<bool>,
-    /// Largest radius, metres. Default: twice the radius of the largest body.
-    pub max_radius_m: Option<f64>,
-    /// Highest speed, m/s. Default: twice the highest speed in the scenario.
-    pub max_speed_mps: Option<f64>,
-    /// Position tolerance, metres. Default: four radii of the largest body; two cells on the grid.
-    pub slack_m: Option<f64>,
-    /// How long a robot must be consistent after a jump, seconds. Default: four ticks.
-    pub settle_s: Option<f64>,
-    /// Largest robot id. Default: the largest id in the scenario.
-    pub last_robot: Option<u32>,
+table! {
+    /// `[plausibility]`: plausibility limits on beacons. The defaults accept every honest robot.
+    #[derive(Copy)]
+    pub struct PlausibilityTable {
+        /// Whether beacons are checked. Default: true.
+        pub bounded: Option<bool>;
+        /// Largest radius, metres. Default: twice the radius of the largest body.
+        pub max_radius_m: Option<f64>, 0.001..=1e6, "metres";
+        /// Highest speed, m/s. Default: twice the highest speed in the scenario.
+        pub max_speed_mps: Option<f64>, 0.001..=1e6, "m/s";
+        /// Position tolerance, metres. Default: four radii of the largest body; two cells on the
+        /// grid.
+        pub slack_m: Option<f64>, 0.0..=1e6, "metres";
+        /// How long a robot must be consistent after a jump, seconds. Default: four ticks.
+        pub settle_s: Option<f64>, 0.0..=1800.0, "seconds";
+        /// Largest robot id. Default: the largest id in the scenario.
+        pub last_robot: Option<u32>;
+    }
 }
+
+defaults!(PlausibilityTable);
 
 fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> PlausibilityLimits<f32> {
     PlausibilityLimits {
@@ -86,18 +89,14 @@ pub(super) fn said(
         }
         return Ok(PlausibilityLimits::ANY);
     }
-    for (field, value, low, unit, bound) in [
-        ("max_radius_m", table.max_radius_m, 0.001, "metres", &mut plausibility.max_radius_m),
-        ("max_speed_mps", table.max_speed_mps, 0.001, "m/s", &mut plausibility.max_speed_mps),
-        ("slack_m", table.slack_m, 0.0, "metres", &mut plausibility.slack_m),
+    for (value, bound) in [
+        (table.max_radius_m, &mut plausibility.max_radius_m),
+        (table.max_speed_mps, &mut plausibility.max_speed_mps),
+        (table.slack_m, &mut plausibility.slack_m),
     ] {
-        if let Some(value) = value {
-            within(source, &format!("plausibility.{field}"), value, low, 1e6, unit)?;
-            *bound = value as f32;
-        }
+        *bound = value.map_or(*bound, |value| value as f32);
     }
     if let Some(settle_s) = table.settle_s {
-        within(source, "plausibility.settle_s", settle_s, 0.0, 1800.0, "seconds")?;
         plausibility.settle = Duration::from_micros(libm::round(settle_s * 1e6) as i32);
     }
     if let Some(last) = table.last_robot {

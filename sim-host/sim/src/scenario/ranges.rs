@@ -1,6 +1,7 @@
 //! Range checks and conversions shared by several tables.
 
-pub(super) use super::de::short;
+use super::read::out_of;
+pub(super) use super::read::short;
 use super::source::{ScenarioError, Source};
 use staya_controller::parameters::{Parameter, Parameters};
 
@@ -46,8 +47,8 @@ pub fn within(
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    let what = format!("{} is out of range", short(value));
-    Err(source.error(field, what, format!("give {} to {} {unit}", short(low), short(high)).trim_end()))
+    let (what, remedy) = out_of(value, &(low..=high), unit);
+    Err(source.error(field, what, remedy))
 }
 
 /// Checks the value of `field` against the range of a parameter and stores it.

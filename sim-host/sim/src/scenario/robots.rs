@@ -79,19 +79,16 @@ pub(super) fn build(
     terrain: &Terrain,
 ) -> Result<(Vec<Robot>, Vec<Formation>), ScenarioError> {
     let Some(table) = &file.robots else {
-        return Err(source.error(
-            "robots",
-            "the table is missing",
-            "give exactly one of list, formation, scen, scattered",
-        ));
+        let remedy = "give exactly one of list, formation, scen, scattered";
+        return Err(source.error("robots", "the table is missing", remedy));
     };
     let mut formations = Vec::new();
-    let entries = match (&table.list, &table.formation[..], &table.scen, &table.scattered) {
+    let entries = match (&table.list, &table.formation.0[..], &table.scen, &table.scattered) {
         (Some(list), [], None, None) => listed(list),
         (None, [_, ..], None, None) => {
             let mut entries = Vec::new();
-            for (index, entry) in table.formation.iter().enumerate() {
-                let field = match table.formation.len() {
+            for (index, entry) in table.formation.0.iter().enumerate() {
+                let field = match table.formation.0.len() {
                     1 => "robots.formation".to_owned(),
                     _ => format!("robots.formation[{index}]"),
                 };
@@ -104,11 +101,8 @@ pub(super) fn build(
         (None, [], Some(entry), None) => from_scen(source, entry, terrain)?,
         (None, [], None, Some(entry)) => scattered(source, entry, terrain, file.seed)?,
         _ => {
-            return Err(source.error(
-                "robots",
-                "the robots are not defined exactly once",
-                "give exactly one of list, formation, scen, scattered",
-            ));
+            let remedy = "give exactly one of list, formation, scen, scattered";
+            return Err(source.error("robots", "the robots are not defined exactly once", remedy));
         }
     };
     check(source, &entries, terrain)?;
@@ -239,18 +233,12 @@ fn given_graph(
     edges: &[[u32; 2]],
 ) -> Result<Graph, ScenarioError> {
     if places.first() != Some(&[0, 0]) {
-        return Err(source.error(
-            &format!("{field}.places"),
-            "the first place is not [0, 0]",
-            "places are relative to robot 1, the top leader",
-        ));
+        let remedy = "places are relative to robot 1, the top leader";
+        return Err(source.error(&format!("{field}.places"), "the first place is not [0, 0]", remedy));
     }
     if places.len() > usize::from(MAX_PLACES) {
-        return Err(source.error(
-            &format!("{field}.places"),
-            format!("{} robots are more than a formation holds", places.len()),
-            format!("give at most {MAX_PLACES}"),
-        ));
+        let what = format!("{} robots are more than a formation holds", places.len());
+        return Err(source.error(&format!("{field}.places"), what, format!("give at most {MAX_PLACES}")));
     }
     let mut pairs = BTreeSet::new();
     for (index, &[a, b]) in edges.iter().enumerate() {
@@ -263,20 +251,15 @@ fn given_graph(
                 pairs.insert((a.min(b), a.max(b)));
             }
             _ => {
-                return Err(source.error(
-                    &format!("{field}.edges[{index}]"),
-                    format!("[{a}, {b}] joins no two robots of the formation"),
-                    format!("give two different numbers from 1 to {}", places.len()),
-                ));
+                let what = format!("[{a}, {b}] joins no two robots of the formation");
+                let remedy = format!("give two different numbers from 1 to {}", places.len());
+                return Err(source.error(&format!("{field}.edges[{index}]"), what, remedy));
             }
         }
     }
     if let Some(lost) = unreached(places.len(), &pairs) {
-        return Err(source.error(
-            &format!("{field}.edges"),
-            format!("no edges lead from robot 1 to robot {}", lost + 1),
-            "join every robot to the formation",
-        ));
+        let what = format!("no edges lead from robot 1 to robot {}", lost + 1);
+        return Err(source.error(&format!("{field}.edges"), what, "join every robot to the formation"));
     }
     let places = places.iter().copied().map(cell).collect();
     Ok((places, pairs.into_iter().collect()))
@@ -347,11 +330,8 @@ fn from_scen(source: &Source<'_>, entry: &ScenEntry, terrain: &Terrain) -> Resul
     })?;
     let count = entry.count as usize;
     if count == 0 || count > queries.len() {
-        return Err(source.error(
-            "robots.scen.count",
-            format!("{count} robots are wanted, the file has {}", queries.len()),
-            format!("give 1 to {}", queries.len()),
-        ));
+        let what = format!("{count} robots are wanted, the file has {}", queries.len());
+        return Err(source.error("robots.scen.count", what, format!("give 1 to {}", queries.len())));
     }
     (1..)
         .zip(&queries[..count])
@@ -392,11 +372,8 @@ fn scattered(
         .collect();
     let count = entry.count as usize;
     if count == 0 || count > free.len() {
-        return Err(source.error(
-            "robots.scattered.count",
-            format!("{count} robots on {} passable cells", free.len()),
-            format!("give 1 to {}", free.len()),
-        ));
+        let what = format!("{count} robots on {} passable cells", free.len());
+        return Err(source.error("robots.scattered.count", what, format!("give 1 to {}", free.len())));
     }
     let mut rng = Rng::keyed(seed, PLACES, 0, 0);
     for at in 0..count {
@@ -427,11 +404,8 @@ fn scattered(
                 at.is_some_and(|at| !std::mem::replace(&mut taken[at], true))
             });
             let Some(goal) = goal else {
-                return Err(source.error(
-                    "robots.scattered",
-                    format!("no free goal is left within reach of robot {number}"),
-                    "give fewer robots or a longer travel",
-                ));
+                let what = format!("no free goal is left within reach of robot {number}");
+                return Err(source.error("robots.scattered", what, "give fewer robots or a longer travel"));
             };
             Ok(Entry {
                 robot: Robot { id: RobotId(number), start: Cell::new(x as i16, y as i16), goal },
@@ -452,11 +426,8 @@ fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<()
     for entry in entries {
         let RobotId(id) = entry.robot.id;
         if id == 0 || !ids.insert(id) {
-            return Err(source.error(
-                &format!("{}.id", entry.field),
-                format!("{id} is not free"),
-                "numbers are 1 or more, and each robot has its own",
-            ));
+            let remedy = "numbers are 1 or more, and each robot has its own";
+            return Err(source.error(&format!("{}.id", entry.field), format!("{id} is not free"), remedy));
         }
         for (name, place, taken) in [("start", entry.robot.start, &mut starts), ("goal", entry.robot.goal, &mut goals)]
         {
@@ -478,11 +449,8 @@ fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<()
             }
             let other = std::mem::replace(&mut taken[at], id);
             if other != 0 {
-                return Err(source.error(
-                    &field,
-                    format!("robots {other} and {id} have the same {name} ({}, {})", place.x, place.y),
-                    "a cell holds one robot: move one of them",
-                ));
+                let what = format!("robots {other} and {id} have the same {name} ({}, {})", place.x, place.y);
+                return Err(source.error(&field, what, "a cell holds one robot: move one of them"));
             }
         }
     }

@@ -1,6 +1,5 @@
 //! `[scouting]`: the terrain that robots know before they see it.
 
-use super::ranges::within;
 use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use crate::terrain::Terrain;
@@ -18,23 +17,14 @@ pub(super) fn scouting(
     let Some(table) = &file.scouting else {
         return Ok(None);
     };
-    let guidance = file.plane.as_ref().map(|plane| plane.guidance);
+    let guidance = file.plane.as_ref().map(|plane| plane.body.guidance);
     let Some(land) = land.filter(|_| guidance.is_none_or(|guidance| guidance.is_on_grid())) else {
         let (what, remedy) = ("these robots plan on no land", "leave this table out, or give guidance = \"route\"");
         return Err(source.error("scouting", what, remedy));
     };
-    for (field, value) in [("scouting.unknown", table.unknown), ("scouting.wrong", table.wrong)] {
-        within(source, field, value, 0.0, 1.0, "(a share)")?;
-    }
     if table.unknown + table.wrong > 1.0 {
         let what = format!("unknown {} and wrong {} add up to more than 1", table.unknown, table.wrong);
         return Err(source.error("scouting.wrong", what, "give shares with a sum of at most 1"));
-    }
-    let patch_cells = table.patch_cells.unwrap_or(1);
-    within(source, "scouting.patch_cells", patch_cells.into(), 1.0, 1000.0, "cells")?;
-    if table.assumed == Some(0) {
-        let what = "0 makes unknown cells impassable";
-        return Err(source.error("scouting.assumed", what, "give 1 to 255 ticks"));
     }
     let old = match &table.map {
         None => None,
@@ -49,7 +39,7 @@ pub(super) fn scouting(
     let scouted = Scouted {
         unknown: table.unknown,
         wrong: table.wrong,
-        patch_cells,
+        patch_cells: table.patch_cells.unwrap_or(1),
         assumed: table.assumed.unwrap_or_else(|| usual_class(old)),
         seed: table.seed.unwrap_or(file.seed),
     };
@@ -57,83 +47,4 @@ pub(super) fn scouting(
 }
 
 #[cfg(test)]
-mod tests {
-    use crate::scenario::{Overrides, Scenario};
-    use std::path::Path;
-
-    const LAND: &str = "[terrain]\nuniform = { width = 8, height = 6, classes = 4 }\n[robots]\nlist = [{ start = [0, 0], goal = [7, 5] }]\n";
-
-    fn parse(rest: &str) -> Result<Scenario, String> {
-        let text = format!("name = \"t\"\nticks = 9\ntick_s = 0.5\n{rest}");
-        Scenario::parse(&text, Path::new("t.toml"), &Overrides::default()).map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn scouting_extends_planning_but_not_sight() {
-        let scenario = parse(&format!("{LAND}[route]\nradius = 4\n[scouting]\nradius = 9\n")).expect("good");
-        let scouting = scenario.scouting.as_ref().expect("scouted");
-        assert_eq!((scouting.sight, scenario.route.params.radius), (4, 9));
-        assert_eq!(*scouting.map, scenario.terrain, "nothing is unknown or wrong unless said");
-        let scenario = parse(&format!("{LAND}[scouting]\n")).expect("good");
-        assert_eq!((scenario.scouting.map(|known| known.sight), scenario.route.params.radius), (Some(5), 16));
-        assert!(parse(LAND).expect("good").scouting.is_none());
-    }
-
-    #[test]
-    fn known_terrain_is_part_of_the_fingerprint() {
-        let print = |rest: &str| parse(&format!("{LAND}{rest}")).expect("good").fingerprint();
-        let prints = [
-            print(""),
-            print("[scouting]\n"),
-            print("[scouting]\nradius = 9\n"),
-            print("[scouting]\nunknown = 0.5\n"),
-            print("[scouting]\nunknown = 0.5\nseed = 9\n"),
-            print("[[terrain.change]]\nclass = 0\ncells = [[3, 3]]\n"),
-            print("[[terrain.change]]\nclass = 0\ncells = [[3, 4]]\n"),
-        ];
-        let mut different = prints.to_vec();
-        different.sort_unstable();
-        different.dedup();
-        assert_eq!(different.len(), prints.len());
-    }
-
-    #[test]
-    fn invalid_scouting_is_refused_with_place_and_remedy() {
-        for (rest, field, remedy) in [
-            ("[scouting]\nunknown = 1.5\n", "scouting.unknown", "0 to 1"),
-            ("[scouting]\nwrong = -0.5\n", "scouting.wrong", "0 to 1"),
-            ("[scouting]\nunknown = 0.6\nwrong = 0.6\n", "scouting.wrong", "sum of at most 1"),
-            ("[scouting]\npatch_cells = 0\n", "scouting.patch_cells", "1 to 1000"),
-            ("[scouting]\nassumed = 0\n", "scouting.assumed", "1 to 255"),
-            ("[scouting]\nradius = 4\n", "scouting.radius", "5 to 16"),
-            ("[scouting]\nradius = 17\n", "scouting.radius", "5 to 16"),
-            ("[scouting]\nmap = \"none.map\"\n", "scouting.map", "relative to the scenario"),
-        ] {
-            let message = parse(&format!("{LAND}{rest}")).unwrap_err();
-            assert!(message.contains(&format!("{field}: ")) && message.contains(remedy), "{rest}: {message}");
-        }
-        let plane =
-            "[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[plane.robots.circle]\ncount = 4\nradius_m = 3\n[scouting]\n";
-        let message = parse(plane).unwrap_err();
-        assert!(message.contains("scouting: these robots plan on no land"), "{message}");
-    }
-
-    #[test]
-    fn an_old_map_must_have_the_size_of_the_land() {
-        let dir = tempfile::tempdir().expect("a folder");
-        for (name, row) in [("now.map", "...."), ("old.map", "..@.."), ("good.map", ".@..")] {
-            let text = format!("type octile\nheight 1\nwidth {}\nmap\n{row}\n", row.len());
-            std::fs::write(dir.path().join(name), text).expect("it can be written");
-        }
-        let with = |map: &str| {
-            let text = format!(
-                "name = \"t\"\nticks = 9\n[terrain]\nfile = \"now.map\"\n[robots]\nlist = [{{ start = [0, 0], goal = [3, 0] }}]\n\
-                 [scouting]\nmap = \"{map}\"\n"
-            );
-            Scenario::parse(&text, &dir.path().join("t.toml"), &Overrides::default()).map_err(|error| error.to_string())
-        };
-        assert_eq!(with("good.map").expect("good").scouting.expect("scouted").map.cells(), [1, 0, 1, 1]);
-        let message = with("old.map").unwrap_err();
-        assert!(message.contains("it has 5 x 1 cells, the land has 4 x 1 cells; give a map of the same"), "{message}");
-    }
-}
+mod tests;

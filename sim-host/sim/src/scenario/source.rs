@@ -1,9 +1,10 @@
 //! TOML text of a scenario or another settings file, and errors that point into it.
 
-use super::de;
+use super::read::{Field as Read, Node, Wrong, json};
+use super::{Field, write};
 use crate::file::read_remedy;
-use serde::Deserialize;
 use std::cell::RefCell;
+use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -22,12 +23,12 @@ pub enum ScenarioError {
         source: std::io::Error,
     },
     /// The content is invalid.
-    #[error("{}:{line}: {}{what}; {remedy}", .path.display(), prefix(.field))]
+    #[error("{}:{place}: {}{what}; {remedy}", .path.display(), prefix(.field))]
     Field {
         /// Path of the file.
         path: PathBuf,
-        /// Line, counted from 1.
-        line: usize,
+        /// Place in the file.
+        place: Location,
         /// Path of the field, such as `radio.loss` or `robots.list[2].start`; empty if unknown.
         field: String,
         /// Cause of the error.
@@ -37,16 +38,42 @@ pub enum ScenarioError {
     },
 }
 
+/// Place in a text. Both are counted from 1; columns are characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Location {
+    /// Line.
+    pub line: usize,
+    /// Column.
+    pub column: usize,
+}
+
+impl Location {
+    /// Begin of a text.
+    pub const START: Self = Self { line: 1, column: 1 };
+
+    fn of(text: &str, byte: usize) -> Self {
+        let before = text.get(..byte).unwrap_or(text);
+        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+        Self { line: 1 + before.matches('\n').count(), column }
+    }
+}
+
+impl Display for Location {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.line, self.column)
+    }
+}
+
 fn prefix(field: &str) -> String {
     if field.is_empty() { String::new() } else { format!("{field}: ") }
 }
 
 /// Text of a settings file and the position of each field in it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Source<'a> {
     path: &'a Path,
     text: &'a str,
-    root: Spanned<DeTable<'a>>,
+    root: Node<'a>,
     files: RefCell<Vec<PathBuf>>,
 }
 
@@ -54,15 +81,24 @@ impl<'a> Source<'a> {
     /// Parses the TOML syntax; the meaning of fields is not checked.
     pub fn new(path: &'a Path, text: &'a str) -> Result<Self, ScenarioError> {
         match DeTable::parse(text) {
-            Ok(root) => Ok(Self { path, text, root, files: vec![path.to_owned()].into() }),
+            Ok(root) => {
+                let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
+                Ok(Self { path, text, root, files: vec![path.to_owned()].into() })
+            }
             Err(error) => Err(ScenarioError::Field {
                 path: path.to_owned(),
-                line: line_of(text, error.span()),
+                place: Location::of(text, error.span().map_or(0, |span| span.start)),
                 field: String::new(),
                 what: first_line(error.message()),
                 remedy: "this is not TOML; strings need quotes, tables [brackets]".to_owned(),
             }),
         }
+    }
+
+    /// Path of the text.
+    #[must_use]
+    pub const fn path(&self) -> &'a Path {
+        self.path
     }
 
     /// Path of a file that the text names, relative to the folder of the text. Adds it to
@@ -85,21 +121,9 @@ impl<'a> Source<'a> {
         self.files.take()
     }
 
-    /// The whole text.
-    #[must_use]
-    pub fn text(&self) -> &'a str {
-        self.text
-    }
-
-    /// Creates an error about a field. If the field is absent, the line is that of its table.
+    /// Creates an error about a field. If the field is absent, the place is that of its table.
     pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
-        ScenarioError::Field {
-            path: self.path.to_owned(),
-            line: line_of(self.text, self.span(field)),
-            field: field.to_owned(),
-            what: what.into(),
-            remedy: remedy.into(),
-        }
+        self.error_at(self.find(field).0.map_or(0..0, Spanned::span), field, what, remedy)
     }
 
     /// Creates an error about a range of bytes in the text.
@@ -112,159 +136,115 @@ impl<'a> Source<'a> {
     ) -> ScenarioError {
         ScenarioError::Field {
             path: self.path.to_owned(),
-            line: line_of(self.text, Some(span)),
+            place: self.location(span.start),
             field: field.to_owned(),
             what: what.into(),
             remedy: remedy.into(),
         }
     }
 
+    /// The place of a byte of the text.
+    #[must_use]
+    pub fn location(&self, byte: usize) -> Location {
+        Location::of(self.text, byte)
+    }
+
     /// The parsed fields with their positions.
     #[must_use]
     pub fn root(&self) -> &DeTable<'a> {
-        self.root.get_ref()
+        self.root.get_ref().as_table().expect("a file is a table")
     }
 
-    /// Deserializes the whole file; `list` is the page that documents all fields.
+    /// The fields as JSON; numbers that JSON lacks are null.
+    pub(super) fn json(&self) -> serde_json::Value {
+        json(self.root.get_ref())
+    }
+
+    pub(super) fn root_mut(&mut self) -> &mut DeTable<'a> {
+        match self.root.get_mut() {
+            DeValue::Table(table) => table,
+            _ => unreachable!("a file is a table"),
+        }
+    }
+
+    /// Reads the whole file as a table of [`table!`](crate::table!); `list` is the page that
+    /// documents all fields.
     ///
     /// # Errors
-    /// A field is unknown, missing, or of another type; the error names file, line and field.
-    pub fn read<'s, T: Deserialize<'s>>(&'s self, list: &str) -> Result<T, ScenarioError> {
-        de::read(&self.root).map_err(|error| self.serde_error(&error, list))
+    /// A field is unknown, missing, of another type, or out of range.
+    pub fn read<T: Read>(&self, list: &str) -> Result<T, ScenarioError> {
+        T::read(&self.root).map_err(|wrong| self.refuse(wrong, list))
     }
 
-    fn serde_error(&self, error: &de::Error, list: &str) -> ScenarioError {
-        let span = error.span.clone();
-        let mut field = String::new();
-        // The span of the whole file is empty.
-        if let Some(span) = span.as_ref().filter(|span| !span.is_empty()) {
-            deepest(self.root.get_ref(), span, &mut field);
-        }
-        ScenarioError::Field {
-            path: self.path.to_owned(),
-            line: line_of(self.text, span),
-            field,
-            what: first_line(&error.message),
-            remedy: match &error.remedy {
-                Some(remedy) => format!("{remedy} ({list} lists all fields)"),
-                None => format!("{list} lists all fields with their units"),
-            },
-        }
-    }
-
-    /// Whether the file has this field or table at its top level.
-    pub fn has(&self, name: &str) -> bool {
-        self.root.get_ref().get(name).is_some()
-    }
-
-    /// Whether the file has this field.
-    pub fn stands(&self, field: &str) -> bool {
-        let mut at = Some(self.root.get_ref());
-        let mut segments = field.split('.').peekable();
-        while let Some(segment) = segments.next() {
-            let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
-            let mut value = at.and_then(|table| table.get(parts.next()?)).map(Spanned::get_ref);
-            for index in parts {
-                value = match (value, index.parse::<usize>()) {
-                    (Some(DeValue::Array(array)), Ok(index)) => array.get(index).map(Spanned::get_ref),
-                    _ => None,
-                };
-            }
-            match (value, segments.peek()) {
-                (Some(_), None) => return true,
-                (Some(DeValue::Table(inner)), Some(_)) => at = Some(inner),
-                _ => return false,
-            }
-        }
-        false
-    }
-
-    fn span(&self, field: &str) -> Option<Range<usize>> {
-        let mut span = None;
-        let mut table = self.root.get_ref();
-        for segment in field.split('.') {
-            let mut parts = segment.split(['[', ']']).filter(|part| !part.is_empty());
-            let Some(entry) = parts.next().and_then(|name| table.get(name)) else {
-                return span;
-            };
-            let mut value = entry;
-            span = Some(value.span());
-            for index in parts {
-                let element = match (value.get_ref(), index.parse::<usize>()) {
-                    (DeValue::Array(array), Ok(index)) => array.get(index),
-                    _ => None,
-                };
-                let Some(element) = element else { return span };
-                value = element;
-                span = Some(value.span());
-            }
-            match value.get_ref() {
-                DeValue::Table(inner) => table = inner,
-                _ => return span,
-            }
-        }
-        span
-    }
-}
-
-fn deepest(table: &DeTable<'_>, span: &Range<usize>, field: &mut String) {
-    for (key, value) in table {
-        if holds(&key.span(), span) || holds(&value.span(), span) {
-            if !field.is_empty() {
-                field.push('.');
-            }
-            field.push_str(key.get_ref());
-            deepest_value(value.get_ref(), span, field);
-            return;
-        }
-        // The span of a `[table]` header does not cover the lines below it.
-        let tables = match value.get_ref() {
-            DeValue::Table(inner) => vec![(String::new(), inner)],
-            DeValue::Array(array) => array
-                .iter()
-                .enumerate()
-                .filter_map(|(index, element)| match element.get_ref() {
-                    DeValue::Table(inner) => Some((format!("[{index}]"), inner)),
-                    _ => None,
-                })
-                .collect(),
-            _ => Vec::new(),
+    /// Reads a table of the file, which may be absent, like [`read`](Self::read).
+    ///
+    /// # Errors
+    /// See [`read`](Self::read).
+    pub fn read_table<T: Read>(&self, name: &str, list: &str) -> Result<T, ScenarioError> {
+        let read = match self.root().get(name) {
+            Some(node) => T::read(node),
+            None => T::read(&Spanned::new(0..0, DeValue::Table(DeTable::new()))),
         };
-        for (index, inner) in tables {
-            let mut below = String::new();
-            deepest(inner, span, &mut below);
-            if !below.is_empty() {
-                if !field.is_empty() {
-                    field.push('.');
-                }
-                field.push_str(&format!("{}{index}.{below}", key.get_ref()));
-                return;
-            }
-        }
+        read.map_err(|wrong| self.refuse(wrong.under(name), list))
     }
-}
 
-fn deepest_value(value: &DeValue<'_>, span: &Range<usize>, field: &mut String) {
-    match value {
-        DeValue::Table(inner) => deepest(inner, span, field),
-        DeValue::Array(array) => {
-            let found = array.iter().enumerate().find(|(_, e)| holds(&e.span(), span));
-            if let Some((index, element)) = found {
-                field.push_str(&format!("[{index}]"));
-                deepest_value(element.get_ref(), span, field);
-            }
-        }
-        _ => {}
+    fn refuse(&self, wrong: Wrong, list: &str) -> ScenarioError {
+        let remedy = match wrong.remedy {
+            Some(remedy) if wrong.is_listed => format!("{remedy} ({list} lists all fields)"),
+            Some(remedy) => remedy,
+            None => format!("{list} lists all fields with their units"),
+        };
+        self.error_at(wrong.span.unwrap_or_default(), &wrong.path, first_line(&wrong.what), remedy)
     }
-}
 
-fn holds(outer: &Range<usize>, inner: &Range<usize>) -> bool {
-    outer.start <= inner.start && inner.end <= outer.end
-}
+    /// Sets a field and creates missing tables. `value` is a TOML value; other text is a string.
+    /// Its place is that of the replaced value or else of the table.
+    ///
+    /// # Errors
+    /// Says what is in the way.
+    pub fn set(&mut self, field: &Field, value: &'a str) -> Result<(), String> {
+        let parsed = DeValue::parse(value).map(Spanned::into_inner);
+        field.set(&mut self.root, parsed.unwrap_or_else(|_| DeValue::String(value.into())))
+    }
 
-fn line_of(text: &str, span: Option<Range<usize>>) -> usize {
-    let start = span.map_or(0, |span| span.start);
-    1 + text.bytes().take(start).filter(|&byte| byte == b'\n').count()
+    /// The value of a field, if it is there.
+    #[must_use]
+    pub fn get(&self, field: &str) -> Option<&Node<'a>> {
+        let (deepest, is_field) = self.find(field);
+        deepest.filter(|_| is_field)
+    }
+
+    /// Removes a field or table at the top of the file.
+    pub fn remove(&mut self, name: &str) {
+        self.root_mut().remove(name);
+    }
+
+    /// Whether this field or table is there.
+    #[must_use]
+    pub fn has(&self, field: &str) -> bool {
+        self.get(field).is_some()
+    }
+
+    /// The fields as TOML text.
+    #[must_use]
+    pub fn written(&self) -> String {
+        write::file(self.root())
+    }
+
+    /// The deepest value on the path of a field, and whether it is the field itself.
+    fn find(&self, field: &str) -> (Option<&Node<'a>>, bool) {
+        let (mut node, mut found) = (&self.root, None);
+        for step in field.split(['.', '[', ']']).filter(|step| !step.is_empty()) {
+            let next = match node.get_ref() {
+                DeValue::Table(table) => table.get(step),
+                DeValue::Array(list) => step.parse::<usize>().ok().and_then(|index| list.get(index)),
+                _ => None,
+            };
+            let Some(next) = next else { return (found, false) };
+            (node, found) = (next, Some(next));
+        }
+        (found, found.is_some())
+    }
 }
 
 fn first_line(message: &str) -> String {

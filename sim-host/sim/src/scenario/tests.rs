@@ -1,3 +1,4 @@
+mod mutated;
 mod nonsense;
 mod readme;
 
@@ -58,116 +59,119 @@ fn the_command_line_overrides_the_file() {
 fn every_mistake_is_named_with_line_field_and_remedy() {
     let robots = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
     let cases = [
-        ("name = ", "s.toml:1: "),
-        (&format!("colour = 1\n{HEAD}{robots}"), "s.toml:1: colour: unknown field `colour`"),
-        (&format!("{HEAD}{robots}[radio]\nloss = \"much\"\n"), "s.toml:8: radio.loss: \"much\" is not a number"),
+        ("name = ", "s.toml:1:8: "),
+        (&format!("colour = 1\n{HEAD}{robots}"), "s.toml:1:1: colour: unknown field `colour`"),
+        (&format!("{HEAD}{robots}[radio]\nloss = \"much\"\n"), "s.toml:8:8: radio.loss: \"much\" is not a number"),
         (
             &format!("{HEAD}{robots}[radio]\nlosses = 0.5\n"),
-            "s.toml:8: radio.losses: unknown field `losses`; did you mean `loss`?",
+            "s.toml:8:1: radio.losses: unknown field `losses`; did you mean `loss`?",
         ),
-        (&format!("{HEAD}{robots}[radio.burst]\nshare = 0.5\n"), "s.toml:7: radio.burst: missing field `mean_ms`"),
-        ("ticks = 3\n", "s.toml:1: missing field `name`"),
-        ("name = \"t\"\nticks = -3\n", "s.toml:2: ticks: -3 is not a whole number"),
+        (&format!("{HEAD}{robots}[radio.burst]\nshare = 0.5\n"), "s.toml:7:1: radio.burst: missing field `mean_ms`"),
+        ("ticks = 3\n", "s.toml:1:1: missing field `name`"),
+        ("name = \"t\"\nticks = -3\n", "s.toml:2:9: ticks: -3 is not a whole number"),
         (
             &format!("{HEAD}{robots}[radio]\nloss = 30\n"),
-            "s.toml:8: radio.loss: 30 is not a probability; give a number from 0 to 1",
+            "s.toml:8:8: radio.loss: 30 is not a probability; give a number from 0 to 1",
         ),
         (
             &format!("{HEAD}{robots}[radio]\n\nbit_error_rate = nan\n"),
-            "s.toml:9: radio.bit_error_rate: NaN is not a probability",
+            "s.toml:9:18: radio.bit_error_rate: NaN is not a probability",
         ),
         (
             &format!("{HEAD}{robots}[radio]\nformat = \"morse\"\n"),
-            "s.toml:8: radio.format: unknown value `morse`; give one of `postcard`, `mavlink`",
+            "s.toml:8:10: radio.format: unknown value `morse`; give one of `postcard`, `mavlink`",
         ),
         (
             &format!(
                 "{HEAD}[robots]\nlist = [{{ start = [0, 0], goal = [3, 2], id = 255 }}]\n[radio]\nformat = \"mavlink\"\n"
             ),
-            "s.toml:8: radio.format: robot 255 has no number in mavlink: systems are 1 to 254; give fewer robots",
+            "s.toml:8:10: radio.format: robot 255 has no number in mavlink: systems are 1 to 254; give fewer robots",
         ),
-        (&format!("{HEAD}{robots}[grid]\nmoves = 6\n"), "s.toml:8: grid.moves: a cell has 4 or 8 neighbours; give 4"),
+        (&format!("{HEAD}{robots}[grid]\nmoves = 6\n"), "s.toml:8:9: grid.moves: a cell has 4 or 8 neighbours; give 4"),
         (
             &format!("{HEAD}{robots}[grid]\nmoves = 4\n"),
-            "s.toml:8: grid.moves: routes and formations use eight neighbours; give law.name = \"negotiation\"",
+            "s.toml:8:9: grid.moves: routes and formations use eight neighbours; give law.name = \"negotiation\"",
         ),
         (
             &format!("{HEAD}{robots}[grid]\nmoves = 4\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n"),
-            "s.toml:8: grid.moves: robots in the plane do not move from cell to cell; leave it out",
+            "s.toml:8:9: grid.moves: robots in the plane do not move from cell to cell; leave it out",
         ),
         (
             &format!("{HEAD}{robots}[grid]\nsimultaneous = true\n"),
-            "s.toml:8: grid.simultaneous: diagonal moves at once would cross each other; give moves = 4",
+            "s.toml:8:16: grid.simultaneous: diagonal moves at once would cross each other; give moves = 4",
         ),
-        (&format!("{HEAD}{robots}[radio]\nrange_m = nan\n"), "s.toml:8: radio.range_m: NaN is not a distance"),
+        (&format!("{HEAD}{robots}[radio]\nrange_m = nan\n"), "s.toml:8:11: radio.range_m: NaN is not a distance"),
         (
             &format!("{HEAD}{robots}[radio]\ndelay_ms = -1\n"),
-            "s.toml:8: radio.delay_ms: -1 is out of range; give 0 to 600000 milliseconds",
+            "s.toml:8:12: radio.delay_ms: -1 is out of range; give 0 to 600000 milliseconds",
         ),
         (
             &format!("{HEAD}{robots}[radio]\nblackout_s = [[0, 1], [5, 4]]\n"),
-            "s.toml:8: radio.blackout_s[1]: [5, 4] is not a time span",
+            "s.toml:8:23: radio.blackout_s[1]: [5, 4] is not a time span",
         ),
         (
             &format!("{HEAD}{robots}[radio]\nburst = {{ share = 0.5, mean_ms = 100 }}\n"),
-            "s.toml:8: radio.burst.mean_ms: 100 is out of range; with this tick and share, give 2000.0",
+            "s.toml:8:34: radio.burst.mean_ms: 100 is out of range; with this tick and share, give 2000.0",
         ),
-        (&format!("tick_s = inf\n{HEAD}{robots}"), "s.toml:1: tick_s: inf is out of range; give 0.001 to 60 seconds"),
-        (&format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"), "s.toml:2: ticks: a run needs"),
-        (&format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""), "s.toml:1: name: \"../x\" cannot name a folder"),
-        (&format!("{HEAD}{robots}").replace("m.map", "no.map"), "s.toml:4: terrain.file: "),
-        (&format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"), "s.toml:5: terrain.crop: "),
-        (&format!("{HEAD}cell_m = nan\n{robots}"), "s.toml:5: terrain.cell_m: NaN is out of range"),
+        (
+            &format!("tick_s = inf\n{HEAD}{robots}"),
+            "s.toml:1:10: tick_s: inf is out of range; give 0.001 to 60 seconds",
+        ),
+        (&format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"), "s.toml:2:9: ticks: a run needs"),
+        (&format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""), "s.toml:1:8: name: \"../x\" cannot name a folder"),
+        (&format!("{HEAD}{robots}").replace("m.map", "no.map"), "s.toml:4:8: terrain.file: "),
+        (&format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"), "s.toml:5:8: terrain.crop: "),
+        (&format!("{HEAD}cell_m = nan\n{robots}"), "s.toml:5:10: terrain.cell_m: NaN is out of range"),
         (
             &format!("name = \"t\"\nticks = 5\n[terrain]\n{robots}"),
-            "s.toml:3: terrain: it is not clear what land is meant; give exactly one of",
+            "s.toml:3:1: terrain: it is not clear what land is meant; give exactly one of",
         ),
-        (&with_robots(""), "s.toml:5: robots: the robots are not defined exactly once; give exactly one of"),
-        (&with_robots("list = []"), "s.toml:5: robots: there are no robots"),
+        (&with_robots(""), "s.toml:5:1: robots: the robots are not defined exactly once; give exactly one of"),
+        (&with_robots("list = []"), "s.toml:5:1: robots: there are no robots"),
         (
             &with_robots("list = [\n{ start = [0, 0], goal = [3, 2] },\n{ start = [0, 0], goal = [3, 1] }]"),
-            "s.toml:8: robots.list[1].start: robots 1 and 2 have the same start (0, 0); a cell holds one",
+            "s.toml:8:11: robots.list[1].start: robots 1 and 2 have the same start (0, 0); a cell holds one",
         ),
         (
             &with_robots("list = [{ start = [0, 0], goal = [1, 1] }]"),
-            "s.toml:6: robots.list[0].goal: the goal (1, 1) of robot 1 is in a wall; the nearest free cell is [1, 0]",
+            "s.toml:6:34: robots.list[0].goal: the goal (1, 1) of robot 1 is in a wall; the nearest free cell is [1, 0]",
         ),
         (
             &with_robots("list = [{ start = [0, 3], goal = [1, 2] }]"),
-            "s.toml:6: robots.list[0].start: the start (0, 3) of robot 1 is not on the map; the map has columns 0 to 3 and rows 0 to 2",
+            "s.toml:6:19: robots.list[0].start: the start (0, 3) of robot 1 is not on the map; the map has columns 0 to 3 and rows 0 to 2",
         ),
         (
             &with_robots("list = [{ id = 0, start = [0, 0], goal = [1, 2] }]"),
-            "s.toml:6: robots.list[0].id: 0 is not free",
+            "s.toml:6:16: robots.list[0].id: 0 is not free",
         ),
         (
             &with_robots("formation = { rows = 2, columns = 2, start = [0, 2], goal = [0, 2] }"),
-            "s.toml:6: robots.formation.start: the start (0, -1) of robot 3 is not on the map",
+            "s.toml:6:46: robots.formation.start: the start (0, -1) of robot 3 is not on the map",
         ),
         (
             &with_robots("formation = { rows = 2, start = [0, 2], goal = [0, 2] }"),
-            "s.toml:6: robots.formation: its shape is not clear",
+            "s.toml:6:13: robots.formation: its shape is not clear",
         ),
         (
             &with_robots("formation = { rows = 60000, columns = 60000, start = [0, 2], goal = [0, 2] }"),
-            "s.toml:6: robots.formation: 60000 rows of 60000 robots do not fit any map",
+            "s.toml:6:13: robots.formation: 60000 rows of 60000 robots do not fit any map",
         ),
         (
             &with_robots("formation = { places = [[0, 0], [1, 0]], edges = [[1, 3]], start = [0, 2], goal = [0, 2] }"),
-            "s.toml:6: robots.formation.edges[0]: [1, 3] joins no two robots",
+            "s.toml:6:51: robots.formation.edges[0]: [1, 3] joins no two robots",
         ),
-        (&with_robots("scen = { file = \"none.scen\", count = 2 }"), "s.toml:6: robots.scen.file: "),
+        (&with_robots("scen = { file = \"none.scen\", count = 2 }"), "s.toml:6:17: robots.scen.file: "),
         (
             &with_robots("scattered = { count = 12 }"),
-            "s.toml:6: robots.scattered.count: 12 robots on 11 passable cells",
+            "s.toml:6:23: robots.scattered.count: 12 robots on 11 passable cells",
         ),
         (
             &format!("{}[[fault]]\nrobot = 2\nat_s = 1\n", with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")),
-            "s.toml:8: fault[0].robot: there is no robot 2",
+            "s.toml:8:9: fault[0].robot: there is no robot 2",
         ),
         (
             &format!("{}[[fault]]\nrobot = 1\nat_s = nan\n", with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")),
-            "s.toml:9: fault[0].at_s: NaN is out of range",
+            "s.toml:9:8: fault[0].at_s: NaN is out of range",
         ),
     ];
     for (text, expected) in cases {
@@ -197,7 +201,7 @@ fn robots_that_negotiate_in_the_plane_fit_around_corners_and_have_goals_in_cells
     let cells = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
     let route = |radius_m: f64| with(&format!("radius_m = {radius_m}\nguidance = \"route\"\n"), cells);
     assert_eq!(parse(&route(0.15)).expect("good").law.expect("a law").cruise_mps, Some(1.0));
-    assert!(refusal(&route(0.2)).starts_with("s.toml:12: plane.radius_m: 0.2 m are more than 0.35 cells"));
+    assert!(refusal(&route(0.2)).starts_with("s.toml:12:12: plane.radius_m: 0.2 m are more than 0.35 cells"));
     let in_metres = "radius_m = 0.15\n[plane.robots]\nlist = [{ start_m = [0.25, 0.25], goal_m = [1.75, 1.25] }]\n";
     assert!(refusal(&with(in_metres, "")).contains("plane.guidance: robots that negotiate have goals in cells; give"));
 }
@@ -343,8 +347,8 @@ fn parameters_of_routes_and_formations_are_checked() {
     assert_eq!((formation.halt_lag, formation.resume_lag), (140, 140));
     assert_eq!((formation.gain, formation.footprint), (Gain::from_int(4095), 16));
     for (rest, expected) in [
-        ("[route]\nradius = 0\n", "route.radius: a window of radius 0 is out of range; give 1 to 16"),
-        ("[route]\nradius = 17\n", "route.radius: a window of radius 17"),
+        ("[route]\nradius = 0\n", "route.radius: 0 is out of range; give 1 to 16 cells"),
+        ("[route]\nradius = 17\n", "route.radius: 17 is out of range"),
         ("[route]\na3 = -1\n", "route.a3: -1 is out of range; give 0 to 4095"),
         ("[route]\na0 = nan\n", "route.a0: NaN is out of range"),
         ("[route]\nexit = \"door\"\n", "route.exit: unknown value `door`"),
@@ -355,7 +359,8 @@ fn parameters_of_routes_and_formations_are_checked() {
         ("[formation]\nfootprint = 1.1\n", "formation.footprint: 1.1 is out of range"),
     ] {
         let refusal = refusal(&with(rest));
-        assert!(refusal.starts_with(&format!("s.toml:8: {expected}")), "{refusal}");
+        let column = rest.lines().nth(1).and_then(|line| line.find("= ")).expect("a field") + 3;
+        assert!(refusal.starts_with(&format!("s.toml:8:{column}: {expected}")), "{refusal}");
     }
 }
 
@@ -399,7 +404,7 @@ fn formation_options_are_refused_without_a_formation() {
     let scenario = parse(&until_changed).expect("good");
     assert_eq!(scenario.route.replan, Replan::UntilChanged);
     let refusal = refusal(&format!("{list}[formation]\neps = 2\n"));
-    let expected = "s.toml:7: formation: these robots keep no formation; give robots.formation";
+    let expected = "s.toml:7:1: formation: these robots keep no formation; give robots.formation";
     assert!(refusal.starts_with(expected), "{refusal}");
 }
 
@@ -418,16 +423,16 @@ fn maps_are_shared_if_robots_plan_on_terrain() {
     for (rest, expected) in [
         (
             "[maps]\nforget_after_s = 9\n",
-            "s.toml:8: maps.forget_after_s: no robot shares a map; give maps.share = true",
+            "s.toml:8:18: maps.forget_after_s: no robot shares a map; give maps.share = true",
         ),
         (
             "[maps]\nshare = true\nforget_after_s = 0.5\n",
-            "s.toml:9: maps.forget_after_s: 0.5 is out of range; give 1 to 2100",
+            "s.toml:9:18: maps.forget_after_s: 0.5 is out of range; give 1 to 2100",
         ),
-        ("[maps]\nshares = true\n", "s.toml:8: maps.shares: unknown field `shares`"),
-        ("[maps]\nshare = true\n[route]\nexit = \"ray\"\n", "s.toml:8: maps.share: route.exit = \"ray\""),
-        ("[maps]\nshare = true\n[scouting]\n", "s.toml:8: maps.share: robots that have a map"),
-        ("[maps]\nshare = true\n[route]\nreplan = \"until_changed\"\n", "s.toml:8: maps.share: route.replan"),
+        ("[maps]\nshares = true\n", "s.toml:8:1: maps.shares: unknown field `shares`"),
+        ("[maps]\nshare = true\n[route]\nexit = \"ray\"\n", "s.toml:8:9: maps.share: route.exit = \"ray\""),
+        ("[maps]\nshare = true\n[scouting]\n", "s.toml:8:9: maps.share: robots that have a map"),
+        ("[maps]\nshare = true\n[route]\nreplan = \"until_changed\"\n", "s.toml:8:9: maps.share: route.replan"),
     ] {
         let refusal = refusal(&with(rest));
         assert!(refusal.starts_with(expected), "{refusal}");
@@ -456,10 +461,10 @@ fn a_formation_too_large_for_the_controller_is_refused() {
         "{}[formation]\nrho = 5\n",
         with_robots("formation = { rows = 3, columns = 4, spacing = [1, 1], start = [0, 0], goal = [0, 0] }",)
     );
-    refused(&rho, "s.toml:8: formation.rho");
+    refused(&rho, "s.toml:8:7: formation.rho");
     refused(
         &rho.replace("rho = 5", "rho = 0"),
-        "s.toml:8: formation.rho: with rho = 0 no robot knows its neighbours; give 1 or more",
+        "s.toml:8:7: formation.rho: with rho = 0 no robot knows its neighbours; give 1 or more",
     );
     let chain = |edges: &str| {
         with_robots(&format!(

@@ -21,33 +21,31 @@ mod text;
 pub use error::{MAX_SIDE, Place, TerrainError};
 pub use slope::SlopeRule;
 
+use crate::{defaults, table};
 use error::format_error;
 pub use error::{parameter_error, read};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use staya_controller::grid::{BLOCKED, Cell};
 use std::path::{Path, PathBuf};
 
-/// Options for the conversion of files to impassability.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LoadOptions {
-    /// `.map`: impassability of swamp, 1..=255 (0: blocked).
-    pub swamp: u8,
-    /// `.asc`: cells along each side that are combined before slopes are computed, 1 or more.
-    pub downsample: u16,
-    /// `.asc`: conversion of slopes to impassability.
-    pub slope: SlopeRule,
-    /// `.yaml`: impassability of unknown cells in mode `trinary`; 0: blocked.
-    pub unknown: u8,
-    /// `.yaml`: number of classes in mode `scale` if the file gives none, 1..=255.
-    pub classes: u8,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self { swamp: movingai::SWAMP, downsample: 1, slope: SlopeRule::default(), unknown: BLOCKED, classes: 9 }
+table! {
+    /// Options for the conversion of files to impassability.
+    #[derive(Copy, PartialEq, Serialize)]
+    pub struct LoadOptions {
+        /// `.map`: impassability of swamp, 1..=255 (0: blocked).
+        pub swamp: u8 = movingai::SWAMP;
+        /// `.asc`: cells along each side that are combined before slopes are computed, 1 or more.
+        pub downsample: u16 = 1;
+        /// `.asc`: conversion of slopes to impassability.
+        pub slope: SlopeRule = Default::default();
+        /// `.yaml`: impassability of unknown cells in mode `trinary`; 0: blocked.
+        pub unknown: u8 = BLOCKED;
+        /// `.yaml`: number of classes in mode `scale` if the file gives none, 1..=255.
+        pub classes: u8 = 9;
     }
 }
+
+defaults!(LoadOptions);
 
 /// A grid of impassability, row by row from the south-west corner.
 #[derive(Clone, Debug, PartialEq)]

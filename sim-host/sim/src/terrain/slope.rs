@@ -3,31 +3,31 @@
 use super::Terrain;
 use super::error::{TerrainError, parameter_error};
 use super::esri::Heights;
-use serde::{Deserialize, Serialize};
+use crate::{defaults, table};
+use serde::Serialize;
 use staya_controller::grid::BLOCKED;
 
-/// Rule that converts slopes to impassability.
-///
-/// The slope g of a cell is the length of the gradient of the heights, rise over run (1 is 45
-/// degrees). It uses central differences over the four neighbours, one-sided at the border and next
-/// to unknown heights. With l classes and the maximum slope m, a cell has impassability 1 + floor(l
-/// g / m) for g < m, l for g = m, and is blocked for g > m. Unknown heights are blocked.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SlopeRule {
-    /// Number of classes l, 1..=255: the steepest passable land takes l times as long as flat land.
-    pub classes: u8,
-    /// Steepest passable slope m, rise over run, more than 0: up to 0.6 for wheels, 1 for tracks.
-    /// Too high a value sends robots up cliffs; too low a value splits the terrain.
-    pub max_slope: f64,
-}
-
-impl Default for SlopeRule {
-    /// Nine classes as in KUZ section 5, and 0.5 (27 degrees).
-    fn default() -> Self {
-        Self { classes: 9, max_slope: 0.5 }
+table! {
+    /// Rule that converts slopes to impassability.
+    ///
+    /// The slope g of a cell is the length of the gradient of the heights, rise over run (1 is 45
+    /// degrees). It uses central differences over the four neighbours, one-sided at the border and
+    /// next to unknown heights. With l classes and the maximum slope m, a cell has impassability 1
+    /// + floor(l g / m) for g < m, l for g = m, and is blocked for g > m. Unknown heights are
+    /// blocked.
+    #[derive(Copy, PartialEq, Serialize)]
+    pub struct SlopeRule {
+        /// Number of classes l, 1..=255: the steepest passable land takes l times as long as flat
+        /// land.
+        pub classes: u8 = 9;
+        /// Steepest passable slope m, rise over run, more than 0: up to 0.6 for wheels, 1 for
+        /// tracks. Too high a value sends robots up cliffs; too low a value splits the terrain.
+        pub max_slope: f64 = 0.5;
     }
 }
+
+// Nine classes as in KUZ section 5, and 0.5 (27 degrees).
+defaults!(SlopeRule);
 
 impl SlopeRule {
     /// Impassability of a slope, rise over run; NaN is blocked.

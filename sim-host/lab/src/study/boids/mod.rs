@@ -14,7 +14,6 @@ use crate::error::SweepError;
 use crate::measure::{Job, Measured, Watch};
 use rayon::prelude::*;
 use searches::{MidpointTree, MutualPairs, Tree};
-use serde::Deserialize;
 use staya_controller::boids::BoidsParams;
 use staya_controller::geom::{Torus, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
@@ -23,6 +22,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_plot::flock::{Body, Sheet, Snapshot};
 use staya_sim::metrics::flock::polarisation;
 use staya_sim::nearby::{AllPairs, Cells, Found, Query, Search, Space};
+use staya_sim::{choice, defaults, table};
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -34,70 +35,51 @@ const PIECE: usize = 256;
 #[derive(Debug)]
 pub struct Boids;
 
-/// A neighbour search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// Compares each boid with all others.
-    AllPairs,
-    /// Compares each pair once.
-    PairsOnce,
-    /// Lattice cells.
-    Cells,
-    /// Lattice cells on all threads.
-    Threads,
-    /// The k-d tree of the crate `kiddo`.
-    Tree,
-    /// A k-d tree by the sliding midpoint rule, as in the paper.
-    MidpointTree,
-}
-
-/// Parameters of a run; lengths are the paper's.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Parameters {
-    /// Number of boids.
-    pub boids: u32,
-    /// The search.
-    pub search: Method,
-    /// Timed steps.
-    pub steps: u32,
-    /// The searches of pairs have no figures for more boids than this.
-    pub all_pairs_up_to: u32,
-    /// Area per boid; the paper has 20 boids on a torus of 800 x 600.
-    pub area_per_boid: f32,
-    /// Distance of a boid's step.
-    pub speed: f32,
-    /// Distance below which a boid turns away.
-    pub crowded: f32,
-    /// Largest distance of a neighbour.
-    pub closest: f32,
-    /// Largest turn to the heading or the middle of neighbours, radians.
-    pub max_turn: f32,
-    /// Largest turn away, radians.
-    pub max_turn_away: f32,
-    /// Seed of the starts; in a plan, that of the run.
-    #[serde(skip)]
-    pub seed: u64,
-}
-
-impl Default for Parameters {
-    fn default() -> Self {
-        Self {
-            boids: 100,
-            search: Method::Cells,
-            steps: 20,
-            all_pairs_up_to: 10_000,
-            area_per_boid: 24_000.0,
-            speed: 2.0,
-            crowded: 30.0,
-            closest: 150.0,
-            max_turn: 0.05,
-            max_turn_away: 0.02,
-            seed: 1,
-        }
+choice! {
+    /// A neighbour search.
+    pub enum Method {
+        /// Compares each boid with all others.
+        AllPairs = "all_pairs",
+        /// Compares each pair once.
+        PairsOnce = "pairs_once",
+        /// Lattice cells.
+        Cells = "cells",
+        /// Lattice cells on all threads.
+        Threads = "threads",
+        /// The k-d tree of the crate `kiddo`.
+        Tree = "tree",
+        /// A k-d tree by the sliding midpoint rule, as in the paper.
+        MidpointTree = "midpoint_tree",
     }
 }
+
+table! {
+    /// Parameters of a run; lengths are the paper's.
+    pub struct Parameters {
+        /// Number of boids.
+        pub boids: u32 = 100, 1.0..=1e6, "";
+        /// The search.
+        pub search: Method = Method::Cells;
+        /// Timed steps.
+        pub steps: u32 = 20, 1.0..=1e6, "";
+        /// The searches of pairs have no figures for more boids than this.
+        pub all_pairs_up_to: u32 = 10_000;
+        /// Area per boid; the paper has 20 boids on a torus of 800 x 600.
+        pub area_per_boid: f32 = 24_000.0;
+        /// Distance of a boid's step.
+        pub speed: f32 = 2.0;
+        /// Distance below which a boid turns away.
+        pub crowded: f32 = 30.0;
+        /// Largest distance of a neighbour.
+        pub closest: f32 = 150.0;
+        /// Largest turn to the heading or the middle of neighbours, radians.
+        pub max_turn: f32 = 0.05, 0.0..=PI, "radians";
+        /// Largest turn away, radians.
+        pub max_turn_away: f32 = 0.02, 0.0..=PI, "radians";
+    }
+}
+
+defaults!(Parameters);
 
 /// Boids on a torus.
 #[derive(Clone, Debug)]
@@ -116,16 +98,16 @@ impl Parameters {
     /// Creates `boids` boids whose places and headings are uniform over the torus, functions of the
     /// seed and the boid's number. The sides of the torus have the ratio 4 to 3 of the paper.
     #[must_use]
-    pub fn flock(&self, boids: u32) -> Flock {
+    pub fn flock(&self, boids: u32, seed: u64) -> Flock {
         let width = (boids as f32 * self.area_per_boid * 4.0 / 3.0).sqrt();
-        self.flock_on(boids, [width, width * 0.75])
+        self.flock_on(boids, [width, width * 0.75], seed)
     }
 
     /// Like [`Parameters::flock`], on a torus with these sides, which must be above 0.
     #[must_use]
-    pub fn flock_on(&self, boids: u32, sides: [f32; 2]) -> Flock {
+    pub fn flock_on(&self, boids: u32, sides: [f32; 2], seed: u64) -> Flock {
         let start = |boid: u32| {
-            let mut rng = Rng::keyed(self.seed, STARTS, boid, 0);
+            let mut rng = Rng::keyed(seed, STARTS, boid, 0);
             // 24 bits: exact in f32 and below 1.
             let mut share = || (rng.next_u32() >> 8) as f32 / 16_777_216.0;
             let place = [share() * sides[0], share() * sides[1]];
@@ -146,33 +128,23 @@ impl Parameters {
     }
 
     fn read(given: &Given<'_>) -> Result<Self, SweepError> {
-        let this = Self { seed: given.seed, ..given.parameters()? };
-        for (name, value, most) in [("boids", this.boids, 1_000_000), ("steps", this.steps, 1_000_000)] {
-            if !(1..=most).contains(&value) {
-                return Err(given.error(name, format!("{value} is out of range"), format!("give 1 to {most}")));
-            }
-        }
-        let Self { area_per_boid, speed, crowded, closest, max_turn, max_turn_away, .. } = this;
+        let this: Self = given.parameters()?;
+        let Self { area_per_boid, speed, crowded, closest, .. } = this;
         let lengths = [("area_per_boid", area_per_boid), ("speed", speed), ("crowded", crowded), ("closest", closest)];
         for (name, value) in lengths {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(given.error(name, format!("{value} is out of range"), "give a number above 0"));
             }
         }
-        for (name, turn) in [("max_turn", max_turn), ("max_turn_away", max_turn_away)] {
-            if !(0.0..=std::f32::consts::PI).contains(&turn) {
-                return Err(given.error(name, format!("{turn} is out of range"), "give 0 to pi radians"));
-            }
-        }
         Ok(this)
     }
 
-    fn measure(&self, watch: &Watch<'_>) -> Measured {
+    fn measure(&self, seed: u64, watch: &Watch<'_>) -> Measured {
         let is_of_pairs = matches!(self.search, Method::AllPairs | Method::PairsOnce);
         if is_of_pairs && self.boids > self.all_pairs_up_to {
             return Measured::default();
         }
-        let mut flock = self.flock(self.boids);
+        let mut flock = self.flock(self.boids, seed);
         let mut reference = flock.clone();
         let mut cells = Cells::new(flock.space, self.closest);
         let mut other: Box<dyn Search<f32, 2>> = match self.search {
@@ -234,14 +206,14 @@ impl Study for Boids {
     }
 
     fn read(&self, given: &Given<'_>) -> Result<Job, SweepError> {
-        let parameters = Parameters::read(given)?;
-        Ok(Box::new(move |watch| Ok(parameters.measure(watch))))
+        let (parameters, seed) = (Parameters::read(given)?, given.seed);
+        Ok(Box::new(move |watch| Ok(parameters.measure(seed, watch))))
     }
 
     /// The flock at its start, after a tenth of the steps, and at its end.
     fn draw(&self, given: &Given<'_>, title: &str, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
         let parameters = Parameters::read(given)?;
-        let mut flock = parameters.flock(parameters.boids);
+        let mut flock = parameters.flock(parameters.boids, given.seed);
         let mut cells = Cells::new(flock.space, parameters.closest);
         let mut sheet = Sheet::new(title, 3);
         for step in 0..=parameters.steps {

@@ -1,6 +1,7 @@
 use super::*;
 use crate::sweep::Plan;
 use crate::sweep::plan::Changes;
+use staya_sim::scenario::Source;
 use std::path::Path;
 
 fn small(search: Method) -> Parameters {
@@ -12,15 +13,15 @@ const SEARCHES: [Method; 6] =
 
 #[test]
 fn all_searches_and_all_threads_give_the_same_trajectories() {
-    let of = |search| small(search).measure(&|_| true);
+    let of = |search| small(search).measure(1, &|_| true);
     let hash = of(Method::Cells).trace_hash;
-    assert_ne!(format!("{:016x}", small(Method::Cells).flock(60).hash()), hash);
+    assert_ne!(format!("{:016x}", small(Method::Cells).flock(60, 1).hash()), hash);
     for search in SEARCHES {
         let measured = of(search);
         assert_eq!((measured.trace_hash, measured.values["equal"]), (hash.clone(), Some(1.0)), "{search:?}");
         assert!(measured.values["neighbours"].unwrap() > 1.0);
         for boids in [1, 2] {
-            let few = Parameters { boids, ..small(search) }.measure(&|_| true);
+            let few = Parameters { boids, ..small(search) }.measure(1, &|_| true);
             assert_eq!(few.values["equal"], Some(1.0));
         }
     }
@@ -28,7 +29,7 @@ fn all_searches_and_all_threads_give_the_same_trajectories() {
 
 #[test]
 fn flocks_match_their_recorded_hashes() {
-    let mut flock = small(Method::Cells).flock(60);
+    let mut flock = small(Method::Cells).flock(60, 1);
     let mut cells = Cells::new(flock.space, 150.0);
     (0..100).for_each(|_| flock.step(&mut cells));
     assert_eq!(format!("{:016x}", flock.hash()), "80d38a757c170a18");
@@ -36,7 +37,7 @@ fn flocks_match_their_recorded_hashes() {
 
 #[test]
 fn boids_align_and_stay_on_the_torus() {
-    let mut flock = small(Method::Cells).flock(30);
+    let mut flock = small(Method::Cells).flock(30, 1);
     assert!(flock.order() < 0.4, "{}", flock.order());
     let mut cells = Cells::new(flock.space, 150.0);
     (0..600).for_each(|_| flock.step_by_cells(&mut cells));
@@ -50,8 +51,8 @@ fn boids_align_and_stay_on_the_torus() {
 #[test]
 fn pairs_are_skipped_above_the_limit_and_a_stopped_run_has_no_row() {
     let many = Parameters { boids: 61, ..small(Method::AllPairs) };
-    assert!(many.measure(&|_| true).values.is_empty());
-    assert!(small(Method::Cells).measure(&|step| step < 5).is_cut);
+    assert!(many.measure(1, &|_| true).values.is_empty());
+    assert!(small(Method::Cells).measure(1, &|step| step < 5).is_cut);
 }
 
 #[test]
@@ -66,7 +67,7 @@ fn invalid_parameters_are_refused() {
         ("study.steps = 0", "study.steps"),
         ("study.closest = -1", "study.closest: -1 is out of range; give a number above 0"),
         ("study.area_per_boid = inf", "study.area_per_boid"),
-        ("study.max_turn = 3.2", "study.max_turn: 3.2 is out of range; give 0 to pi"),
+        ("study.max_turn = 3.2", "study.max_turn: 3.2 is out of range; give 0 to 3.14"),
         ("study.max_turn_away = -0.1", "study.max_turn_away"),
         ("study.search = 'luck'", "unknown value `luck`"),
         ("study.flocks = 2", "flocks"),
@@ -80,8 +81,8 @@ fn invalid_parameters_are_refused() {
 
 #[test]
 fn a_flock_is_drawn_at_three_moments() {
-    let table = "[study]\nboids = 4\nsteps = 20".parse().expect("TOML");
-    let given = Given { table, path: Path::new("b.toml"), measures: &[], seed: 1 };
+    let source = Source::new(Path::new("b.toml"), "[study]\nboids = 4\nsteps = 20").expect("TOML");
+    let given = Given { source, measures: &[], seed: 1 };
     let dir = tempfile::tempdir().expect("a folder");
     let files = Boids.draw(&given, "four boids", &dir.path().join("flock")).expect("drawn");
     assert_eq!(files.len(), 2);

@@ -1,20 +1,27 @@
 use super::*;
 use crate::measure::Measured;
-use staya_sim::scenario::Field;
+use staya_sim::scenario::{Field, Source};
 
-fn read(scenario: &str, sets: &[(&str, toml::Value)], measures: &[&str], seed: u64) -> Result<Measured, String> {
+type Set<'a> = (&'a str, String);
+
+fn read(scenario: &str, sets: &[Set<'_>], measures: &[&str], seed: u64) -> Result<Measured, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../papers").join(scenario);
-    let mut table: toml::Table = std::fs::read_to_string(&path).unwrap().parse().unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut source = Source::new(&path, &text).unwrap();
     for (field, value) in sets {
-        Field::read(field).unwrap().set(&mut table, value.clone()).unwrap();
+        source.set(&Field::read(field).unwrap(), value).unwrap();
     }
     let measures: Vec<String> = measures.iter().map(ToString::to_string).collect();
-    let given = Given { table, path: &path, measures: &measures, seed };
+    let given = Given { source, measures: &measures, seed };
     Flock.read(&given).map_err(|error| error.to_string())?(&|_| true)
 }
 
-fn sets<'a>(count: i64, ticks: i64, knows: &str) -> Vec<(&'a str, toml::Value)> {
-    vec![("plane.robots.cloud.count", count.into()), ("ticks", ticks.into()), ("study.knows", knows.into())]
+fn sets<'a>(count: u32, ticks: u32, knows: &str) -> Vec<Set<'a>> {
+    vec![
+        ("plane.robots.cloud.count", count.to_string()),
+        ("ticks", ticks.to_string()),
+        ("study.knows", knows.to_owned()),
+    ]
 }
 
 fn value(measured: &Measured, name: &str) -> f64 {
@@ -43,13 +50,13 @@ fn free_flock_forms_by_agents_and_by_the_law_alone_with_equal_energy() {
 #[test]
 fn limits_of_the_law_alone_delay_the_flock() {
     let base = sets(30, 300, "all");
-    let with = |field, value: toml::Value| {
-        read("olf/flock/free.toml", &[base.clone(), vec![(field, value)]].concat(), &ALL, 1).unwrap()
+    let with = |field, value: &str| {
+        read("olf/flock/free.toml", &[base.clone(), vec![(field, value.to_owned())]].concat(), &ALL, 1).unwrap()
     };
-    let soon = value(&with("study.fastest_mps", 1e6.into()), "flock.connected_from");
-    let slow = with("study.fastest_mps", 5.0.into()).values["flock.connected_from"];
+    let soon = value(&with("study.fastest_mps", "1e6"), "flock.connected_from");
+    let slow = with("study.fastest_mps", "5.0").values["flock.connected_from"];
     assert!(slow.is_none_or(|late| late > soon + 50.0), "{soon} {slow:?}");
-    assert_eq!(with("study.nearest", 0.into()).values["flock.alpha_from"], None);
+    assert_eq!(with("study.nearest", "0").values["flock.alpha_from"], None);
 }
 
 #[test]
@@ -80,9 +87,9 @@ fn resting_reference_gathers_a_flock_that_a_fixed_one_splits() {
 fn goal_flock_gathers_and_arrives_by_agents_and_by_the_law_alone() {
     for knows in ["all", "packets"] {
         let of = |k2: i64| {
-            let corner = |at: i64| toml::Value::from(vec![at, at]);
+            let corner = |at: i64| format!("[{at}, {at}]");
             let own = vec![
-                ("plane.goal_flock.k2", k2.into()),
+                ("plane.goal_flock.k2", k2.to_string()),
                 ("plane.robots.cloud.from_m", corner(-126)),
                 ("plane.robots.cloud.to_m", corner(126)),
             ];
@@ -98,9 +105,11 @@ fn goal_flock_gathers_and_arrives_by_agents_and_by_the_law_alone() {
 
 #[test]
 fn push_out_keeps_points_apart_with_exact_knowledge() {
-    let sets =
-        [sets(40, 900, "all"), vec![("plane.safety", "push_out".into()), ("plane.push_out.min_distance_m", 10.into())]]
-            .concat();
+    let sets = [
+        sets(40, 900, "all"),
+        vec![("plane.safety", "push_out".into()), ("plane.push_out.min_distance_m", "10".into())],
+    ]
+    .concat();
     let measured = read("pav/goals/scenario.toml", &sets, &["company.company"], 5).unwrap();
     assert_eq!(value(&measured, "collisions"), 0.0);
 }
@@ -112,7 +121,7 @@ fn starts_have_the_deviation_and_their_distance() {
     let mean = drawn.iter().sum::<f64>() / 20_000.0;
     let variance = drawn.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / 20_000.0;
     assert!(mean.abs() < 0.1 && (variance - 9.0).abs() < 0.3, "{mean} {variance}");
-    let crowded = read("olf/flock/free.toml", &[("study.deviation_m", vec![0.1, 0.1, 0.0].into())], &ALL, 1);
+    let crowded = read("olf/flock/free.toml", &[("study.deviation_m", "[0.1, 0.1, 0.0]".into())], &ALL, 1);
     assert!(crowded.unwrap_err().contains("find no room"));
 }
 
@@ -137,10 +146,9 @@ fn forests_and_goals_are_at_random_places_with_gaps() {
         }
     }
     assert_eq!(forest.draw(29, Rng::new(1)), None);
-    let goals = "study.goals = { count = 2, from_m = [300, -400], to_m = [1100, 400], gap_m = 250 }";
-    let goals = goals.parse::<toml::Table>().unwrap()["study"]["goals"].clone();
+    let goals = "{ count = 2, from_m = [300, -400], to_m = [1100, 400], gap_m = 250 }";
     let of = |seed| {
-        let sets = [sets(10, 900, "all"), vec![("study.goals", goals.clone())]].concat();
+        let sets = [sets(10, 900, "all"), vec![("study.goals", goals.to_owned())]].concat();
         read("pav/goals/scenario.toml", &sets, &["company.share_1", "company.share_2", "company.share_3"], seed)
             .unwrap()
     };
@@ -152,9 +160,8 @@ fn forests_and_goals_are_at_random_places_with_gaps() {
 
 #[test]
 fn operator_moves_a_goal_of_robots_with_exact_knowledge() {
-    let order =
-        "order = [{ at_s = 10, goal = 2, place_m = [300, 900] }]".parse::<toml::Table>().unwrap()["order"].clone();
-    let sets = [sets(12, 1500, "all"), vec![("plane.order", order)]].concat();
+    let order = "[{ at_s = 10, goal = 2, place_m = [300, 900] }]";
+    let sets = [sets(12, 1500, "all"), vec![("plane.order", order.to_owned())]].concat();
     let of = |sets: &[_]| read("pav/goals/scenario.toml", sets, &["company.share_3"], 5).unwrap();
     let [moved, unmoved] = [of(&sets), of(&sets[..3])];
     assert_ne!(moved.trace_hash, unmoved.trace_hash);
@@ -163,16 +170,16 @@ fn operator_moves_a_goal_of_robots_with_exact_knowledge() {
 
 #[test]
 fn groups_start_in_squares_that_face_each_other() {
-    let sets = |corners: toml::Value| vec![("study.squares.from_m", corners)];
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../papers/staya/closing/alpha-nine.toml");
-    let table: toml::Table = std::fs::read_to_string(&path).unwrap().parse().unwrap();
-    let run = Run::read(&Given { table, path: &path, measures: &[], seed: 2 }).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let given = Given { source: Source::new(&path, &text).unwrap(), measures: &[], seed: 2 };
+    let run = Run::read(&given, given.parameters().unwrap()).unwrap();
     let starts = run.scenario.plane.unwrap().starts;
     for (west, east) in starts[..9].iter().zip(&starts[9..]) {
         let [dx, dy] = [0, 1].map(|axis| east.position_m[axis] - west.position_m[axis]);
         assert!((dx - 42.0).abs() <= 0.1 && dy.abs() <= 0.6, "{dx} {dy}");
     }
-    let one = toml::Value::from(vec![vec![0, 0]]);
-    let error = read("staya/closing/alpha-nine.toml", &sets(one), &ALL, 1).unwrap_err();
+    let one = [("study.squares.from_m", "[[0, 0]]".to_owned())];
+    let error = read("staya/closing/alpha-nine.toml", &one, &ALL, 1).unwrap_err();
     assert!(error.contains("study.squares.from_m: there are more groups than squares"), "{error}");
 }

@@ -2,8 +2,9 @@ use crate::error::SweepError;
 use crate::study::Given;
 use crate::study::movingai::MovingAi;
 use crate::study::{Job, Study as _};
+use staya_sim::scenario::Source;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n...S\n";
 
@@ -16,9 +17,9 @@ fn files(rows: &[&str], map: &str) -> (tempfile::TempDir, PathBuf) {
     (dir, plan)
 }
 
-fn read(plan: &PathBuf, parameters: &str) -> Result<Job, SweepError> {
-    let table = format!("[study]\nscen = 'a.map.scen'\n{parameters}").parse().unwrap();
-    MovingAi.read(&Given { table, path: plan, measures: &[], seed: 0 })
+fn read(plan: &Path, parameters: &str) -> Result<Job, SweepError> {
+    let text = format!("[study]\nscen = 'a.map.scen'\n{parameters}");
+    MovingAi.read(&Given { source: Source::new(plan, &text)?, measures: &[], seed: 0 })
 }
 
 fn answers(rows: &[&str], map: &str, parameters: &str) -> BTreeMap<String, Option<f64>> {

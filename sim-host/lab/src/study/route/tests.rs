@@ -1,16 +1,13 @@
 use super::*;
 use staya_sim::engine;
-
-fn given(set: &str, seed: u64) -> (toml::Table, u64) {
-    let text = "name = 't'\nticks = 60000\nterrain.natural.width = 60\nterrain.natural.height = 60\nterrain.natural.obstacles = 40\n\
-        robots.list = [{ start = [1, 1], goal = [58, 58] }]\n";
-    (format!("{text}{set}").parse().unwrap(), seed)
-}
+use staya_sim::scenario::Source;
 
 fn trip(set: &str, seed: u64) -> Result<Trip, String> {
-    let (table, seed) = given(set, seed);
-    let given = Given { table, path: Path::new("t.toml"), measures: &[], seed };
-    Trip::read(&given).map_err(|error| error.to_string())
+    let text = "name = 't'\nticks = 60000\nterrain.natural.width = 60\nterrain.natural.height = 60\nterrain.natural.obstacles = 40\n\
+        robots.list = [{ start = [1, 1], goal = [58, 58] }]\n";
+    let text = format!("{text}{set}");
+    let source = Source::new(Path::new("t.toml"), &text).unwrap();
+    Trip::read(&Given { source, measures: &[], seed }).map_err(|error| error.to_string())
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::error::SweepError;
 use crate::sweep::value::{Figure, Point, Value, short};
 use serde::Serialize;
 use staya_sim::file::{TEXT, read_text};
-use staya_sim::scenario::{ScenarioError, Source};
+use staya_sim::scenario::{ScenarioError, Source, fields};
 use std::path::Path;
 
 /// Points of a plan, by values of some axes.
@@ -15,19 +15,21 @@ pub struct Choice(Vec<(usize, Vec<String>)>);
 
 impl Choice {
     /// Reads a table of axes and their values, one or a list.
-    pub fn read(plan: &Plan, table: &toml::Table, source: &Source<'_>, field: &str) -> Result<Self, ScenarioError> {
+    pub fn read(plan: &Plan, source: &Source<'_>, field: &str) -> Result<Self, ScenarioError> {
         let mut choice = Vec::new();
-        for (name, value) in table {
+        for (name, value) in source.get(field).and_then(|node| node.get_ref().as_table()).into_iter().flatten() {
+            let name = name.get_ref();
             let wrong = |what: String, remedy: String| source.error(field, what, remedy);
             let Some(axis) = plan.find(name) else {
                 let axes: Vec<_> = plan.axes().collect();
                 return Err(wrong(format!("{name} is not an axis"), format!("give some of {}", axes.join(", "))));
             };
             let known = &plan.axes[axis].values;
-            let list = value.as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
+            let list = value.get_ref().as_array().map_or(std::slice::from_ref(value), |list| &list[..]);
             let mut values = Vec::new();
             for value in list {
-                let value = Value::read(value).map_err(|what| wrong(what, "give values of the axis".to_owned()))?;
+                let value =
+                    Value::read(value.get_ref()).map_err(|what| wrong(what, "give values of the axis".to_owned()))?;
                 let text = value.to_string();
                 if !known.iter().any(|known| known.to_string() == text) {
                     let what = format!("{text} is not a value of {name}");
@@ -120,7 +122,7 @@ impl Acceptance {
         source: &Source<'_>,
         field: &str,
     ) -> Result<Self, ScenarioError> {
-        let AcceptTable { measure, at, equals, at_most, at_least, within, mean } = table;
+        let AcceptTable { measure, r#where: _, equals, at_most, at_least, within, mean } = table;
         let Some(number) = plan.measures.iter().position(|name| *name == measure) else {
             let remedy = format!("name it in `measures` ({LIST})");
             return Err(source.error(&format!("{field}.measure"), format!("{measure} is not measured"), remedy));
@@ -134,8 +136,10 @@ impl Acceptance {
             return Err(source.error(&format!("{field}.within"), "there is no reference", "name its file"));
         }
         let mut text = measure;
-        if !at.is_empty() {
-            text += &format!(" where {}", at.to_string().trim().replace('\n', ", "));
+        let field = format!("{field}.where");
+        let points = source.get(&field).and_then(|node| node.get_ref().as_table());
+        if let Some(points) = points.filter(|points| !points.is_empty()) {
+            text += &format!(" where {}", fields(points).collect::<Vec<_>>().join(", "));
         }
         for (name, limit) in [("=", equals), ("at most", at_most), ("at least", at_least)] {
             text += &limit.map_or(String::new(), |limit| format!(" {name} {limit}"));
@@ -144,7 +148,7 @@ impl Acceptance {
         if mean {
             text += " on average";
         }
-        let at = Choice::read(plan, &at, source, &format!("{field}.where"))?;
+        let at = Choice::read(plan, source, &field)?;
         Ok(Self { measure: number, at, limits: [low, high], within, is_mean: mean, text })
     }
 

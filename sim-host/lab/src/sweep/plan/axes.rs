@@ -4,8 +4,7 @@ use super::table::{PlanFile, RangeTable, SampleTable};
 use crate::error::SweepError;
 use crate::sweep::sample::shares;
 use crate::sweep::value::Value;
-use staya_sim::scenario::Field;
-use staya_sim::scenario::{ScenarioError, Source};
+use staya_sim::scenario::{Field, Location, Node, Read as _, ScenarioError, Source};
 use std::ops::Range;
 use std::str::FromStr;
 use toml::de::{DeTable, DeValue};
@@ -18,8 +17,8 @@ const MOST: u32 = 1_000_000;
 pub struct Axis {
     pub field: Field,
     pub values: Vec<Value>,
-    /// Line of the plan; 0 if the values are from the command line.
-    pub line: usize,
+    /// Place in the plan; `None` if the values are from the command line.
+    pub place: Option<Location>,
     pub is_log: bool,
     /// Values come from a range, which is invalid for text fields.
     pub is_range: bool,
@@ -29,7 +28,7 @@ pub struct Axis {
 impl Axis {
     /// Whether the axis is not one of the plan's file.
     pub fn is_added(&self) -> bool {
-        self.line == 0 && self.span == (0..0)
+        self.place.is_none() && self.span == (0..0)
     }
 }
 
@@ -66,9 +65,7 @@ impl FromStr for Change {
                 values.extend((from..=to).map(Value::from));
                 continue;
             }
-            let table = format!("value = {word}").parse::<toml::Table>().ok();
-            let value = table.filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
-            values.push(Value::read(&value.unwrap_or_else(|| toml::Value::String(word.to_owned())))?);
+            values.push(Value::parse(word)?);
         }
         Ok(Self { field, values })
     }
@@ -89,11 +86,11 @@ impl Axes {
                         let remedy = format!("give some of {}", names.join(", "));
                         return Err(SweepError::new(place(change), "the plan has no such scenario", remedy));
                     }
-                    (self.axes[index].values, self.axes[index].line) = (values, 0);
+                    (self.axes[index].values, self.axes[index].place) = (values, None);
                 }
                 None => {
                     self.groups.push(self.axes.len()..self.axes.len() + 1);
-                    self.axes.push(Axis { field, values, line: 0, is_log: false, is_range: false, span: 0..0 });
+                    self.axes.push(Axis { field, values, place: None, is_log: false, is_range: false, span: 0..0 });
                 }
             }
         }
@@ -123,10 +120,10 @@ pub fn find<'a>(names: impl Iterator<Item = &'a str> + Clone, part: &str) -> Opt
     })
 }
 
-struct Entry<'a> {
+struct Entry<'s, 'a> {
     field: Field,
     span: Range<usize>,
-    value: &'a toml::Value,
+    value: &'s Node<'a>,
 }
 
 /// `scenarios`: names of the scenarios if there are several; they are the first axis.
@@ -134,10 +131,16 @@ pub fn read(source: &Source<'_>, file: &PlanFile, scenarios: Vec<Value>) -> Resu
     let mut all = Axes::default();
     if let Some(field) = Field::read(SCENARIO).filter(|_| scenarios.len() > 1) {
         all.groups.push(0..1);
-        all.axes.push(Axis { field, values: scenarios, line: 1, is_log: false, is_range: false, span: 0..0 });
+        all.axes.push(Axis {
+            field,
+            values: scenarios,
+            place: Some(Location::START),
+            is_log: false,
+            is_range: false,
+            span: 0..0,
+        });
     }
-    let root = source.root();
-    for entry in entries(source, table(root, "axes", None), &file.axes)? {
+    for entry in entries(source, "axes")? {
         let axis = axis(source, entry)?;
         if let Some(twice) = twice(&axis.values) {
             let what = format!("{twice} is listed twice");
@@ -146,10 +149,10 @@ pub fn read(source: &Source<'_>, file: &PlanFile, scenarios: Vec<Value>) -> Resu
         all.groups.push(all.axes.len()..all.axes.len() + 1);
         all.axes.push(axis);
     }
-    for (index, zipped) in file.zip.iter().enumerate() {
-        let entries = entries(source, table(root, "zip", Some(index)), zipped)?;
-        let group = entries.into_iter().map(|entry| axis(source, entry)).collect::<Result<Vec<_>, _>>()?;
+    for index in 0..file.zip.len() {
         let field = format!("zip[{index}]");
+        let entries = entries(source, &field)?;
+        let group = entries.into_iter().map(|entry| axis(source, entry)).collect::<Result<Vec<_>, _>>()?;
         let [first, others @ ..] = &group[..] else {
             return Err(source.error(&field, "there are no fields", "give fields with lists of the same length"));
         };
@@ -167,9 +170,7 @@ pub fn read(source: &Source<'_>, file: &PlanFile, scenarios: Vec<Value>) -> Resu
             let what = format!("{} samples", sample.count);
             return Err(source.error(&format!("{field}.count"), what, format!("give 1 to {MOST}")));
         }
-        let here = table(root, "sample", Some(index)).and_then(|table| table.get("axes"));
-        let here = here.and_then(|value| as_table(value.get_ref()));
-        let entries = entries(source, here, &sample.axes)?;
+        let entries = entries(source, &format!("{field}.axes"))?;
         if entries.is_empty() {
             return Err(source.error(&field, "there are no fields", "give some in `axes`"));
         }
@@ -178,8 +179,8 @@ pub fn read(source: &Source<'_>, file: &PlanFile, scenarios: Vec<Value>) -> Resu
         all.groups.push(all.axes.len()..all.axes.len() + group.len());
         all.axes.extend(group);
     }
-    for Entry { field, span, value } in entries(source, table(root, "set", None), &file.set)? {
-        let read = Value::read(value);
+    for Entry { field, span, value } in entries(source, "set")? {
+        let read = Value::read(value.get_ref());
         let value = read.map_err(|what| source.error_at(span.clone(), field.name(), what, "give one value"))?;
         all.set.push((field, value, span));
     }
@@ -199,11 +200,11 @@ pub fn read(source: &Source<'_>, file: &PlanFile, scenarios: Vec<Value>) -> Resu
     Ok(all)
 }
 
-pub fn check_kind(source: &Source<'_>, axis: &Axis, stands: Option<&toml::Value>) -> Result<(), ScenarioError> {
-    let is = match stands {
-        Some(toml::Value::String(word)) => format!("a text ({word:?})"),
-        Some(toml::Value::Boolean(_)) => "true or false".to_owned(),
-        Some(toml::Value::Array(_) | toml::Value::Table(_)) => {
+pub fn check_kind(source: &Source<'_>, axis: &Axis, present: Option<&Node<'_>>) -> Result<(), ScenarioError> {
+    let is = match present.map(Node::get_ref) {
+        Some(DeValue::String(word)) => format!("a text ({word:?})"),
+        Some(DeValue::Boolean(_)) => "true or false".to_owned(),
+        Some(DeValue::Array(_) | DeValue::Table(_)) => {
             let remedy = "name a field in it, or an element: [0]";
             return Err(source.error_at(axis.span.clone(), axis.field.name(), "it is a list or a table", remedy));
         }
@@ -220,34 +221,15 @@ pub fn no_range(is: &str) -> (String, String) {
     (format!("it is {is}, which has no range"), "give a list of values".to_owned())
 }
 
-fn table<'a, 't>(root: &'a DeTable<'t>, name: &str, index: Option<usize>) -> Option<&'a DeTable<'t>> {
-    let value = root.get(name)?.get_ref();
-    match (value, index) {
-        (DeValue::Array(list), Some(index)) => as_table(list.get(index)?.get_ref()),
-        (value, None) => as_table(value),
-        _ => None,
-    }
-}
-
-fn as_table<'a, 't>(value: &'a DeValue<'t>) -> Option<&'a DeTable<'t>> {
-    match value {
-        DeValue::Table(table) => Some(table),
-        _ => None,
-    }
-}
-
-/// In the order of the text; nested tables give dotted names. A table with `from` is a range.
-fn entries<'a>(
-    source: &Source<'_>,
-    here: Option<&DeTable<'_>>,
-    table: &'a toml::Table,
-) -> Result<Vec<Entry<'a>>, ScenarioError> {
+/// The fields in a table of the plan, in the order of the text; nested tables give dotted names. A
+/// table with `from` is a range.
+fn entries<'s, 'a>(source: &'s Source<'a>, table: &str) -> Result<Vec<Entry<'s, 'a>>, ScenarioError> {
     let mut found = Vec::new();
-    if let Some(here) = here {
-        collect(here, table, "", &mut found);
+    if let Some(table) = source.get(table).and_then(|node| node.get_ref().as_table()) {
+        collect(table, "", &mut found);
     }
     found.sort_by_key(|(_, span, _)| span.start);
-    let entry = |(name, span, value): (String, Range<usize>, &'a toml::Value)| match Field::read(&name) {
+    let entry = |(name, span, value): (String, Range<usize>, _)| match Field::read(&name) {
         Some(field) => Ok(Entry { field, span, value }),
         None => {
             let remedy = "write names as in radio.loss or \"plane.group[0].count\"";
@@ -257,37 +239,28 @@ fn entries<'a>(
     found.into_iter().map(entry).collect()
 }
 
-fn collect<'a>(
-    here: &DeTable<'_>,
-    table: &'a toml::Table,
-    prefix: &str,
-    found: &mut Vec<(String, Range<usize>, &'a toml::Value)>,
-) {
-    for (key, place) in here {
-        let Some(value) = table.get(key.get_ref().as_ref()) else {
-            continue;
-        };
+fn collect<'s, 'a>(table: &'s DeTable<'a>, prefix: &str, found: &mut Vec<(String, Range<usize>, &'s Node<'a>)>) {
+    for (key, value) in table {
         let name = if prefix.is_empty() { key.get_ref().to_string() } else { format!("{prefix}.{}", key.get_ref()) };
-        match (place.get_ref(), value) {
-            (DeValue::Table(inner), toml::Value::Table(below)) if !below.contains_key("from") => {
-                collect(inner, below, &name, found);
-            }
+        match value.get_ref() {
+            DeValue::Table(inner) if !inner.contains_key("from") => collect(inner, &name, found),
             _ => found.push((name, key.span(), value)),
         }
     }
 }
 
-fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_>) -> Result<Axis, ScenarioError> {
+fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_, '_>) -> Result<Axis, ScenarioError> {
     let wrong = |what: String, remedy: &str| source.error_at(span.clone(), field.name(), what, remedy);
-    let (values, is_log, is_range) = match value {
-        toml::Value::Array(list) => {
-            let values = list.iter().map(Value::read).collect::<Result<Vec<_>, _>>();
+    let (values, is_log, is_range) = match value.get_ref() {
+        DeValue::Array(list) => {
+            let values = list.iter().map(|node| Value::read(node.get_ref())).collect::<Result<Vec<_>, _>>();
             let remedy =
                 "give numbers, true and false, or words without comma; for lists name the element, as in place_m[0]";
             (values.map_err(|what| wrong(what, remedy))?, false, false)
         }
-        toml::Value::Table(_) => {
-            let range = range(value).map_err(|what| wrong(what, "give { from, to, count } or { from, to, step }"))?;
+        DeValue::Table(_) => {
+            let range = RangeTable::read(value)
+                .map_err(|cause| wrong(cause.what, "give { from, to, count } or { from, to, step }"))?;
             (spread(&range).map_err(|(what, remedy)| wrong(what, remedy))?, range.log, true)
         }
         _ => return Err(wrong("one value is not an axis".to_owned(), "give a list, a range, or put it into [set]")),
@@ -295,16 +268,8 @@ fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_>) -> Result<
     if values.is_empty() {
         return Err(wrong("there are no values".to_owned(), "give one or more"));
     }
-    let line = line_of(source, &span);
-    Ok(Axis { field, values, line, is_log, is_range, span })
-}
-
-fn line_of(source: &Source<'_>, span: &Range<usize>) -> usize {
-    1 + source.text().bytes().take(span.start).filter(|&byte| byte == b'\n').count()
-}
-
-fn range(value: &toml::Value) -> Result<RangeTable, String> {
-    value.clone().try_into().map_err(|error: toml::de::Error| error.message().to_owned())
+    let place = Some(source.location(span.start));
+    Ok(Axis { field, values, place, is_log, is_range, span })
 }
 
 fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
@@ -371,15 +336,15 @@ fn rounded(range: &RangeTable, value: f64) -> Value {
 
 fn sampled(
     source: &Source<'_>,
-    Entry { field, span, value }: Entry<'_>,
+    Entry { field, span, value }: Entry<'_, '_>,
     sample: &SampleTable,
     number: u32,
 ) -> Result<Axis, ScenarioError> {
     let shares = shares(sample.kind, sample.seed, number, sample.count);
     let wrong = |what: String, remedy: &str| source.error_at(span.clone(), field.name(), what, remedy);
-    let is_ends = matches!(value, toml::Value::Table(_));
+    let is_ends = value.get_ref().is_table();
     let (values, is_log) = if is_ends {
-        let range = range(value).map_err(|what| wrong(what, "give { from, to }"))?;
+        let range = RangeTable::read(value).map_err(|cause| wrong(cause.what, "give { from, to }"))?;
         if range.count.is_some() || range.step.is_some() {
             return Err(wrong("how many values there are is the sample's".to_owned(), "give { from, to }"));
         }
@@ -394,8 +359,8 @@ fn sampled(
         let at = |share: f64| (share * of.len() as f64) as usize;
         (shares.iter().map(|&share| of[at(share).min(of.len() - 1)].clone()).collect(), false)
     };
-    let line = line_of(source, &span);
-    Ok(Axis { field, values, line, is_log, is_range: is_ends, span })
+    let place = Some(source.location(span.start));
+    Ok(Axis { field, values, place, is_log, is_range: is_ends, span })
 }
 
 fn twice(values: &[Value]) -> Option<String> {

@@ -1,5 +1,6 @@
 use super::*;
 use proptest::prelude::*;
+use staya_sim::scenario::Line;
 use std::fs;
 use tempfile::TempDir;
 
@@ -129,72 +130,72 @@ fn samples_depend_only_on_their_seed() {
 fn errors_name_the_plan_the_line_and_the_field() {
     let axes = |text: &str| error(&format!("[axes]\n{text}\n"));
     for (said, expected) in [
-        (axes("radio.los = [1]"), "plan.toml:4: radio.los: unknown field `los`"),
-        (axes("radoi.loss = [1]"), "plan.toml:4: radoi.loss: unknown field `radoi`"),
+        (axes("radio.los = [1]"), "plan.toml:4:7: radio.los: unknown field `los`"),
+        (axes("radoi.loss = [1]"), "plan.toml:4:7: radoi.loss: unknown field `radoi`"),
         (
             axes("radio.delay_ms = [1]\nradio.loss = [0.1, 1.5]"),
-            "plan.toml:5: radio.loss: 1.5 is not a probability; give a",
+            "plan.toml:5:7: radio.loss: 1.5 is not a probability; give a",
         ),
-        (axes("name = ['a', 'b']"), "plan.toml:4: name: it is a text, and no run depends on it; leave it out"),
+        (axes("name = ['a', 'b']"), "plan.toml:4:1: name: it is a text, and no run depends on it; leave it out"),
         (
             axes("radio.format = { from = 1, to = 2, count = 2 }"),
-            "plan.toml:4: radio.format: it is a text, which has no range",
+            "plan.toml:4:7: radio.format: it is a text, which has no range",
         ),
-        (axes("radio.loss = ['a']"), "plan.toml:4: radio.loss: \"a\" is not a number"),
-        (axes("radio.loss = [[1]]"), "plan.toml:4: radio.loss: [1] is neither a number nor a word"),
-        (axes("radio = [1]"), "plan.toml:4: radio: it is a list or a table; name a field in it"),
-        (axes("seed = [1, 2]"), "plan.toml:4: seed: seeds are not an axis; give `seeds`"),
-        (axes("radio.loss = 0.5"), "plan.toml:4: radio.loss: one value is not an axis"),
-        (axes("radio.loss = []"), "plan.toml:4: radio.loss: there are no values"),
-        (axes("radio.loss = [0.1, 0.10]"), "plan.toml:4: radio.loss: 0.1 is listed twice"),
-        (axes("radio.loss = { from = 0, to = 1 }"), "plan.toml:4: radio.loss: it is not clear how many"),
-        (axes("radio.loss = { from = 0, to = 1, count = 1 }"), "plan.toml:4: radio.loss: 1 values are not a range"),
-        (axes("radio.loss = { from = 0, to = 1, step = -1 }"), "plan.toml:4: radio.loss: steps of -1 do not lead"),
-        (axes("radio.loss = { from = 0, to = 1, step = 0 }"), "plan.toml:4: radio.loss: steps of 0 do not lead"),
-        (axes("radio.loss = { from = 0, to = nan, count = 2 }"), "plan.toml:4: radio.loss: 0 to NaN is not a range"),
+        (axes("radio.loss = ['a']"), "plan.toml:4:7: radio.loss: \"a\" is not a number"),
+        (axes("radio.loss = [[1]]"), "plan.toml:4:7: radio.loss: [1] is neither a number nor a word"),
+        (axes("radio = [1]"), "plan.toml:4:1: radio: it is a list or a table; name a field in it"),
+        (axes("seed = [1, 2]"), "plan.toml:4:1: seed: seeds are not an axis; give `seeds`"),
+        (axes("radio.loss = 0.5"), "plan.toml:4:7: radio.loss: one value is not an axis"),
+        (axes("radio.loss = []"), "plan.toml:4:7: radio.loss: there are no values"),
+        (axes("radio.loss = [0.1, 0.10]"), "plan.toml:4:7: radio.loss: 0.1 is listed twice"),
+        (axes("radio.loss = { from = 0, to = 1 }"), "plan.toml:4:7: radio.loss: it is not clear how many"),
+        (axes("radio.loss = { from = 0, to = 1, count = 1 }"), "plan.toml:4:7: radio.loss: 1 values are not a range"),
+        (axes("radio.loss = { from = 0, to = 1, step = -1 }"), "plan.toml:4:7: radio.loss: steps of -1 do not lead"),
+        (axes("radio.loss = { from = 0, to = 1, step = 0 }"), "plan.toml:4:7: radio.loss: steps of 0 do not lead"),
+        (axes("radio.loss = { from = 0, to = nan, count = 2 }"), "plan.toml:4:7: radio.loss: 0 to NaN is not a range"),
         (
             axes("radio.loss = { from = 0, to = 1, count = 2, log = true }"),
-            "plan.toml:4: radio.loss: 0 to 1 has no equal ratios",
+            "plan.toml:4:7: radio.loss: 0 to 1 has no equal ratios",
         ),
-        (axes("radio.loss = { from = 0, to = 1, counts = 2 }"), "plan.toml:4: radio.loss: unknown field `counts`"),
-        (axes("\"radio loss\" = [1]"), "plan.toml:4: radio loss: it is not the name of a field"),
-        (axes("ticks.x = [1]"), "plan.toml:4: ticks.x: ticks is not a table in the scenario"),
+        (axes("radio.loss = { from = 0, to = 1, counts = 2 }"), "plan.toml:4:7: radio.loss: unknown field `counts`"),
+        (axes("\"radio loss\" = [1]"), "plan.toml:4:1: radio loss: it is not the name of a field"),
+        (axes("ticks.x = [1]"), "plan.toml:4:7: ticks.x: ticks is not a table in the scenario"),
         (
             axes("\"plane.group[0].count\" = [1]"),
-            "plan.toml:4: plane.group[0].count: group is not a list in the scenario",
+            "plan.toml:4:1: plane.group[0].count: group is not a list in the scenario",
         ),
         (
             axes("plane.radius_m = [0.2, 9]"),
-            "duel.toml:13: plane.robots: robots 1 and 2 overlap at the start (with plane.radius_m = 9 of",
+            "duel.toml:13:8: plane.robots: robots 1 and 2 overlap at the start (with plane.radius_m = 9 of",
         ),
-        (error("[set]\nradio.loss = 7\n[axes]\nradio.loss = [0]"), "plan.toml:4: radio.loss: it is named twice"),
-        (error("[set]\nradio.loss = [7]"), "plan.toml:4: radio.loss: [7] is neither a number nor a word"),
+        (error("[set]\nradio.loss = 7\n[axes]\nradio.loss = [0]"), "plan.toml:4:7: radio.loss: it is named twice"),
+        (error("[set]\nradio.loss = [7]"), "plan.toml:4:7: radio.loss: [7] is neither a number nor a word"),
         (
             error("[[zip]]\nradio.loss = [0, 1]\nradio.delay_ms = [1]"),
-            "plan.toml:5: zip[0]: 2 values of radio.loss cannot",
+            "plan.toml:5:7: zip[0]: 2 values of radio.loss cannot",
         ),
-        (error("[[zip]]"), "plan.toml:3: zip[0]: there are no fields"),
-        (error("[[sample]]\nkind = 'random'\ncount = 0\naxes = {}"), "plan.toml:5: sample[0].count: 0 samples"),
+        (error("[[zip]]"), "plan.toml:3:1: zip[0]: there are no fields"),
+        (error("[[sample]]\nkind = 'random'\ncount = 0\naxes = {}"), "plan.toml:5:9: sample[0].count: 0 samples"),
         (
             error("[[sample]]\nkind = 'sobol'\ncount = 3\naxes = {}"),
-            "plan.toml:4: sample[0].kind: unknown value `sobol`",
+            "plan.toml:4:8: sample[0].kind: unknown value `sobol`",
         ),
-        (error("seeds = 0"), "plan.toml:3: seeds: there is none"),
-        (error("seeds = [1, 2, 1]"), "plan.toml:3: seeds: 1 is listed twice"),
-        (error("seeds = 2000000"), "plan.toml:3: seeds: there are too many"),
-        (error("seeds = 'all'"), "plan.toml:3: seeds: invalid seeds, expected a number"),
+        (error("seeds = 0"), "plan.toml:3:9: seeds: there is none"),
+        (error("seeds = [1, 2, 1]"), "plan.toml:3:9: seeds: 1 is listed twice"),
+        (error("seeds = 2000000"), "plan.toml:3:9: seeds: there are too many"),
+        (error("seeds = 'all'"), "plan.toml:3:9: seeds: \"all\" is not a number, a list"),
         (
             error("measures = ['arrivd']"),
-            "plan.toml:3: measures[0]: arrivd is neither a figure of summary.json nor of a probe; did you mean arrived?",
+            "plan.toml:3:13: measures[0]: arrivd is neither a figure of summary.json nor of a probe; did you mean arrived?",
         ),
-        (error("measures = ['arrived', 'arrived']"), "plan.toml:3: measures[1]: arrived is listed twice"),
-        (error("measures = []"), "plan.toml:3: measures: there is none"),
+        (error("measures = ['arrived', 'arrived']"), "plan.toml:3:24: measures[1]: arrived is listed twice"),
+        (error("measures = []"), "plan.toml:3:12: measures: there is none"),
         (
             error("[[plot]]\nfigure = 'arrived'\nover = 'radio.loss'"),
-            "plan.toml:5: plot[0].over: radio.loss is not an axis",
+            "plan.toml:5:8: plot[0].over: radio.loss is not an axis",
         ),
-        (error("axs = 1"), "plan.toml:3: axs: unknown field `axs`"),
-        (error("[axes"), "plan.toml:3: "),
+        (error("axs = 1"), "plan.toml:3:1: axs: unknown field `axs`"),
+        (error("[axes"), "plan.toml:3:6: "),
     ] {
         assert!(said.starts_with(expected), "{said}\n{expected}");
     }
@@ -212,17 +213,17 @@ fn errors_name_the_plan_the_line_and_the_field() {
         ("{ from = -2, to = -1, log = true }", "-2 to -1 has no equal ratios; give ends above 0"),
     ] {
         let (sample, axis) = ranges(range);
-        assert!(sample.starts_with(&format!("plan.toml:7: radio.range_m: {expected}")), "{sample}");
-        assert!(axis.starts_with(&format!("plan.toml:4: radio.range_m: {expected}")), "{axis}");
+        assert!(sample.starts_with(&format!("plan.toml:7:7: radio.range_m: {expected}")), "{sample}");
+        assert!(axis.starts_with(&format!("plan.toml:4:7: radio.range_m: {expected}")), "{axis}");
     }
     let reversed = error("[[sample]]\nkind = 'random'\ncount = 3\n[sample.axes]\nradio.range_m = { from = 9, to = 2 }");
-    let expected = "plan.toml:7: radio.range_m: 9 to 2 is a reversed range; give the smaller number first";
+    let expected = "plan.toml:7:7: radio.range_m: 9 to 2 is a reversed range; give the smaller number first";
     assert!(reversed.starts_with(expected), "{reversed}");
     let step = axes("radio.range_m = { from = 1, to = 2, step = inf }");
-    assert!(step.starts_with("plan.toml:4: radio.range_m: steps of inf do not lead from 1 to 2"), "{step}");
+    assert!(step.starts_with("plan.toml:4:7: radio.range_m: steps of inf do not lead from 1 to 2"), "{step}");
     let huge =
         axes("radio.loss = { from = 0, to = 1, count = 2000 }\nradio.delay_ms = { from = 0, to = 1, count = 2000 }");
-    assert!(huge.starts_with("plan.toml:3: axes: more than a million runs"), "{huge}");
+    assert!(huge.starts_with("plan.toml:3:1: axes: more than a million runs"), "{huge}");
 }
 
 #[test]
@@ -230,11 +231,11 @@ fn errors_of_the_scenario_name_its_own_line() {
     let folder = folder();
     fs::write(folder.path().join("duel.toml"), SCENARIO.replace("range_m", "range")).expect("room");
     let said = parse(&folder, "[axes]\nradio.loss = [0]").expect_err("a wrong field");
-    assert!(said.starts_with("duel.toml:7: radio.range: unknown field `range`"), "{said}");
+    assert!(said.starts_with("duel.toml:7:1: radio.range: unknown field `range`"), "{said}");
     fs::write(folder.path().join("duel.toml"), "name = ").expect("room");
-    assert!(parse(&folder, "").expect_err("no TOML").starts_with("duel.toml:1: "));
+    assert!(parse(&folder, "").expect_err("no TOML").starts_with("duel.toml:1:8: "));
     fs::remove_file(folder.path().join("duel.toml")).expect("mine");
-    assert!(parse(&folder, "").expect_err("no file").starts_with("plan.toml:2: scenario: "));
+    assert!(parse(&folder, "").expect_err("no file").starts_with("plan.toml:2:12: scenario: "));
 }
 
 #[test]
@@ -280,11 +281,15 @@ fn changed_map_changes_the_fingerprint() {
     assert_ne!(of(), first);
 }
 
+fn names(lines: Vec<Line>) -> Vec<&'static str> {
+    lines.into_iter().flat_map(|line| [vec![line.name], names(line.inner)].concat()).collect()
+}
+
 #[test]
 fn every_field_of_a_plan_is_documented() {
-    let fields = include_str!("table.rs").lines().filter_map(|line| line.strip_prefix("    pub ")?.split_once(": "));
-    let fields: Vec<&str> = fields.map(|(name, _)| name).collect();
-    assert!(fields.len() > 15, "{fields:?}");
+    let tables = [PlanFile::lines(), SeedRange::lines(), table::RangeTable::lines()];
+    let fields: Vec<&str> = tables.into_iter().flat_map(names).collect();
+    assert!(fields.len() > 30, "{fields:?}");
     let page = include_str!("../../../../../docs/sweeps.md");
     for field in fields {
         let is_named = ["`", "[", "[[", " ", "{ "]
@@ -347,8 +352,8 @@ fn the_command_line_changes_axes_seeds_and_other_fields() {
     assert_eq!(seeds(Changes { seeds: Some(20), ..Changes::default() }), (5, 20));
     for (change, expected) in [
         ("loss=0,0", "radio.loss=...: 0 is listed twice"),
-        ("radio.los=1", "duel.toml:6: radio.los: unknown field `los`"),
-        ("loss=2", "duel.toml:6: radio.loss: 2 is not a probability"),
+        ("radio.los=1", "duel.toml:6:1: radio.los: unknown field `los`"),
+        ("loss=2", "duel.toml:6:1: radio.loss: 2 is not a probability"),
     ] {
         let error = changed(text, &fields(&[change])).expect_err(change);
         assert!(error.contains(expected), "{error}");
@@ -373,10 +378,10 @@ fn several_scenarios_are_the_first_axis() {
 fn wrong_acceptances_and_references_are_refused() {
     let accept = |text: &str| error(&format!("measures = ['arrived']\n[axes]\nradio.loss = [0]\n[[accept]]\n{text}\n"));
     for (said, expected) in [
-        (accept("measure = 'collisions'\nequals = 0"), "plan.toml:7: accept[0].measure: collisions is not measured"),
-        (accept("measure = 'arrived'"), "plan.toml:6: accept[0]: it has no limit"),
+        (accept("measure = 'collisions'\nequals = 0"), "plan.toml:7:11: accept[0].measure: collisions is not measured"),
+        (accept("measure = 'arrived'"), "plan.toml:6:1: accept[0]: it has no limit"),
         (accept("measure = 'arrived'\nat_least = 2\nat_most = 1"), "accept[0]: it has no limit"),
-        (accept("measure = 'arrived'\nwithin = 0.1"), "plan.toml:8: accept[0].within: there is no reference"),
+        (accept("measure = 'arrived'\nwithin = 0.1"), "plan.toml:8:10: accept[0].within: there is no reference"),
         (accept("measure = 'arrived'\nequals = 4\nwhere = { losses = 0 }"), "losses is not an axis"),
         (accept("measure = 'arrived'\nequals = 4\nwhere = { loss = 0.5 }"), "0.5 is not a value of loss"),
     ] {
@@ -393,4 +398,31 @@ fn wrong_acceptances_and_references_are_refused() {
         let said = parse(&folder, text).expect_err(table);
         assert!(said.contains(expected), "{said}");
     }
+}
+
+#[test]
+fn a_plan_with_a_wrong_character_is_refused_with_its_place() {
+    let folder = folder();
+    let text = "title = 't'\nseeds = [1, 2]\nmeasures = ['arrived']\n[set]\nticks = 5\n[axes]\nradio.loss = [0, 0.5]\n[[zip]]\n\
+                radio.delay_ms = [1, 2]\nplane.radius_m = [0.1, 0.2]\n[[sample]]\nkind = 'random'\ncount = 2\n\
+                axes = { tick_s = { from = 0.1, to = 0.2 } }\n[[plot]]\nfigure = 'arrived'\nover = 'loss'\n[[picture]]\n\
+                where = { loss = 0.5 }\n[[accept]]\nmeasure = 'arrived'\nwhere = { loss = [0, 0.5] }\nat_least = 0\n";
+    parse(&folder, text).expect("a plan");
+    let mut refused = 0;
+    for (at, new) in (0..text.len()).flat_map(|at| ["", "x", "-", "["].map(|new| (at, new))) {
+        let mut text = text.to_owned();
+        text.replace_range(at..=at, new);
+        let Err(error) = parse(&folder, &text) else { continue };
+        let (place, what) = error.split_once(": ").unwrap_or_else(|| panic!("no place: {error}"));
+        let line = place.strip_prefix("plan.toml:").or_else(|| place.strip_prefix("duel.toml:"));
+        assert!(
+            line.is_some_and(|line| line.split(':').all(|number| number.parse::<usize>().is_ok())),
+            "no line: {error}"
+        );
+        assert!(what.contains("; "), "no remedy: {error}");
+        let mut words = what.split(|c: char| !c.is_ascii_alphanumeric());
+        assert!(!words.any(|word| ["u32", "u64", "usize", "f64", "struct", "enum"].contains(&word)), "a type: {error}");
+        refused += 1;
+    }
+    assert!(refused > 500, "only {refused} were refused");
 }

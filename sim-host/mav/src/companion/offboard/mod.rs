@@ -20,9 +20,10 @@ pub use out::status_text;
 use super::kind::Kind;
 use crate::geo::Global;
 use health::Health;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::MavMessage;
+use staya_sim::choice;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -42,15 +43,14 @@ const CLIMB_OVER_MPS: f64 = 0.3;
 /// Below this height above home a vehicle without a landed state counts as on the ground.
 const LOW_M: f64 = 1.0;
 
-/// Selection of the external control mode.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Entry {
-    /// The pilot selects the mode.
-    #[default]
-    Wait,
-    /// The companion selects the mode, once after its start.
-    Once,
+choice! {
+    /// Selection of the external control mode.
+    pub enum Entry {
+        /// The pilot selects the mode.
+        Wait = "wait",
+        /// The companion selects the mode, once after its start.
+        Once = "once",
+    }
 }
 
 /// Rules by which a companion controls a vehicle.

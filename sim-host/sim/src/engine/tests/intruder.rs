@@ -79,7 +79,7 @@ fn ids_of_intruders_with_beacons_must_fit_the_format() {
                 start_m = [0, 0]\nvelocity_mps = [1, 0]\nradius_m = 1\n";
     let parse = |text: &str| Scenario::parse(text, Path::new("t.toml"), &Overrides::default());
     let error = parse(text).expect_err("there is no system 255").to_string();
-    assert!(error.starts_with("t.toml:5: radio.format: robot 255 has no number in mavlink"), "{error}");
+    assert!(error.starts_with("t.toml:5:10: radio.format: robot 255 has no number in mavlink"), "{error}");
     parse(&format!("{text}heard = false\n")).expect("a silent intruder needs no number");
 }
 

@@ -3,16 +3,13 @@
 use super::super::ScenarioError;
 use super::super::ranges::short;
 use super::super::source::Source;
-use super::spec::Spec;
-use super::table::{CloudEntry, Place, PlaneRobotEntry};
-use super::{PlaneSetup, Start, check_count};
+use super::group::Group;
+use super::table::{CloudEntry, FAR_M, MAX_ROBOTS, Place, PlaneRobotEntry};
+use super::{PlaneSetup, Start, within};
 use crate::nearby::{Cells, Query, Search};
 use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
-
-/// Largest coordinate along each axis, metres: beacons encode positions as 32-bit millimetres.
-pub(super) const FAR_M: f64 = 2_000_000.0;
 
 /// Highest speed along each axis, m/s: beacons encode velocities as 16-bit millimetres per second.
 const FAST_MPS: f64 = 32.0;
@@ -65,13 +62,13 @@ fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: u
 /// The terrain for a law that moves from cell to cell; an error if one is given without the other.
 pub(super) fn land<'a>(
     source: &Source<'_>,
-    spec: &Spec,
+    group: &Group,
     terrain: Option<&'a Terrain>,
 ) -> Result<Option<&'a Terrain>, ScenarioError> {
-    match (spec.guidance.is_on_grid(), terrain) {
+    match (group.body.guidance.is_on_grid(), terrain) {
         (true, None) => {
             let (what, remedy) = ("this guidance goes from cell to cell", "give [terrain], or another guidance");
-            Err(source.error(&spec.field(source, "guidance"), what, remedy))
+            Err(source.error(&group.field("guidance"), what, remedy))
         }
         (true, Some(land)) => Ok(Some(land)),
         (false, _) => Ok(None),
@@ -80,7 +77,7 @@ pub(super) fn land<'a>(
 
 pub(super) fn in_cells(
     source: &Source<'_>,
-    spec: &Spec,
+    group: &Group,
     land: &Terrain,
     starts: &[Start],
 ) -> Result<(), ScenarioError> {
@@ -98,31 +95,28 @@ pub(super) fn in_cells(
             _ => "has no goal",
         };
         let what = format!("robot {} of the group goes from cell to cell and {what}", index + 1);
-        return Err(source.error(
-            &format!("{}.robots", spec.table()),
-            what,
-            "give each one start and one goal on free land",
-        ));
+        let remedy = "give each one start and one goal on free land";
+        return Err(source.error(&format!("{}.robots", group.table), what, remedy));
     }
     Ok(())
 }
 
-pub(super) fn list(source: &Source<'_>, spec: &Spec, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
-    let field = format!("{}.robots.list", spec.table());
+pub(super) fn list(source: &Source<'_>, group: &Group, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
+    let field = format!("{}.robots.list", group.table);
     if list.is_empty() {
         return Err(source.error(&field, "there are no robots", "give one robot or more"));
     }
-    check_count(source, &field, u32::try_from(list.len()).unwrap_or(u32::MAX))?;
+    within(source, &field, list.len() as f64, 1.0, MAX_ROBOTS, "robots")?;
     for (index, robot) in list.iter().enumerate() {
         let field = |name| format!("{field}[{index}].{name}");
         place(source, &field("start_m"), robot.start_m)?;
-        let most_mps = robot.max_speed_mps.unwrap_or(spec.max_speed_mps);
+        let most_mps = robot.max_speed_mps.unwrap_or(group.body.max_speed_mps);
         start_velocity(source, &field("velocity_mps"), robot.velocity_mps, most_mps)?;
         if let Some(goal_m) = robot.goal_m {
-            goal_count(source, &field("goal_m"), spec.guidance, 1)?;
+            goal_count(source, &field("goal_m"), group.body.guidance, 1)?;
             place(source, &field("goal_m"), goal_m)?;
         }
-        via(source, &field("via_m"), spec.guidance, robot)?;
+        via(source, &field("via_m"), group.body.guidance, robot)?;
     }
     Ok(())
 }
@@ -147,16 +141,16 @@ fn via(source: &Source<'_>, field: &str, guidance: GuidanceKind, robot: &PlaneRo
     places.try_for_each(|(index, &at)| place(source, &format!("{field}[{index}]"), at))
 }
 
-pub(super) fn cloud(source: &Source<'_>, spec: &Spec, cloud: &CloudEntry) -> Result<(), ScenarioError> {
-    let field = |name| format!("{}.robots.cloud.{name}", spec.table());
+pub(super) fn cloud(source: &Source<'_>, group: &Group, cloud: &CloudEntry) -> Result<(), ScenarioError> {
+    let field = |name| format!("{}.robots.cloud.{name}", group.table);
     place(source, &field("from_m"), cloud.from_m)?;
     place(source, &field("to_m"), cloud.to_m)?;
     let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
     velocity(source, &field("velocity_from_mps"), from)?;
     let fastest = Place(std::array::from_fn(|axis| from.0[axis].abs().max(to.0[axis].abs())));
-    let name = if source.stands(&field("velocity_to_mps")) { "velocity_to_mps" } else { "velocity_from_mps" };
-    start_velocity(source, &field(name), fastest, spec.max_speed_mps)?;
-    goal_count(source, &field("goals_m"), spec.guidance, cloud.goals_m.len())?;
+    let name = if source.has(&field("velocity_to_mps")) { "velocity_to_mps" } else { "velocity_from_mps" };
+    start_velocity(source, &field(name), fastest, group.body.max_speed_mps)?;
+    goal_count(source, &field("goals_m"), group.body.guidance, cloud.goals_m.len())?;
     for (index, goal) in cloud.goals_m.iter().enumerate() {
         place(source, &format!("{}[{index}]", field("goals_m")), *goal)?;
     }

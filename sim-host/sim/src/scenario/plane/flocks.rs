@@ -3,7 +3,7 @@
 use super::super::ranges::{range, row, unit};
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
-use super::spec::Spec;
+use super::group::Group;
 use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::boids::BoidsParams;
@@ -16,7 +16,7 @@ const GAMMA_OF_TWO: f32 = 50.0;
 
 /// Size of the largest formation. Flock numbers start there: beacons store both in one field.
 pub(super) fn places(file: &ScenarioFile) -> u8 {
-    let in_cells = file.robots.iter().flat_map(|robots| &robots.formation);
+    let in_cells = file.robots.iter().flat_map(|robots| &robots.formation.0);
     let formations = in_cells.chain(file.group_formations());
     let places = formations.map(|formation| match (formation.rows, formation.columns, &formation.places) {
         (Some(rows), Some(columns), _) => usize::from(rows) * usize::from(columns),
@@ -25,9 +25,9 @@ pub(super) fn places(file: &ScenarioFile) -> u8 {
     places.max().map_or(0, |most| u8::try_from(most).unwrap_or(u8::MAX))
 }
 
-pub(super) fn number(source: &Source<'_>, spec: &Spec, given: Option<u8>, places: u8) -> Result<(), ScenarioError> {
+pub(super) fn number(source: &Source<'_>, group: &Group, given: Option<u8>, places: u8) -> Result<(), ScenarioError> {
     let (what, remedy) = match given {
-        Some(_) if spec.guidance == GuidanceKind::Formation => {
+        Some(_) if group.body.guidance == GuidanceKind::Formation => {
             ("robots in formation are in no flock".to_owned(), "leave it out".to_owned())
         }
         Some(given) if given < places => (
@@ -36,25 +36,25 @@ pub(super) fn number(source: &Source<'_>, spec: &Spec, given: Option<u8>, places
         ),
         _ => return Ok(()),
     };
-    Err(source.error(&spec.field(source, "flock"), what, remedy))
+    Err(source.error(&group.field("flock"), what, remedy))
 }
 
 fn goes_with<T: Copy>(
     source: &Source<'_>,
-    spec: &Spec,
+    group: &Group,
     guidance: GuidanceKind,
     name: &str,
     given: Option<T>,
 ) -> Result<Option<T>, ScenarioError> {
-    let field = spec.field(source, name);
-    match (spec.guidance == guidance, given.is_some()) {
+    let field = group.field(name);
+    match (group.body.guidance == guidance, given.is_some()) {
         (true, false) => {
             let what = "this guidance needs distances to go by";
             let remedy = "scenarios/README.md lists the fields of its table";
             Err(source.error(&field, what, remedy))
         }
         (false, true) => {
-            let remedy = format!("give {}.guidance = \"{name}\", or leave this table out", spec.table());
+            let remedy = format!("give {}.guidance = \"{name}\", or leave this table out", group.table);
             Err(source.error(&field, "these robots have another guidance", remedy))
         }
         _ => Ok(given),
@@ -65,28 +65,28 @@ fn goes_with<T: Copy>(
 pub(super) fn lattice(
     source: &Source<'_>,
     file: &ScenarioFile,
-    spec: &Spec,
+    group: &Group,
 ) -> Result<Option<GuidanceSetup>, ScenarioError> {
-    let given = goes_with(source, spec, GuidanceKind::Lattice, "lattice", spec.lattice)?;
+    let given = goes_with(source, group, GuidanceKind::Lattice, "lattice", group.body.lattice)?;
     let Some(given) = given else {
         return Ok(None);
     };
     let mut params = LatticeParams::<f32>::new(1.0);
     let fields = [("spacing_m", Some(given.spacing_m)), ("obstacle_ratio", given.obstacle_ratio)];
-    spec.set(source, "lattice", &mut params, &fields)?;
+    group.set(source, "lattice", &mut params, &fields)?;
     params.algorithm = match given.algorithm {
         Some(1) => Algorithm::One,
         Some(2) => Algorithm::Two,
         None | Some(3) => Algorithm::Three,
         Some(other) => {
             let what = format!("there is no algorithm {other}");
-            return Err(source.error(&spec.field(source, "lattice.algorithm"), what, "give 1, 2 or 3"));
+            return Err(source.error(&group.field("lattice.algorithm"), what, "give 1, 2 or 3"));
         }
     };
     if given.takes_turns == Some(true) {
         if params.algorithm != Algorithm::Three {
             let (what, remedy) = ("robots take turns in algorithm 3 only", "give algorithm = 3, or leave it out");
-            return Err(source.error(&spec.field(source, "lattice.takes_turns"), what, remedy));
+            return Err(source.error(&group.field("lattice.takes_turns"), what, remedy));
         }
         params.algorithm = Algorithm::ThreeInTurn;
     }
@@ -106,7 +106,7 @@ pub(super) fn lattice(
     ] {
         if let Some(gain) = gain {
             let row = row(table, name);
-            spec.within(source, field, gain, range(row), unit(row))?;
+            group.within(source, field, gain, range(row), unit(row))?;
             *param = Gain::critical(gain as f32);
         }
     }
@@ -114,12 +114,12 @@ pub(super) fn lattice(
         (Some(false), None) => ReferenceMotion::Static,
         (_, None) => ReferenceMotion::Dynamic,
         (Some(false), Some(within_m)) => {
-            spec.within(source, "lattice.goal_rest_m", within_m, [0.01, 1e6], "metres")?;
+            group.within(source, "lattice.goal_rest_m", within_m, [0.01, 1e6], "metres")?;
             ReferenceMotion::Resting(within_m as f32)
         }
         (_, Some(_)) => {
             let (what, remedy) = ("a goal that moves gives no rest", "give goal_moves = false, or leave it out");
-            return Err(source.error(&spec.field(source, "lattice.goal_rest_m"), what, remedy));
+            return Err(source.error(&group.field("lattice.goal_rest_m"), what, remedy));
         }
     };
     Ok(Some(GuidanceSetup::Lattice { params, motion }))
@@ -147,30 +147,34 @@ pub(in super::super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams,
 
 pub(super) fn goal_flock(
     source: &Source<'_>,
-    spec: &Spec,
+    group: &Group,
     cruise_mps: f64,
     seed: u64,
 ) -> Result<Option<GuidanceSetup>, ScenarioError> {
     let wanted = GuidanceKind::GoalFlock;
-    let Some(given) = goes_with(source, spec, wanted, "goal_flock", spec.goal_flock)? else {
+    let Some(given) = goes_with(source, group, wanted, "goal_flock", group.body.goal_flock)? else {
         return Ok(None);
     };
     let least = given.min_distance_m;
-    spec.within(source, "goal_flock.min_distance_m", least, range(&MIN_DISTANCE), "metres")?;
+    group.within(source, "goal_flock.min_distance_m", least, range(&MIN_DISTANCE), "metres")?;
     let seen = given.neighborhood_m.unwrap_or(4.0 * least);
     let [_, most] = range(row(GoalParams::<f32>::TABLE, "neighborhood_m"));
-    spec.within(source, "goal_flock.neighborhood_m", seen, [2.0 * least, most], "metres")?;
+    group.within(source, "goal_flock.neighborhood_m", seen, [2.0 * least, most], "metres")?;
     let arrival_m = given.arrival_m.unwrap_or(seen);
-    spec.within(source, "goal_flock.arrival_m", arrival_m, range(&TOLERANCE), "metres")?;
+    group.within(source, "goal_flock.arrival_m", arrival_m, range(&TOLERANCE), "metres")?;
     let mut params = GoalParams::new(least as f32, cruise_mps as f32);
     params.neighborhood_m = seen as f32;
     let gains = [("k1", given.k1), ("k2", given.k2), ("k3", given.k3)];
-    spec.set(source, "goal_flock", &mut params, &gains)?;
+    group.set(source, "goal_flock", &mut params, &gains)?;
     Ok(Some(GuidanceSetup::GoalFlock { params, arrival_m: arrival_m as f32, seed }))
 }
 
-pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result<Option<GuidanceSetup>, ScenarioError> {
-    let given = goes_with(source, spec, GuidanceKind::Boids, "boids", spec.boids)?;
+pub(super) fn boids(
+    source: &Source<'_>,
+    group: &Group,
+    cruise_mps: f64,
+) -> Result<Option<GuidanceSetup>, ScenarioError> {
+    let given = goes_with(source, group, GuidanceKind::Boids, "boids", group.body.boids)?;
     let Some(given) = given else {
         return Ok(None);
     };
@@ -183,7 +187,7 @@ pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result
     ] {
         if let Some(value) = value {
             let row = row(BoidsParams::<f32>::TABLE, name);
-            spec.within(source, &format!("boids.{name}"), value, range(row), unit(row))?;
+            group.within(source, &format!("boids.{name}"), value, range(row), unit(row))?;
             *param = value as f32;
         }
     }

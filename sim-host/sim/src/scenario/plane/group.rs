@@ -1,15 +1,15 @@
 //! Groups of identical robots: body, law and safety layer.
 
-use super::super::ranges::{range, short};
+use super::super::ranges::{self, range, short, within};
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile, params};
-use super::spec::Spec;
-use super::{checks, flocks};
+use super::flocks;
+use super::table::{BodyTable, GroupTable, OrcaTable, PlaneRobotEntry};
 use crate::world::plane::Abilities;
 use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
-use staya_controller::parameters::{MIN_DISTANCE, RADIUS, TOLERANCE};
+use staya_controller::parameters::{MIN_DISTANCE, Parameters, TOLERANCE};
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::template::Template;
 use staya_controller::time::Duration;
@@ -51,7 +51,7 @@ impl RobotGroup {
             radius_m,
             cruise_mps,
             tolerance_m,
-            sight_m: super::table::ten(),
+            sight_m: 10.0,
             guidance: waypoint(cruise_mps, tolerance_m),
             safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
             contact_loss: ContactLossPolicy::DEFAULT,
@@ -117,42 +117,108 @@ const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32>
     StalenessInflation { growth_mps: max_speed_mps as f32, max_m: radius_m as f32 }
 }
 
-impl Spec {
+/// The fields of a group of robots, with their place in the file.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    /// The table that defines the group: `plane` or `plane.group[1]`.
+    pub table: String,
+    pub body: BodyTable,
+    pub flock: u8,
+}
+
+impl Group {
+    /// The robots of `[plane]`. `places` is the size of the largest formation.
+    pub fn general(body: &BodyTable, places: u8) -> Self {
+        let flock = if body.guidance == GuidanceKind::Formation { 0 } else { places };
+        Self { table: "plane".to_owned(), body: body.clone(), flock }
+    }
+
+    /// The robots of `[[plane.group]]` number `index`.
+    pub fn numbered(index: usize, table: &GroupTable, places: u8) -> Self {
+        let flock = match table.body.guidance {
+            // A beacon stores a formation place and a flock number in the same field.
+            GuidanceKind::Formation => 0,
+            // Each group has its own flock; when numbers run out, the last groups share one.
+            _ => table.flock.unwrap_or(places.saturating_add(u8::try_from(index + 1).unwrap_or(u8::MAX))),
+        };
+        Self { table: format!("plane.group[{index}]"), body: table.body.clone(), flock }
+    }
+
+    /// The group of a listed robot that has a body of its own.
+    pub fn of_entry(&self, entry: &PlaneRobotEntry) -> Option<Self> {
+        (entry.radius_m.is_some() || entry.max_speed_mps.is_some()).then(|| {
+            let mut own = self.clone();
+            own.body.radius_m = entry.radius_m.unwrap_or(own.body.radius_m);
+            own.body.max_speed_mps = entry.max_speed_mps.unwrap_or(own.body.max_speed_mps);
+            own
+        })
+    }
+
+    /// Path of a field of the group.
+    pub fn field(&self, name: &str) -> String {
+        format!("{}.{name}", self.table)
+    }
+
+    pub fn within(
+        &self,
+        source: &Source<'_>,
+        name: &str,
+        value: f64,
+        [low, high]: [f64; 2],
+        unit: &str,
+    ) -> Result<(), ScenarioError> {
+        within(source, &self.field(name), value, low, high, unit)
+    }
+
+    /// Checks the fields of `table` against the parameters with the same names and stores them.
+    pub fn set(
+        &self,
+        source: &Source<'_>,
+        table: &str,
+        params: &mut dyn Parameters,
+        fields: &[(&str, Option<f64>)],
+    ) -> Result<(), ScenarioError> {
+        let mut fields = fields.iter();
+        fields.try_for_each(|(name, value)| {
+            ranges::set(source, &self.field(&format!("{table}.{name}")), *value, params, name)
+        })
+    }
+
     pub fn build(&self, source: &Source<'_>, file: &ScenarioFile) -> Result<RobotGroup, ScenarioError> {
-        let far = checks::FAR_M;
-        self.within(source, "radius_m", self.radius_m, range(&RADIUS), "metres")?;
-        self.within(source, "max_speed_mps", self.max_speed_mps, [0.001, 32.0], "m/s")?;
-        self.within(source, "sight_m", self.sight_m, [0.0, far], "metres")?;
-        self.within(source, "lag_s", self.lag_s, [0.0, 10.0], "seconds")?;
-        if self.max_acceleration_mps2.is_nan() || self.max_acceleration_mps2 <= 0.0 {
-            let what = format!("{} is out of range", short(self.max_acceleration_mps2));
+        let body = &self.body;
+        if body.max_acceleration_mps2.is_nan() || body.max_acceleration_mps2 <= 0.0 {
+            let what = format!("{} is out of range", short(body.max_acceleration_mps2));
             let remedy = "give more than 0, in m/s^2, or inf";
-            return Err(source.error(&self.field(source, "max_acceleration_mps2"), what, remedy));
+            return Err(source.error(&self.field("max_acceleration_mps2"), what, remedy));
         }
-        let cruise_mps = self.cruise_mps.unwrap_or(self.max_speed_mps);
-        let slowest_mps = 0.001_f64.min(self.max_speed_mps);
-        self.within(source, "cruise_mps", cruise_mps, [slowest_mps, self.max_speed_mps], "m/s")?;
-        let tolerance_m = self.tolerance_m.unwrap_or(self.radius_m / 10.0);
+        let cruise_mps = body.cruise_mps.unwrap_or(body.max_speed_mps);
+        let slowest_mps = 0.001_f64.min(body.max_speed_mps);
+        self.within(source, "cruise_mps", cruise_mps, [slowest_mps, body.max_speed_mps], "m/s")?;
+        let tolerance_m = body.tolerance_m.unwrap_or(body.radius_m / 10.0);
         self.within(source, "tolerance_m", tolerance_m, range(&TOLERANCE), "metres")?;
         let abilities = Abilities {
-            max_speed_mps: self.max_speed_mps,
-            max_acceleration_mps2: self.max_acceleration_mps2,
-            lag_s: self.lag_s,
-            step_s: f64::from(super::super::ranges::micros(file.tick_s)) / 1e6,
+            max_speed_mps: body.max_speed_mps,
+            max_acceleration_mps2: body.max_acceleration_mps2,
+            lag_s: body.lag_s,
+            step_s: f64::from(ranges::micros(file.tick_s)) / 1e6,
         };
+        let orca = body.orca.unwrap_or_default();
         let group = RobotGroup {
             abilities,
-            radius_m: self.radius_m,
+            radius_m: body.radius_m,
             cruise_mps,
             tolerance_m,
-            sight_m: self.sight_m,
+            sight_m: body.sight_m,
             guidance: self.guidance(source, file, cruise_mps, tolerance_m)?,
-            safety: self.safety(source, &abilities)?,
-            contact_loss: self.silence(source)?,
-            listen: self.seconds(source, "orca.listen_s", self.orca.listen_s)?,
+            safety: self.safety(source, &abilities, &orca)?,
+            contact_loss: contact_loss(&orca),
+            listen: orca.listen_s.map(duration),
             flock: self.flock,
         };
-        self.unused(source)?;
+        if matches!(body.safety, SafetyKind::None | SafetyKind::PushOut) && body.orca.is_some() {
+            let remedy = format!("give {}.safety = \"orca\", or leave this table out", self.table);
+            return Err(source.error(&self.field("orca"), "these robots have another safety layer", remedy));
+        }
         Ok(group)
     }
 
@@ -172,11 +238,11 @@ impl Spec {
         if let Some(flock) = flocks.into_iter().flatten().next() {
             return Ok(flock);
         }
-        if !self.guidance.is_on_grid() {
+        if !self.body.guidance.is_on_grid() {
             return Ok(waypoint(cruise_mps, tolerance_m));
         }
         let (route, speed_mps) = (params::routing(source, file)?, Some(cruise_mps as f32));
-        if self.guidance == GuidanceKind::Route {
+        if self.body.guidance == GuidanceKind::Route {
             return Ok(GuidanceSetup::Route { route, speed_mps });
         }
         let formation = params::formation(source, &file.formation)?;
@@ -184,39 +250,19 @@ impl Spec {
         Ok(GuidanceSetup::Formation { route, formation, template: Template::default(), speed_mps })
     }
 
-    fn safety(&self, source: &Source<'_>, abilities: &Abilities) -> Result<SafetySetup, ScenarioError> {
-        let orca = self.orca(source, abilities)?;
-        let mut inflation = inflation(self.max_speed_mps, self.radius_m);
-        for (field, value, unit, param) in [
-            ("inflation_mps", self.orca.inflation_mps, "m/s", &mut inflation.growth_mps),
-            ("inflation_m", self.orca.inflation_m, "metres", &mut inflation.max_m),
-        ] {
-            if let Some(value) = value {
-                self.within(source, &format!("orca.{field}"), value, [0.0, 1000.0], unit)?;
-                *param = value as f32;
-            }
-        }
-        let mut setup = self.safety.setup(orca, inflation, self.push_out(source)?);
-        if let Some(value) = self.orca.downwash {
-            self.within(source, "orca.downwash", value, [1.0, 10.0], "")?;
-            let SafetySetup::Fly { downwash, .. } = &mut setup else {
-                let what = "robots in the plane are not above each other";
-                let remedy = "give safety = \"fly\", or leave it out";
-                return Err(source.error(&self.field(source, "orca.downwash"), what, remedy));
-            };
-            *downwash = value as f32;
-        }
-        Ok(setup)
-    }
-
-    fn orca(&self, source: &Source<'_>, abilities: &Abilities) -> Result<AvoidParams<f32>, ScenarioError> {
-        let (table, mut params) = (&self.orca, AvoidParams::<f32>::default());
+    fn safety(
+        &self,
+        source: &Source<'_>,
+        abilities: &Abilities,
+        table: &OrcaTable,
+    ) -> Result<SafetySetup, ScenarioError> {
+        let mut params = AvoidParams::<f32>::default();
         let brake_s = abilities.least_horizon_s();
         params.horizon_s = params.horizon_s.max(brake_s as f32);
         if let Some(given) = table.horizon_s.filter(|&given| given < brake_s) {
             let what = format!("{} is less than 2 (max_speed_mps / max_acceleration_mps2 + lag_s)", short(given));
             let remedy = format!("give {} seconds or more, or leave it out", short(brake_s));
-            return Err(source.error(&self.field(source, "orca.horizon_s"), what, remedy));
+            return Err(source.error(&self.field("orca.horizon_s"), what, remedy));
         }
         let fields = [
             ("horizon_s", table.horizon_s),
@@ -225,41 +271,37 @@ impl Spec {
             ("margin_m", table.margin_m),
         ];
         self.set(source, "orca", &mut params, &fields)?;
-        Ok(params)
-    }
-
-    fn silence(&self, source: &Source<'_>) -> Result<ContactLossPolicy<f32>, ScenarioError> {
-        let mut silence = ContactLossPolicy::DEFAULT;
-        if let Some(stands_after) = self.seconds(source, "orca.stands_after_s", self.orca.stands_after_s)? {
-            silence.stands_after = stands_after;
+        let usual = inflation(self.body.max_speed_mps, self.body.radius_m);
+        let inflation = StalenessInflation {
+            growth_mps: table.inflation_mps.map_or(usual.growth_mps, |value| value as f32),
+            max_m: table.inflation_m.map_or(usual.max_m, |value| value as f32),
+        };
+        let mut setup = self.body.safety.setup(params, inflation, self.push_out(source)?);
+        match (&mut setup, table.downwash) {
+            (_, None) => {}
+            (SafetySetup::Fly { downwash, .. }, Some(value)) => *downwash = value as f32,
+            (_, Some(_)) => {
+                let what = "robots in the plane are not above each other";
+                let remedy = "give safety = \"fly\", or leave it out";
+                return Err(source.error(&self.field("orca.downwash"), what, remedy));
+            }
         }
-        silence.expects_others = self.orca.expects_others.unwrap_or_default();
-        if let Some(alone_mps) = self.orca.alone_mps {
-            self.within(source, "orca.alone_mps", alone_mps, [0.0, f64::INFINITY], "m/s")?;
-            silence.alone_mps = alone_mps.min(f64::from(f32::MAX)) as f32;
-        }
-        Ok(silence)
-    }
-
-    fn seconds(&self, source: &Source<'_>, field: &str, value: Option<f64>) -> Result<Option<Duration>, ScenarioError> {
-        let Some(value) = value else { return Ok(None) };
-        self.within(source, field, value, [0.0, 600.0], "seconds")?;
-        Ok(Some(Duration::from_micros(libm::round(value * 1e6) as i32)))
+        Ok(setup)
     }
 
     fn push_out(&self, source: &Source<'_>) -> Result<PushOutParams<f32>, ScenarioError> {
-        let given = match (self.safety == SafetyKind::PushOut, self.push_out) {
+        let given = match (self.body.safety == SafetyKind::PushOut, self.body.push_out) {
             (false, None) => return Ok(PushOutParams::new(1.0)),
             (true, Some(given)) => given,
             _ => {
                 let what = "safety \"push_out\" and its table go together";
-                return Err(source.error(&self.field(source, "push_out"), what, "give both or none of them"));
+                return Err(source.error(&self.field("push_out"), what, "give both or none of them"));
             }
         };
-        if self.guidance == GuidanceKind::Waypoint && given.model == Model::Tangential {
+        if self.body.guidance == GuidanceKind::Waypoint && given.model == Model::Tangential {
             let what = "robots that go straight to a place jam for ever in each other's way";
             let remedy = "give \"radial\", or safety \"orca\"";
-            return Err(source.error(&self.field(source, "push_out.model"), what, remedy));
+            return Err(source.error(&self.field("push_out.model"), what, remedy));
         }
         self.within(source, "push_out.min_distance_m", given.min_distance_m, range(&MIN_DISTANCE), "metres")?;
         Ok(PushOutParams {
@@ -268,13 +310,18 @@ impl Spec {
             min_distance_m: given.min_distance_m as f32,
         })
     }
+}
 
-    fn unused(&self, source: &Source<'_>) -> Result<(), ScenarioError> {
-        let is_used = !matches!(self.safety, SafetyKind::None | SafetyKind::PushOut);
-        if is_used || self.orca.is_empty() {
-            return Ok(());
-        }
-        let remedy = format!("give {}.safety = \"orca\", or leave this table out", self.table());
-        Err(source.error(&self.field(source, "orca"), "these robots have another safety layer", remedy))
+fn contact_loss(table: &OrcaTable) -> ContactLossPolicy<f32> {
+    let usual = ContactLossPolicy::DEFAULT;
+    ContactLossPolicy {
+        stands_after: table.stands_after_s.map_or(usual.stands_after, duration),
+        expects_others: table.expects_others.unwrap_or_default(),
+        alone_mps: table.alone_mps.map_or(usual.alone_mps, |mps| mps.min(f64::from(f32::MAX)) as f32),
+        ..usual
     }
+}
+
+fn duration(seconds: f64) -> Duration {
+    Duration::from_micros(libm::round(seconds * 1e6) as i32)
 }

@@ -3,17 +3,18 @@
 mod checks;
 mod flocks;
 mod group;
+mod inherit;
 mod place;
 mod remarks;
 mod scattered;
 mod sensing;
-mod spec;
 mod starts;
 mod table;
 mod torus;
 
 pub(crate) use checks::goals;
 pub(super) use flocks::remark;
+pub(super) use inherit::inherit;
 pub(super) use remarks::remarks;
 pub(super) use sensing::sensing;
 
@@ -33,15 +34,13 @@ use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use crate::world::plane::Solid;
+use group::Group;
 use serde::{Deserialize, Serialize};
-use spec::Spec;
 use staya_controller::agent::{GuidanceKind, RouteSetup};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
-
-const MAX_ROBOTS: u32 = 1_000_000;
 
 /// An operator's order to all robots.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -208,27 +207,21 @@ pub(super) fn build(
     terrain: Option<&Terrain>,
     cells: Option<(Vec<Robot>, Vec<Formation>)>,
 ) -> Result<Placed, ScenarioError> {
-    if table.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
-        return Err(source.error(
-            "plane.guidance",
-            "this guidance goes from cell to cell",
-            "give [terrain] and the top-level [robots], or another guidance",
-        ));
+    if table.body.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
+        let remedy = "give [terrain] and the top-level [robots], or another guidance";
+        return Err(source.error("plane.guidance", "this guidance goes from cell to cell", remedy));
     }
-    if (table.guidance == GuidanceKind::Formation) != file.cells_in_formation() && cells.is_some() {
-        return Err(source.error(
-            "plane.guidance",
-            "robots.formation and guidance \"formation\" go together",
-            "give both or none of them",
-        ));
+    if (table.body.guidance == GuidanceKind::Formation) != file.cells_in_formation() && cells.is_some() {
+        let remedy = "give both or none of them";
+        return Err(source.error("plane.guidance", "robots.formation and guidance \"formation\" go together", remedy));
     }
     if table.robots.as_ref().is_some_and(|robots| robots.formation.is_some()) {
         let remedy = "give it as the top-level robots.formation, or to a plane.group";
         return Err(source.error("plane.robots.formation", "a formation stands in cells", remedy));
     }
     let places = flocks::places(file);
-    let spec = Spec::general(table, places);
-    let mut general = spec.build(source, file)?;
+    let kind = Group::general(&table.body, places);
+    let mut general = kind.build(source, file)?;
     let solids = solids(source, file, table)?;
     let has_groups = !table.group.is_empty();
     if cells.is_some() == table.robots.is_some() && (cells.is_some() || !has_groups) {
@@ -251,22 +244,24 @@ pub(super) fn build(
         starts: &mut starts,
     };
     if let Some(robots) = &table.robots {
-        placing.place(&spec, None, robots)?;
+        placing.place(&kind, None, robots)?;
     }
     let mut parts = vec![Part { table: "plane".to_owned(), members: 0..placing.starts.len() }];
-    for (index, group) in table.group.iter().enumerate() {
-        let (spec, before) = (spec.group(index, group, places), placing.starts.len());
-        let land = checks::land(source, &spec, terrain)?;
-        flocks::number(source, &spec, group.flock, places)?;
-        let number = placing.add(&spec)?;
-        match (spec.guidance == GuidanceKind::Formation, &group.robots, land) {
+    for (index, entry) in table.group.iter().enumerate() {
+        let (group, before) = (Group::numbered(index, entry, places), placing.starts.len());
+        let land = checks::land(source, &group, terrain)?;
+        flocks::number(source, &group, entry.flock, places)?;
+        let number = placing.add(&group)?;
+        match (group.body.guidance == GuidanceKind::Formation, &entry.robots, land) {
             (
                 true,
-                PlaneRobots { formation: Some(entry), list: None, circle: None, cloud: None, scattered: None, .. },
+                PlaneRobots {
+                    formation: Some(formation), list: None, circle: None, cloud: None, scattered: None, ..
+                },
                 Some(land),
             ) => {
-                let field = format!("{}.robots.formation", spec.table());
-                let (robots, formation) = super::robots::of_group(source, &field, entry, file, land)?;
+                let field = format!("{}.robots.formation", group.table);
+                let (robots, formation) = super::robots::of_group(source, &field, formation, file, land)?;
                 let mut members = starts::on_land(&robots, land);
                 members.iter_mut().for_each(|start| start.group = Some(number));
                 placing.starts.append(&mut members);
@@ -274,17 +269,17 @@ pub(super) fn build(
                 formations.push(formation.of(before, id));
             }
             (false, PlaneRobots { formation: None, .. }, land) => {
-                placing.place(&spec, Some(number), &group.robots)?;
+                placing.place(&group, Some(number), &entry.robots)?;
                 if let Some(land) = land {
-                    checks::in_cells(source, &spec, land, &placing.starts[before..])?;
+                    checks::in_cells(source, &group, land, &placing.starts[before..])?;
                 }
             }
             _ => {
                 let what = "guidance \"formation\" and robots.formation go together, without other robots";
-                return Err(source.error(&spec.field(source, "guidance"), what, "give both or none of them"));
+                return Err(source.error(&group.field("guidance"), what, "give both or none of them"));
             }
         }
-        parts.push(Part { table: spec.table().to_owned(), members: before..placing.starts.len() });
+        parts.push(Part { table: group.table.clone(), members: before..placing.starts.len() });
     }
     parts.retain(|part| has_groups && !part.members.is_empty());
     group::grow_as_the_fastest(&mut general, &mut groups);
@@ -312,14 +307,10 @@ fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, S
         let field = |name| format!("plane.intruder[{index}].{name}");
         checks::place(source, &field("start_m"), entry.start_m)?;
         checks::velocity(source, &field("velocity_mps"), entry.velocity_mps)?;
-        within(source, &field("radius_m"), entry.radius_m, 0.001, 65.0, "metres")?;
         if entry.heard && source.has("authentication") {
             let remedy = "give heard = false, or leave [authentication] out";
-            return Err(source.error(
-                &field("heard"),
-                "an intruder does not have the key, so robots reject its beacons",
-                remedy,
-            ));
+            let what = "an intruder does not have the key, so robots reject its beacons";
+            return Err(source.error(&field("heard"), what, remedy));
         }
         intruders.push(Intruder {
             position_m: entry.start_m.0,
@@ -350,7 +341,7 @@ fn wall_with_door(
 fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
     let mut solids = Vec::new();
     for (index, wall) in table.wall.iter().enumerate() {
-        let is_sound = wall.points_m.iter().flatten().all(|x| x.abs() <= checks::FAR_M);
+        let is_sound = wall.points_m.iter().flatten().all(|x| x.abs() <= table::FAR_M);
         if wall.points_m.len() < 2 || !is_sound {
             let field = format!("plane.wall[{index}].points_m");
             return Err(source.error(&field, "this is not a wall", "give two or more points in metres"));
@@ -369,8 +360,6 @@ fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Resul
     for (index, ball) in table.ball.iter().enumerate() {
         let field = format!("plane.ball[{index}].center_m");
         checks::place(source, &field, ball.center_m)?;
-        let field = format!("plane.ball[{index}].radius_m");
-        within(source, &field, ball.radius_m, 0.001, 1e6, "metres")?;
         solids.push(Solid::Ball { center_m: ball.center_m.0, radius_m: ball.radius_m });
     }
     solids.extend(scattered::balls(source, &table.balls, file.seed)?);
@@ -397,8 +386,6 @@ fn orders(
     guidances.dedup();
     let mut orders = Vec::new();
     for (index, order) in table.order.iter().enumerate() {
-        let field = format!("plane.order[{index}].at_s");
-        within(source, &field, order.at_s, 0.0, 1e9, "seconds")?;
         if guidances.iter().all(|&guidance| order.goal >= checks::goals(guidance)) {
             let field = format!("plane.order[{index}].goal");
             let names: Vec<_> = guidances.iter().map(|guidance| format!("\"{}\"", guidance.name())).collect();
@@ -416,12 +403,4 @@ fn orders(
     }
     orders.sort_by_key(|order| order.tick);
     Ok(orders)
-}
-
-fn check_count(source: &Source<'_>, field: &str, count: u32) -> Result<(), ScenarioError> {
-    if (1..=MAX_ROBOTS).contains(&count) {
-        return Ok(());
-    }
-    let remedy = format!("give 1 to {MAX_ROBOTS} robots");
-    Err(source.error(field, format!("{count} is out of range"), remedy))
 }

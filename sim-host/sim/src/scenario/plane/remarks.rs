@@ -1,5 +1,6 @@
 //! Warnings about valid but probably unintended settings in `[plane]`.
 
+use super::super::land::contains;
 use super::{PlaneSetup, RobotGroup, Start};
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GuidanceKind, SafetySetup};
@@ -28,6 +29,7 @@ pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> 
         solids.near(goal_m, group.radius_m).any(|solid| solid.distance_m(goal_m) < least_m)
     });
     let shut = is(&|_, start, goal_m| {
+        let is_inside = |corners: &[[f64; 2]], [x, y, _]: [f64; 3]| contains(corners, [x, y]);
         loops.iter().any(|corners| is_inside(corners, start.position_m) != is_inside(corners, goal_m))
     });
     let in_space = is(&|group, start, goal_m| {
@@ -120,15 +122,4 @@ fn crossing(corners: &[[f64; 2]]) -> Option<String> {
         one + 1,
         other + 1
     ))
-}
-
-/// Even-odd test with a ray to the east.
-fn is_inside(corners: &[[f64; 2]], place: [f64; 3]) -> bool {
-    let [x, y, _] = place;
-    let next = corners.iter().cycle().skip(1);
-    let crossed = corners
-        .iter()
-        .zip(next)
-        .filter(|&(&[x1, y1], &[x2, y2])| (y1 > y) != (y2 > y) && x < x1 + (y - y1) / (y2 - y1) * (x2 - x1));
-    crossed.count() % 2 == 1
 }

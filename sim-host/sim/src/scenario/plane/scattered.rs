@@ -2,8 +2,8 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
+use super::group::Group;
 use super::place::{Start, Target};
-use super::spec::Spec;
 use super::table::{BallsEntry, Place, ScatteredDiscs};
 use super::{checks, within};
 use crate::world::plane::{Solid, Solids};
@@ -27,6 +27,15 @@ pub(super) fn between(rng: &mut Rng, from: Place, to: Place) -> [f64; 3] {
         *place = from.0[axis] + (to.0[axis] - from.0[axis]) * unit(rng);
     }
     place
+}
+
+fn squared(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]) * (a[axis] - b[axis])).sum()
+}
+
+/// Whether a body at `place` touches none of `others` (place, radius).
+pub(super) fn is_clear(place: [f64; 3], radius_m: f64, others: &[([f64; 3], f64)]) -> bool {
+    others.iter().all(|&(other, other_m)| squared(place, other) >= (radius_m + other_m) * (radius_m + other_m))
 }
 
 /// Accepted places, at least `spacing_m` metres apart, with heights divided by `downwash`. O(1) per
@@ -56,10 +65,7 @@ impl Taken {
         let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
         let around = around.flat_map(|(dx, dy)| (-1..=1).map(move |dz| [x + dx, y + dy, z + dz]));
         let mut near = around.filter_map(|at| self.buckets.get(&at)).flatten();
-        !near.any(|other| {
-            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared < self.spacing_m * self.spacing_m
-        })
+        !near.any(|other| squared(place, *other) < self.spacing_m * self.spacing_m)
     }
 
     pub(super) fn take(&mut self, place: [f64; 3]) {
@@ -71,38 +77,33 @@ impl Taken {
 /// Places are two radii or more from solids; starts are also clear of `others` (place, radius).
 pub(super) fn starts(
     source: &Source<'_>,
-    spec: &Spec,
+    group: &Group,
     entry: &ScatteredDiscs,
     others: &[([f64; 3], f64)],
     solids: &[Solid],
     seed: u64,
 ) -> Result<Vec<Start>, ScenarioError> {
-    let table = format!("{}.robots.scattered", spec.table());
+    let table = format!("{}.robots.scattered", group.table);
     let field = |name: &str| format!("{table}.{name}");
-    if !matches!(spec.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
-        let what = format!("robots with guidance \"{}\" have no goals", spec.guidance.name());
+    if !matches!(group.body.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
+        let what = format!("robots with guidance \"{}\" have no goals", group.body.guidance.name());
         return Err(source.error(&table, what, "give a cloud, or guidance \"waypoint\""));
     }
-    let (least_m, spacing_m) = (2.0 * spec.radius_m, entry.spacing_m.unwrap_or(3.0 * spec.radius_m));
+    let (least_m, spacing_m) = (2.0 * group.body.radius_m, entry.spacing_m.unwrap_or(3.0 * group.body.radius_m));
     within(source, &field("spacing_m"), spacing_m, least_m, 1e6, "metres")?;
-    within(source, &field("travel_m"), entry.travel_m, 0.001, f64::INFINITY, "metres")?;
     let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
     let solids = Solids::new(solids.to_vec(), least_m);
     let is_outside = |place| solids.near(place, least_m).all(|solid| solid.distance_m(place) >= least_m);
-    let is_beside = |place: [f64; 3]| {
-        others.iter().all(|(other, other_m)| {
-            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared >= (spec.radius_m + other_m) * (spec.radius_m + other_m)
-        })
-    };
-    let downwash = spec.orca.downwash.unwrap_or(1.0).max(1.0);
+    let downwash = group.body.orca.and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
     let (mut taken, mut aims) = (Taken::new(spacing_m, downwash), Taken::new(spacing_m, downwash));
     let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
     for index in 0..entry.count {
         let mut rng = Rng::keyed(seed, SCATTERED, first + index, 0);
         let mut draw = |low, high, taken: &mut Taken, is_start: bool| {
             let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
-            let place = places.find(|&at| taken.is_free(at) && is_outside(at) && (!is_start || is_beside(at)));
+            let place = places.find(|&at| {
+                taken.is_free(at) && is_outside(at) && (!is_start || is_clear(at, group.body.radius_m, others))
+            });
             place.inspect(|&place| taken.take(place)).ok_or_else(|| {
                 let what =
                     format!("robot {} finds no free {}", first + index + 1, if is_start { "start" } else { "goal" });
@@ -122,10 +123,6 @@ pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> R
     let mut balls = Vec::new();
     for (number, entry) in (0..).zip(entries) {
         let table = format!("plane.balls[{number}]");
-        let field = |name: &str| format!("{table}.{name}");
-        within(source, &field("count"), entry.count.into(), 1.0, 1e6, "balls")?;
-        within(source, &field("radius_m"), entry.radius_m, 0.001, 1e6, "metres")?;
-        within(source, &field("gap_m"), entry.gap_m, 0.0, 1e6, "metres")?;
         let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
         let mut taken = Taken::new(2.0 * entry.radius_m + entry.gap_m, 1.0);
         for index in 0..entry.count {

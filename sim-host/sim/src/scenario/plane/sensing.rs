@@ -8,8 +8,6 @@ use crate::world::plane::Sensing;
 use staya_controller::neighbor::TrackParams;
 use staya_controller::time::Duration;
 
-/// Longest delay, and longest interval between detections, ticks.
-const MOST_TICKS: u32 = 1000;
 /// Beacons round to millimetres, and simulated robots know their exact position.
 const HEARD_M: f64 = 0.002;
 const HEARD_MPS: f64 = 0.01;
@@ -35,31 +33,16 @@ pub(in super::super) fn sensing(
             format!("guidance \"{}\" moves between cells, which sensors do not observe", group.guidance.kind().name());
         return refuse(what, "give a guidance that goes by velocities, or leave it out");
     }
-    let number = |name: &str, value: f64, low: f64, high: f64, unit: &str| {
-        within(source, &format!("plane.sensing.{name}"), value, low, high, unit)
-    };
-    number("range_m", sensing.range_m, 0.01, 1e6, "metres")?;
-    number("noise_m", sensing.noise_m, 0.0, 10.0, "metres")?;
-    number("every_ticks", sensing.every_ticks.into(), 1.0, MOST_TICKS.into(), "ticks")?;
-    number("delay_ticks", sensing.delay_ticks.into(), 0.0, MOST_TICKS.into(), "ticks")?;
-    number("gate", sensing.gate, 0.1, 100.0, "standard deviations")?;
-    number("margin", sensing.margin, 0.0, 100.0, "standard deviations")?;
     // At least the age at which a beacon is stale, and at least three detections.
     let usual_s = f64::from((3 * sensing.every_ticks + sensing.delay_ticks).max(4)) * file.tick_s;
     let forget_s = sensing.forget_s.unwrap_or(usual_s);
-    number("forget_s", forget_s, file.tick_s, 1000.0, "seconds")?;
+    within(source, "plane.sensing.forget_s", forget_s, file.tick_s, 1000.0, "seconds")?;
     let abilities = setup.kinds().map(|group| group.abilities);
     let (speed_mps, most_mps2) = abilities.fold((0.0, 0.0), |(speed, most): (f64, f64), can| {
         (speed.max(can.max_speed_mps), most.max(can.max_acceleration_mps2))
     });
-    let acceleration_mps2 = match sensing.acceleration_mps2 {
-        // Unlimited acceleration: a reversal from full speed within a second, with a factor of two.
-        None => most_mps2.min(4.0 * speed_mps),
-        Some(said) => {
-            number("acceleration_mps2", said, 0.001, 1000.0, "m/s^2")?;
-            said
-        }
-    };
+    // Unlimited acceleration: a reversal from full speed within a second, with a factor of two.
+    let acceleration_mps2 = sensing.acceleration_mps2.unwrap_or_else(|| most_mps2.min(4.0 * speed_mps));
     Ok(Some(Sensing {
         range_m: sensing.range_m,
         noise_m: sensing.noise_m,

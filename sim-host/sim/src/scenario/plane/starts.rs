@@ -2,13 +2,12 @@
 
 use super::super::source::Source;
 use super::super::{Robot, ScenarioError, ScenarioFile};
-use super::check_count as count;
+use super::checks;
+use super::group::Group;
 use super::group::RobotGroup;
 use super::place::{Start, Target};
-use super::scattered::{self, TRIES, Taken, between, unit};
-use super::spec::Spec;
+use super::scattered::{self, TRIES, Taken, between, is_clear, unit};
 use super::table::{CloudEntry, Place, PlaneRobotEntry, PlaneRobots};
-use super::{checks, within};
 use crate::terrain::Terrain;
 use crate::world::plane::Solid;
 use staya_controller::grid::Cell;
@@ -40,32 +39,25 @@ pub(super) struct Placing<'a> {
 }
 
 impl Placing<'_> {
-    pub fn add(&mut self, spec: &Spec) -> Result<usize, ScenarioError> {
-        self.groups.push(spec.build(self.source, self.file)?);
+    pub fn add(&mut self, group: &Group) -> Result<usize, ScenarioError> {
+        self.groups.push(group.build(self.source, self.file)?);
         Ok(self.groups.len() - 1)
     }
 
-    /// Places the robots of a group (`None`: the general one), which `spec` describes.
-    pub fn place(&mut self, spec: &Spec, group: Option<usize>, robots: &PlaneRobots) -> Result<(), ScenarioError> {
-        let (source, table) = (self.source, format!("{}.robots", spec.table()));
+    /// Places the robots of a group (`None`: the general one), which `group` describes.
+    pub fn place(&mut self, kind: &Group, group: Option<usize>, robots: &PlaneRobots) -> Result<(), ScenarioError> {
+        let (source, table) = (self.source, format!("{}.robots", kind.table));
         let mut placed = match (&robots.list, &robots.circle, &robots.cloud, &robots.scattered) {
             (Some(list), None, None, None) => {
-                checks::list(source, spec, list)?;
-                within(source, &format!("{table}.noise_m"), robots.noise_m, 0.0, 1e6, "metres")?;
-                return self.list(spec, group, list, robots.noise_m);
+                checks::list(source, kind, list)?;
+                return self.list(kind, group, list, robots.noise_m);
             }
             (None, Some(circle), None, None) => {
-                count(source, &format!("{table}.circle.count"), circle.count)?;
-                let field = format!("{table}.circle.radius_m");
-                within(source, &field, circle.radius_m, 0.001, 1e6, "metres")?;
-                let field = format!("{table}.circle.noise_m");
-                within(source, &field, circle.noise_m, 0.0, 1e6, "metres")?;
                 circle_starts(circle.count, circle.radius_m, circle.noise_m, self.file.seed)
             }
             (None, None, Some(cloud), None) => {
-                count(source, &format!("{table}.cloud.count"), cloud.count)?;
-                checks::cloud(source, spec, cloud)?;
-                self.cloud(spec, cloud).ok_or_else(|| {
+                checks::cloud(source, kind, cloud)?;
+                self.cloud(kind, cloud).ok_or_else(|| {
                     source.error(
                         &format!("{table}.cloud"),
                         "the robots find no room between the corners",
@@ -74,8 +66,7 @@ impl Placing<'_> {
                 })?
             }
             (None, None, None, Some(scattered)) => {
-                count(source, &format!("{table}.scattered.count"), scattered.count)?;
-                scattered::starts(source, spec, scattered, &self.others(), self.solids, self.file.seed)?
+                scattered::starts(source, kind, scattered, &self.others(), self.solids, self.file.seed)?
             }
             _ => {
                 let remedy = "give exactly one of list, circle, cloud, scattered";
@@ -90,15 +81,14 @@ impl Placing<'_> {
     /// A robot whose body differs gets its own group.
     fn list(
         &mut self,
-        spec: &Spec,
+        kind: &Group,
         group: Option<usize>,
         list: &[PlaneRobotEntry],
         noise_m: f64,
     ) -> Result<(), ScenarioError> {
         let fixed = |place: Place| Target { position_m: place.0, velocity_mps: [0.0; 3] };
-        for (index, entry) in list.iter().enumerate() {
-            let own = spec.entry(&format!("{}.robots.list[{index}]", spec.table()), entry);
-            let group = own.map(|own| self.add(&own)).transpose()?.or(group);
+        for entry in list {
+            let group = kind.of_entry(entry).map(|own| self.add(&own)).transpose()?.or(group);
             let mut rng = Rng::keyed(self.file.seed, STARTS, self.starts.len() as u32, 2);
             let [x, y, z] = entry.start_m.0;
             let mut noise = || (2.0 * unit(&mut rng) - 1.0) * noise_m;
@@ -120,8 +110,8 @@ impl Placing<'_> {
         others.collect()
     }
 
-    fn cloud(&self, spec: &Spec, cloud: &CloudEntry) -> Option<Vec<Start>> {
-        cloud_starts(cloud, spec.radius_m, self.file.seed, &self.others())
+    fn cloud(&self, group: &Group, cloud: &CloudEntry) -> Option<Vec<Start>> {
+        cloud_starts(cloud, group.body.radius_m, self.file.seed, &self.others())
     }
 }
 
@@ -154,19 +144,13 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3
         .map(|goal| Target { position_m: goal.0, velocity_mps: cloud.goal_velocity_mps.0 })
         .collect();
     let first = others.len() as u32;
-    let is_clear = |place: [f64; 3]| {
-        others.iter().all(|(other, other_m)| {
-            let squared: f64 = (0..3).map(|i| (place[i] - other[i]) * (place[i] - other[i])).sum();
-            squared >= (radius_m + other_m) * (radius_m + other_m)
-        })
-    };
     let mut taken = Taken::new(2.0 * radius_m, 1.0);
     (0..cloud.count)
         .map(|index| {
             let mut rng = Rng::keyed(seed, STARTS, first + index, 1);
             let position_m = (0..TRIES)
                 .map(|_| between(&mut rng, cloud.from_m, cloud.to_m))
-                .find(|&place| taken.is_free(place) && is_clear(place))?;
+                .find(|&place| taken.is_free(place) && is_clear(place, radius_m, others))?;
             taken.take(position_m);
             let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
             let velocity_mps = between(&mut rng, from, to);

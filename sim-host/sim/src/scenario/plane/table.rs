@@ -1,485 +1,402 @@
 //! `[plane]` as written in a scenario file, with the documentation of its fields.
 
 use super::super::formation::FormationEntry;
-use serde::Deserialize;
+use crate::{defaults, names, table};
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::push_out::Model;
 
-/// `[plane]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlaneTable {
-    /// Radius of each body, metres.
-    pub radius_m: f64,
-    /// Highest speed on easy land, m/s.
-    pub max_speed_mps: f64,
-    /// Highest acceleration, m/s^2. Default: no limit.
-    #[serde(default = "infinite")]
-    pub max_acceleration_mps2: f64,
-    /// Time constant with which the velocity follows a command, seconds. Default: 0, at once.
-    #[serde(default)]
-    pub lag_s: f64,
-    /// Preferred speed, m/s. Default: the highest.
-    pub cruise_mps: Option<f64>,
-    /// Distance at which a goal counts as reached, metres. Default: a tenth of the radius.
-    pub tolerance_m: Option<f64>,
-    /// Range of obstacle detection, metres. Default: 10.
-    #[serde(default = "ten")]
-    pub sight_m: f64,
-    /// Side lengths of a torus with periodic borders, metres. Default: the open plane.
-    pub torus_m: Option<[f64; 2]>,
-    /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs `robots.formation` too.
-    #[serde(default)]
-    pub guidance: GuidanceKind,
-    /// Safety layer.
-    #[serde(default)]
-    pub safety: SafetyKind,
-    /// The robots, unless the top-level `robots` gives them in cells.
-    pub robots: Option<PlaneRobots>,
-    /// Further robots with other properties.
-    #[serde(default)]
-    pub group: Vec<GroupTable>,
-    /// Foreign bodies that move through everything.
-    #[serde(default)]
-    pub intruder: Vec<IntruderEntry>,
-    /// Walls: polylines.
-    #[serde(default)]
-    pub wall: Vec<WallEntry>,
-    /// Balls (in the plane: discs).
-    #[serde(default)]
-    pub ball: Vec<BallEntry>,
-    /// Balls at random places.
-    #[serde(default)]
-    pub balls: Vec<BallsEntry>,
-    /// Half-spaces.
-    #[serde(default)]
-    pub half_space: Vec<HalfSpaceEntry>,
-    /// Parameters of ORCA.
-    #[serde(default)]
-    pub orca: OrcaTable,
-    /// Parameters of push-out; required for it.
-    pub push_out: Option<PushOutTable>,
-    /// Parameters of the alpha flock; required for it.
-    pub lattice: Option<LatticeTable>,
-    /// Parameters of the goal flock; required for it.
-    pub goal_flock: Option<GoalFlockTable>,
-    /// Parameters of boids; required for them.
-    pub boids: Option<BoidsTable>,
-    /// Detection of other robots by sensors.
-    pub sensing: Option<SensingTable>,
-    /// Goals that an operator sends during the run.
-    #[serde(default)]
-    pub order: Vec<OrderEntry>,
+/// Largest coordinate along each axis, metres: beacons encode positions as 32-bit millimetres.
+pub(super) const FAR_M: f64 = 2_000_000.0;
+
+pub(super) const MAX_ROBOTS: f64 = 1_000_000.0;
+
+/// Largest side of a torus, metres: up to here, whole millimetres are also exact in `f32`.
+const LARGEST_M: f64 = 16_000.0;
+
+table! {
+    /// Fields of `[plane]` and `[[plane.group]]`. A group inherits those of `[plane]` that it
+    /// lacks, and the tables of a law or a safety layer if it has the same one.
+    pub struct BodyTable {
+        /// Radius of each body, metres.
+        pub radius_m: f64, 0.001..=65.0, "metres";
+        /// Highest speed on easy land, m/s.
+        pub max_speed_mps: f64, 0.001..=32.0, "m/s";
+        /// Highest acceleration, m/s^2. Default: no limit.
+        pub max_acceleration_mps2: f64 = f64::INFINITY;
+        /// Time constant with which the velocity follows a command, seconds. Default: 0, at once.
+        pub lag_s: f64 = 0.0, 0.0..=10.0, "seconds";
+        /// Preferred speed, m/s. Default: the highest.
+        pub cruise_mps: Option<f64>;
+        /// Distance at which a goal counts as reached, metres. Default: a tenth of the radius.
+        pub tolerance_m: Option<f64>;
+        /// Range of obstacle detection, metres. Default: 10.
+        pub sight_m: f64 = 10.0, 0.0..=FAR_M, "metres";
+        /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs a formation too.
+        pub guidance: GuidanceKind = GuidanceKind::Waypoint;
+        /// Safety layer.
+        pub safety: SafetyKind = SafetyKind::Orca;
+        /// Parameters of ORCA.
+        pub orca: Option<OrcaTable>;
+        /// Parameters of push-out; required for it.
+        pub push_out: Option<PushOutTable>;
+        /// Parameters of the alpha flock; required for it.
+        pub lattice: Option<LatticeTable>;
+        /// Parameters of the goal flock; required for it.
+        pub goal_flock: Option<GoalFlockTable>;
+        /// Parameters of boids; required for them.
+        pub boids: Option<BoidsTable>;
+    }
 }
 
-const fn infinite() -> f64 {
-    f64::INFINITY
+table! {
+    /// `[plane]`.
+    pub struct PlaneTable {
+        part body: BodyTable;
+        /// Side lengths of a torus with periodic borders, metres. Default: the open plane.
+        pub torus_m: Option<[f64; 2]>, 0.01..=LARGEST_M, "metres";
+        /// The robots, unless the top-level `robots` gives them in cells.
+        pub robots: Option<PlaneRobots>;
+        /// Further robots with other properties.
+        pub group: Vec<GroupTable> = Vec::new();
+        /// Foreign bodies that move through everything.
+        pub intruder: Vec<IntruderEntry> = Vec::new();
+        /// Walls: polylines.
+        pub wall: Vec<WallEntry> = Vec::new();
+        /// Balls (in the plane: discs).
+        pub ball: Vec<BallEntry> = Vec::new();
+        /// Balls at random places.
+        pub balls: Vec<BallsEntry> = Vec::new();
+        /// Half-spaces.
+        pub half_space: Vec<HalfSpaceEntry> = Vec::new();
+        /// Detection of other robots by sensors.
+        pub sensing: Option<SensingTable>;
+        /// Goals that an operator sends during the run.
+        pub order: Vec<OrderEntry> = Vec::new();
+    }
 }
 
-pub(super) const fn ten() -> f64 {
-    10.0
+table! {
+    /// `[plane.sensing]`: robots detect each other with sensors, besides the radio or without it.
+    #[derive(Copy)]
+    pub struct SensingTable {
+        /// Range from centre to centre, metres.
+        pub range_m: f64, 0.01..=1e6, "metres";
+        /// Standard deviation of measured positions along each axis, metres. Default: 0.
+        pub noise_m: f64 = 0.0, 0.0..=10.0, "metres";
+        /// Whether bodies, obstacles and closed cells occlude robots behind them. Default: true.
+        pub occlusion: bool = true;
+        /// Whether a detection contains the robot's id. Default: false.
+        pub names: bool = false;
+        /// Ticks between two detections of a robot. Default: 1.
+        pub every_ticks: u32 = 1, 1.0..=1000.0, "ticks";
+        /// Delay of a detection, ticks. Default: 0.
+        pub delay_ticks: u32 = 0, 0.0..=1000.0, "ticks";
+        /// Whether robots send beacons; an operator's orders reach them in either case. Default:
+        /// true.
+        pub beacons: bool = true;
+        /// Standard deviation of the other robots' accelerations in the tracking filter, m/s^2.
+        /// Default: their limit, at most four times the highest speed per second.
+        pub acceleration_mps2: Option<f64>, 0.001..=1000.0, "m/s^2";
+        /// Gate of the assignment to a track, standard deviations. Default: 4.
+        pub gate: f64 = 4.0, 0.1..=100.0, "standard deviations";
+        /// Standard deviations of the position that are added to a detected robot's radius.
+        /// Default: 2.
+        pub margin: f64 = 2.0, 0.0..=100.0, "standard deviations";
+        /// Time after which a robot without beacons and detections is dropped, seconds. Default:
+        /// three detection intervals plus the delay, at least four ticks.
+        pub forget_s: Option<f64>;
+    }
 }
 
-/// `[plane.sensing]`: robots detect each other with sensors, besides the radio or without it.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SensingTable {
-    /// Range from centre to centre, metres.
-    pub range_m: f64,
-    /// Standard deviation of measured positions along each axis, metres. Default: 0.
-    #[serde(default)]
-    pub noise_m: f64,
-    /// Whether bodies, obstacles and closed cells occlude robots behind them. Default: true.
-    #[serde(default = "yes")]
-    pub occlusion: bool,
-    /// Whether a detection contains the robot's id. Default: false.
-    #[serde(default)]
-    pub names: bool,
-    /// Ticks between two detections of a robot. Default: 1.
-    #[serde(default = "one")]
-    pub every_ticks: u32,
-    /// Delay of a detection, ticks. Default: 0.
-    #[serde(default)]
-    pub delay_ticks: u32,
-    /// Whether robots send beacons; an operator's orders reach them in either case. Default: true.
-    #[serde(default = "yes")]
-    pub beacons: bool,
-    /// Standard deviation of the other robots' accelerations in the tracking filter, m/s^2.
-    /// Default: their limit, at most four times the highest speed per second.
-    pub acceleration_mps2: Option<f64>,
-    /// Gate of the assignment to a track, standard deviations. Default: 4.
-    #[serde(default = "four")]
-    pub gate: f64,
-    /// Standard deviations of the position that are added to a detected robot's radius. Default: 2.
-    #[serde(default = "two")]
-    pub margin: f64,
-    /// Time after which a robot without beacons and detections is dropped, seconds. Default: three
-    /// detection intervals plus the delay, at least four ticks.
-    pub forget_s: Option<f64>,
+table! {
+    /// `[plane.robots]`: exactly one of these.
+    pub struct PlaneRobots {
+        /// Individual robots.
+        pub list: Option<Vec<PlaneRobotEntry>>;
+        /// Largest random offset of a listed start along each axis, metres. Default: 0.
+        pub noise_m: f64 = 0.0, 0.0..=1e6, "metres";
+        /// Robots evenly spaced on a circle, with goals on the opposite side.
+        pub circle: Option<CircleEntry>;
+        /// Robots at random places with the same goals.
+        pub cloud: Option<CloudEntry>;
+        /// Robots at random places with individual goals.
+        pub scattered: Option<ScatteredDiscs>;
+        /// A formation, in cells of the terrain; only in a group with guidance `"formation"`.
+        pub formation: Option<FormationEntry>;
+    }
 }
 
-const fn one() -> u32 {
-    1
+table! {
+    /// One robot of `plane.robots.list`.
+    pub struct PlaneRobotEntry {
+        /// Start: x, y, z in metres.
+        pub start_m: Place;
+        /// Goal. Default: none; the robot stays where its law leaves it.
+        pub goal_m: Option<Place>;
+        /// Waypoints on the way to the goal, at most three.
+        pub via_m: Vec<Place> = Vec::new();
+        /// Initial velocity, m/s. Default: at rest.
+        pub velocity_mps: Place = Default::default();
+        /// Radius of the body, metres. Default: that of its group.
+        pub radius_m: Option<f64>, 0.001..=65.0, "metres";
+        /// Highest speed on easy land, m/s. Default: that of its group.
+        pub max_speed_mps: Option<f64>, 0.001..=32.0, "m/s";
+    }
 }
 
-const fn two() -> f64 {
-    2.0
+table! {
+    /// `[[plane.group]]`: robots that differ from those of `[plane]`.
+    pub struct GroupTable {
+        part body: BodyTable;
+        /// The robots of the group.
+        pub robots: PlaneRobots;
+        /// Flock number; 0 is the flock of the robots of `[plane]`. If there are formations, at
+        /// least the number of places of the largest. Default: a flock of its own.
+        pub flock: Option<u8>;
+    }
 }
 
-const fn four() -> f64 {
-    4.0
-}
-
-/// `[plane.robots]`: exactly one of these.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlaneRobots {
-    /// Individual robots.
-    pub list: Option<Vec<PlaneRobotEntry>>,
-    /// Largest random offset of a listed start along each axis, metres. Default: 0.
-    #[serde(default)]
-    pub noise_m: f64,
-    /// Robots evenly spaced on a circle, with goals on the opposite side.
-    pub circle: Option<CircleEntry>,
-    /// Robots at random places with the same goals.
-    pub cloud: Option<CloudEntry>,
-    /// Robots at random places with individual goals.
-    pub scattered: Option<ScatteredDiscs>,
-    /// A formation, in cells of the terrain; only in a group with guidance `"formation"`.
-    pub formation: Option<FormationEntry>,
-}
-
-/// One robot of `plane.robots.list`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PlaneRobotEntry {
-    /// Start: x, y, z in metres.
-    pub start_m: Place,
-    /// Goal. Default: none; the robot stays where its law leaves it.
-    pub goal_m: Option<Place>,
-    /// Waypoints on the way to the goal, at most three.
-    #[serde(default)]
-    pub via_m: Vec<Place>,
-    /// Initial velocity, m/s. Default: at rest.
-    #[serde(default)]
-    pub velocity_mps: Place,
-    /// Radius of the body, metres. Default: that of its group.
-    pub radius_m: Option<f64>,
-    /// Highest speed on easy land, m/s. Default: that of its group.
-    pub max_speed_mps: Option<f64>,
-}
-
-/// `[[plane.group]]`: robots that differ from `[plane]`, which gives the defaults. A group with
-/// another law or safety layer has its own tables for them.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GroupTable {
-    /// The robots of the group.
-    pub robots: PlaneRobots,
-    /// Radius of each body, metres.
-    pub radius_m: Option<f64>,
-    /// Highest speed on easy land, m/s.
-    pub max_speed_mps: Option<f64>,
-    /// Highest acceleration, m/s^2.
-    pub max_acceleration_mps2: Option<f64>,
-    /// Time constant with which the velocity follows a command, seconds.
-    pub lag_s: Option<f64>,
-    /// Preferred speed, m/s.
-    pub cruise_mps: Option<f64>,
-    /// Distance at which a goal counts as reached, metres.
-    pub tolerance_m: Option<f64>,
-    /// Range of obstacle detection, metres.
-    pub sight_m: Option<f64>,
-    /// Guidance law; laws that move from cell to cell or in formation need terrain.
-    pub guidance: Option<GuidanceKind>,
-    /// Flock number; 0 is the flock of the robots of `[plane]`. If there are formations, at least
-    /// the number of places of the largest. Default: a flock of its own.
-    pub flock: Option<u8>,
-    /// Safety layer.
-    pub safety: Option<SafetyKind>,
-    /// Parameters of ORCA.
-    pub orca: Option<OrcaTable>,
-    /// Parameters of push-out.
-    pub push_out: Option<PushOutTable>,
-    /// Parameters of the alpha flock.
-    pub lattice: Option<LatticeTable>,
-    /// Parameters of the goal flock.
-    pub goal_flock: Option<GoalFlockTable>,
-    /// Parameters of boids.
-    pub boids: Option<BoidsTable>,
-}
-
-/// `[[plane.intruder]]`: a foreign body that does not give way.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct IntruderEntry {
-    /// Start, metres.
-    pub start_m: Place,
-    /// Constant velocity, m/s.
-    pub velocity_mps: Place,
-    /// Radius of the body, metres.
-    pub radius_m: f64,
-    /// Whether it sends beacons; if not, robots detect its place but not its speed. Default: true.
-    #[serde(default = "yes")]
-    pub heard: bool,
-}
-
-const fn yes() -> bool {
-    true
+table! {
+    /// `[[plane.intruder]]`: a foreign body that does not give way.
+    #[derive(Copy)]
+    pub struct IntruderEntry {
+        /// Start, metres.
+        pub start_m: Place;
+        /// Constant velocity, m/s.
+        pub velocity_mps: Place;
+        /// Radius of the body, metres.
+        pub radius_m: f64, 0.001..=65.0, "metres";
+        /// Whether it sends beacons; if not, robots detect its place but not its speed. Default:
+        /// true.
+        pub heard: bool = true;
+    }
 }
 
 /// `[x, y]` or `[x, y, z]`.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(from = "PlaceEntry")]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Place(pub [f64; 3]);
 
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected [x, y] or [x, y, z]")]
-enum PlaceEntry {
-    Flat([f64; 2]),
-    Full([f64; 3]),
-}
-
-impl From<PlaceEntry> for Place {
-    fn from(entry: PlaceEntry) -> Self {
-        match entry {
-            PlaceEntry::Flat([x, y]) => Self([x, y, 0.0]),
-            PlaceEntry::Full(place) => Self(place),
-        }
+table! {
+    /// `plane.robots.circle`.
+    #[derive(Copy)]
+    pub struct CircleEntry {
+        /// Number of robots.
+        pub count: u32, 1.0..=MAX_ROBOTS, "robots";
+        /// Radius of the circle around the origin, metres.
+        pub radius_m: f64, 0.001..=1e6, "metres";
+        /// Largest random offset of a start along each axis, metres. Default: 0, the exact circle.
+        pub noise_m: f64 = 0.0, 0.0..=1e6, "metres";
     }
 }
 
-/// `plane.robots.circle`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CircleEntry {
-    /// Number of robots.
-    pub count: u32,
-    /// Radius of the circle around the origin, metres.
-    pub radius_m: f64,
-    /// Largest random offset of a start along each axis, metres. Default: 0, the exact circle.
-    #[serde(default)]
-    pub noise_m: f64,
-}
-
-/// `plane.robots.cloud`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CloudEntry {
-    /// Number of robots.
-    pub count: u32,
-    /// Corner of the box of uniform random starts, metres; overlapping starts are redrawn.
-    pub from_m: Place,
-    /// Opposite corner.
-    pub to_m: Place,
-    /// Corner of the box of uniform random initial velocities, m/s. Default: at rest.
-    #[serde(default)]
-    pub velocity_from_mps: Place,
-    /// Opposite corner.
-    #[serde(default)]
-    pub velocity_to_mps: Place,
-    /// Goals of all robots.
-    #[serde(default)]
-    pub goals_m: Vec<Place>,
-    /// Velocity of the goals, m/s. Default: at rest.
-    #[serde(default)]
-    pub goal_velocity_mps: Place,
-}
-
-/// `plane.robots.scattered`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ScatteredDiscs {
-    /// Number of robots.
-    pub count: u32,
-    /// Corner of the box of uniform starts and goals, metres; those too close are redrawn.
-    pub from_m: Place,
-    /// Opposite corner.
-    pub to_m: Place,
-    /// Farthest distance of a goal from its start along each axis, metres. Default: the whole box.
-    #[serde(default = "infinite")]
-    pub travel_m: f64,
-    /// Smallest distance of starts and of goals, metres, two radii or more. Default: three.
-    pub spacing_m: Option<f64>,
-}
-
-/// `[[plane.wall]]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct WallEntry {
-    /// Two or more points, each joined to the next.
-    pub points_m: Vec<[f64; 2]>,
-    /// Whether the last point is joined to the first: a polygon. Default: false.
-    #[serde(default)]
-    pub closed: bool,
-    /// Width of a door in the middle of a wall of two points, metres. Default: no door.
-    pub door_m: Option<f64>,
-}
-
-/// `[[plane.ball]]`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BallEntry {
-    /// Centre, metres.
-    pub center_m: Place,
-    /// Radius, metres.
-    pub radius_m: f64,
-}
-
-/// `[[plane.balls]]`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BallsEntry {
-    /// Number of balls.
-    pub count: u32,
-    /// Radius of each, metres.
-    pub radius_m: f64,
-    /// Corner of the box of uniform random centres, metres.
-    pub from_m: Place,
-    /// Opposite corner.
-    pub to_m: Place,
-    /// Smallest distance between two surfaces, metres. Default: 0.
-    #[serde(default)]
-    pub gap_m: f64,
-}
-
-/// `[[plane.half_space]]`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct HalfSpaceEntry {
-    /// A point on its border, metres.
-    pub point_m: Place,
-    /// A vector out of it, of any length.
-    pub normal: Place,
-}
-
-/// `[[plane.order]]`: a new goal from an operator.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OrderEntry {
-    /// Time, seconds after the start.
-    pub at_s: f64,
-    /// Index of the goal, from 0. Default: 0.
-    #[serde(default)]
-    pub goal: u8,
-    /// Position of the goal, metres.
-    pub place_m: Place,
-    /// Velocity of the goal, m/s. Default: at rest.
-    #[serde(default)]
-    pub velocity_mps: Place,
-}
-
-/// `[plane.orca]`. All fields are optional; the defaults are the controller's.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct OrcaTable {
-    /// Time ahead in which robots must not meet, seconds; at least twice the braking time, to which
-    /// the default grows.
-    pub horizon_s: Option<f64>,
-    /// Time ahead in which a robot must not meet an obstacle, seconds.
-    pub wall_horizon_s: Option<f64>,
-    /// Own share of a correction.
-    pub share: Option<f64>,
-    /// Distance kept in addition to the radii, metres.
-    pub margin_m: Option<f64>,
-    /// Growth rate of the ball around a silent robot, m/s. Default: the highest speed.
-    #[serde(alias = "doubt_mps")]
-    pub inflation_mps: Option<f64>,
-    /// Largest growth of the ball around a lost robot, metres. Default: the radius.
-    #[serde(alias = "doubt_m")]
-    pub inflation_m: Option<f64>,
-    /// In space: ratio of the vertical to the horizontal separation. Default: 1.
-    pub downwash: Option<f64>,
-    /// Silence after which a lost robot counts as standing even if most are lost, seconds.
-    pub stands_after_s: Option<f64>,
-    /// How long a robot stands and listens after its start, seconds. Default: two beacon periods
-    /// and the delay of the radio.
-    pub listen_s: Option<f64>,
-    /// Whether a robot that has not heard another one stands. Default: false.
-    pub expects_others: Option<bool>,
-    /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
-    pub alone_mps: Option<f64>,
-}
-
-impl OrcaTable {
-    /// Whether no field is set.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, .. } = self;
-        let Self { downwash, stands_after_s, listen_s, expects_others, alone_mps, .. } = self;
-        let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m];
-        let fields = fields.into_iter().chain([downwash, stands_after_s, listen_s, alone_mps]);
-        expects_others.is_none() && fields.into_iter().all(Option::is_none)
+table! {
+    /// `plane.robots.cloud`.
+    pub struct CloudEntry {
+        /// Number of robots.
+        pub count: u32, 1.0..=MAX_ROBOTS, "robots";
+        /// Corner of the box of uniform random starts, metres; overlapping starts are redrawn.
+        pub from_m: Place;
+        /// Opposite corner.
+        pub to_m: Place;
+        /// Corner of the box of uniform random initial velocities, m/s. Default: at rest.
+        pub velocity_from_mps: Place = Default::default();
+        /// Opposite corner.
+        pub velocity_to_mps: Place = Default::default();
+        /// Goals of all robots.
+        pub goals_m: Vec<Place> = Vec::new();
+        /// Velocity of the goals, m/s. Default: at rest.
+        pub goal_velocity_mps: Place = Default::default();
     }
 }
 
-/// `[plane.push_out]` (PAV).
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PushOutTable {
-    /// Smallest distance of a centre from others and from obstacles (R_MinDist), metres.
-    pub min_distance_m: f64,
-    /// `"radial"` (model 1, along the radius; default) or `"tangential"` (2, along the border).
-    #[serde(default)]
-    pub model: Model,
-    /// Whether only the nearest robot in the way is avoided. Default: false, all are.
-    #[serde(default)]
-    pub single: bool,
+table! {
+    /// `plane.robots.scattered`.
+    #[derive(Copy)]
+    pub struct ScatteredDiscs {
+        /// Number of robots.
+        pub count: u32, 1.0..=MAX_ROBOTS, "robots";
+        /// Corner of the box of uniform starts and goals, metres; those too close are redrawn.
+        pub from_m: Place;
+        /// Opposite corner.
+        pub to_m: Place;
+        /// Farthest distance of a goal from its start along each axis, metres. Default: the whole
+        /// box.
+        pub travel_m: f64 = f64::INFINITY, 0.001..=f64::INFINITY, "metres";
+        /// Smallest distance of starts and of goals, metres, two radii or more. Default: three.
+        pub spacing_m: Option<f64>;
+    }
 }
 
-/// `[plane.lattice]` (OLF).
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LatticeTable {
-    /// Distance of neighbours (d), metres.
-    pub spacing_m: f64,
-    /// Algorithm 1: other robots only; 2: also the goal; 3: also obstacles. Default: 3.
-    pub algorithm: Option<u8>,
-    /// Gain on positions of robots relative to each other (c1 of the alpha-agents), 1/s^2.
-    pub c_alpha: Option<f64>,
-    /// Gain on positions relative to obstacles (c1 of the beta-agents), 1/s^2.
-    pub c_beta: Option<f64>,
-    /// Gain on positions relative to the goal (c1 of the gamma-agent), 1/s^2.
-    pub c_gamma: Option<f64>,
-    /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays. Default: true.
-    pub goal_moves: Option<bool>,
-    /// Distance behind a stationary goal over which its velocity fades, metres. Default: never.
-    pub goal_rest_m: Option<f64>,
-    /// Whether robots in algorithm 3 do not push neighbours that are nearer to the goal, so that
-    /// they pass gaps one by one. Default: false.
-    pub takes_turns: Option<bool>,
-    /// Distance from obstacles over spacing (d' / d). Default: 0.6.
-    pub obstacle_ratio: Option<f64>,
+table! {
+    /// `[[plane.wall]]`.
+    pub struct WallEntry {
+        /// Two or more points, each joined to the next.
+        pub points_m: Vec<[f64; 2]>;
+        /// Whether the last point is joined to the first: a polygon. Default: false.
+        pub closed: bool = false;
+        /// Width of a door in the middle of a wall of two points, metres. Default: no door.
+        pub door_m: Option<f64>;
+    }
 }
 
-/// `[plane.goal_flock]` (PAV).
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GoalFlockTable {
-    /// Smallest distance of two robots' centres (R_MinDist), metres.
-    pub min_distance_m: f64,
-    /// Range of neighbours (R_nbh), metres. Default: four times `min_distance_m`.
-    pub neighborhood_m: Option<f64>,
-    /// Weight of the pull towards the goal.
-    pub k1: Option<f64>,
-    /// Weight of the pull towards the neighbours' centre.
-    pub k2: Option<f64>,
-    /// Weight of the push from neighbours that are too near.
-    pub k3: Option<f64>,
-    /// Distance at which a goal counts as reached, metres. Default: `neighborhood_m`.
-    pub arrival_m: Option<f64>,
+table! {
+    /// `[[plane.ball]]`.
+    #[derive(Copy)]
+    pub struct BallEntry {
+        /// Centre, metres.
+        pub center_m: Place;
+        /// Radius, metres.
+        pub radius_m: f64, 0.001..=1e6, "metres";
+    }
 }
 
-/// `[plane.boids]` (STA).
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BoidsTable {
-    /// Distance below which a boid turns away, metres.
-    pub crowded_m: f64,
-    /// Range of neighbours, metres.
-    pub closest_m: f64,
-    /// Largest turn per tick towards the others, radians. Default: 0.05.
-    pub max_turn: Option<f64>,
-    /// Largest turn per tick away from a boid that is too near, radians. Default: 0.02.
-    pub max_turn_away: Option<f64>,
+table! {
+    /// `[[plane.balls]]`.
+    #[derive(Copy)]
+    pub struct BallsEntry {
+        /// Number of balls.
+        pub count: u32, 1.0..=1e6, "balls";
+        /// Radius of each, metres.
+        pub radius_m: f64, 0.001..=1e6, "metres";
+        /// Corner of the box of uniform random centres, metres.
+        pub from_m: Place;
+        /// Opposite corner.
+        pub to_m: Place;
+        /// Smallest distance between two surfaces, metres. Default: 0.
+        pub gap_m: f64 = 0.0, 0.0..=1e6, "metres";
+    }
 }
+
+table! {
+    /// `[[plane.half_space]]`.
+    #[derive(Copy)]
+    pub struct HalfSpaceEntry {
+        /// A point on its border, metres.
+        pub point_m: Place;
+        /// A vector out of it, of any length.
+        pub normal: Place;
+    }
+}
+
+table! {
+    /// `[[plane.order]]`: a new goal from an operator.
+    #[derive(Copy)]
+    pub struct OrderEntry {
+        /// Time, seconds after the start.
+        pub at_s: f64, 0.0..=1e9, "seconds";
+        /// Index of the goal, from 0. Default: 0.
+        pub goal: u8 = 0;
+        /// Position of the goal, metres.
+        pub place_m: Place;
+        /// Velocity of the goal, m/s. Default: at rest.
+        pub velocity_mps: Place = Default::default();
+    }
+}
+
+table! {
+    /// `[plane.orca]`. All fields are optional; the defaults are the controller's.
+    #[derive(Copy)]
+    pub struct OrcaTable {
+        /// Time ahead in which robots must not meet, seconds; at least twice the braking time, to
+        /// which the default grows.
+        pub horizon_s: Option<f64>;
+        /// Time ahead in which a robot must not meet an obstacle, seconds.
+        pub wall_horizon_s: Option<f64>;
+        /// Own share of a correction.
+        pub share: Option<f64>;
+        /// Distance kept in addition to the radii, metres.
+        pub margin_m: Option<f64>;
+        /// Growth rate of the ball around a silent robot, m/s. Default: the highest speed.
+        pub inflation_mps: Option<f64>, 0.0..=1000.0, "m/s";
+        /// Largest growth of the ball around a lost robot, metres. Default: the radius.
+        pub inflation_m: Option<f64>, 0.0..=1000.0, "metres";
+        /// In space: ratio of the vertical to the horizontal separation. Default: 1.
+        pub downwash: Option<f64>, 1.0..=10.0, "";
+        /// Silence after which a lost robot counts as standing even if most are lost, seconds.
+        pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
+        /// How long a robot stands and listens after its start, seconds. Default: two beacon
+        /// periods and the delay of the radio.
+        pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
+        /// Whether a robot that has not heard another one stands. Default: false.
+        pub expects_others: Option<bool>;
+        /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
+        pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
+    }
+}
+
+table! {
+    /// `[plane.push_out]` (PAV).
+    #[derive(Copy)]
+    pub struct PushOutTable {
+        /// Smallest distance of a centre from others and from obstacles (R_MinDist), metres.
+        pub min_distance_m: f64;
+        /// `"radial"` (model 1, along the radius; default) or `"tangential"` (2, along the border).
+        pub model: Model = Default::default();
+        /// Whether only the nearest robot in the way is avoided. Default: false, all are.
+        pub single: bool = false;
+    }
+}
+
+table! {
+    /// `[plane.lattice]` (OLF).
+    #[derive(Copy)]
+    pub struct LatticeTable {
+        /// Distance of neighbours (d), metres.
+        pub spacing_m: f64;
+        /// Algorithm 1: other robots only; 2: also the goal; 3: also obstacles. Default: 3.
+        pub algorithm: Option<u8>;
+        /// Gain on positions of robots relative to each other (c1 of the alpha-agents), 1/s^2.
+        pub c_alpha: Option<f64>;
+        /// Gain on positions relative to obstacles (c1 of the beta-agents), 1/s^2.
+        pub c_beta: Option<f64>;
+        /// Gain on positions relative to the goal (c1 of the gamma-agent), 1/s^2.
+        pub c_gamma: Option<f64>;
+        /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays. Default:
+        /// true.
+        pub goal_moves: Option<bool>;
+        /// Distance behind a stationary goal over which its velocity fades, metres. Default: never.
+        pub goal_rest_m: Option<f64>;
+        /// Whether robots in algorithm 3 do not push neighbours that are nearer to the goal, so
+        /// that they pass gaps one by one. Default: false.
+        pub takes_turns: Option<bool>;
+        /// Distance from obstacles over spacing (d' / d). Default: 0.6.
+        pub obstacle_ratio: Option<f64>;
+    }
+}
+
+table! {
+    /// `[plane.goal_flock]` (PAV).
+    #[derive(Copy)]
+    pub struct GoalFlockTable {
+        /// Smallest distance of two robots' centres (R_MinDist), metres.
+        pub min_distance_m: f64;
+        /// Range of neighbours (R_nbh), metres. Default: four times `min_distance_m`.
+        pub neighborhood_m: Option<f64>;
+        /// Weight of the pull towards the goal.
+        pub k1: Option<f64>;
+        /// Weight of the pull towards the neighbours' centre.
+        pub k2: Option<f64>;
+        /// Weight of the push from neighbours that are too near.
+        pub k3: Option<f64>;
+        /// Distance at which a goal counts as reached, metres. Default: `neighborhood_m`.
+        pub arrival_m: Option<f64>;
+    }
+}
+
+table! {
+    /// `[plane.boids]` (STA).
+    #[derive(Copy)]
+    pub struct BoidsTable {
+        /// Distance below which a boid turns away, metres.
+        pub crowded_m: f64;
+        /// Range of neighbours, metres.
+        pub closest_m: f64;
+        /// Largest turn per tick towards the others, radians. Default: 0.05.
+        pub max_turn: Option<f64>;
+        /// Largest turn per tick away from a boid that is too near, radians. Default: 0.02.
+        pub max_turn_away: Option<f64>;
+    }
+}
+
+defaults!(OrcaTable);
+names!(GuidanceKind, SafetyKind, Model);

@@ -2,13 +2,11 @@
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
+use super::PlaneSetup;
 use super::table::PlaneTable;
-use super::{PlaneSetup, within};
 use crate::nearby::Space;
 use staya_controller::agent::{GuidanceKind, GuidanceSetup};
 
-/// Largest side, metres: up to here, whole millimetres are also exact in `f32`.
-const LARGEST_M: f64 = 16_000.0;
 /// Height of the space, metres. A minimal height keeps the spatial index to one layer.
 const HIGH_M: f64 = 0.001;
 
@@ -28,7 +26,6 @@ pub(super) fn check(
     let refuse = |field: &str, what: String, remedy: &str| Err(source.error(field, what, remedy));
     for (axis, side_m) in sides.into_iter().enumerate() {
         let field = format!("plane.torus_m[{axis}]");
-        within(source, &field, side_m, 0.01, LARGEST_M, "metres")?;
         let side_mm = side_m * 1000.0;
         if (side_mm - libm::round(side_mm)).abs() > 1e-6 {
             return refuse(

@@ -20,29 +20,29 @@ fn lists_of_another_length_and_lists_for_tables_are_refused() {
     for (text, expected) in [
         (
             with_robots("list = [{ start = [0, 0, 77], goal = [3, 2] }]"),
-            "s.toml:6: robots.list[0].start: the list has 3 values, 2 are needed; ",
+            "s.toml:6:19: robots.list[0].start: the list has 3 values, 2 are needed; ",
         ),
         (
             with_robots("list = [{ start = [0], goal = [3, 2] }]"),
-            "s.toml:6: robots.list[0].start: the list has 1 values, 2 are needed; ",
+            "s.toml:6:19: robots.list[0].start: the list has 1 values, 2 are needed; ",
         ),
-        (with_robots("list = [[1, [0, 0], [3, 2]]]"), "s.toml:6: robots.list[0]: a list is not a table; "),
-        (cells("[radio]\nburst = [0.5, 2000, 1]\n"), "s.toml:8: radio.burst: a list is not a table; "),
-        (order("[\"goal\", 1, [1, 1, 0]]"), "s.toml:9: intervention[0].do: a list is not a table; "),
-        (order("\"goal\""), "s.toml:9: intervention[0].do: \"goal\" is not a table; "),
+        (with_robots("list = [[1, [0, 0], [3, 2]]]"), "s.toml:6:9: robots.list[0]: a list is not a table; "),
+        (cells("[radio]\nburst = [0.5, 2000, 1]\n"), "s.toml:8:9: radio.burst: a list is not a table; "),
+        (order("[\"goal\", 1, [1, 1, 0]]"), "s.toml:9:6: intervention[0].do: a list is not a table; "),
+        (order("\"goal\""), "s.toml:9:6: intervention[0].do: \"goal\" is not a table; "),
         (
             order("{ kind = \"goal\", place_m = [1, 1, 0, 4] }"),
-            "s.toml:9: intervention[0].do: the list has 4 values, 3 are needed; ",
+            "s.toml:9:33: intervention[0].do.place_m: the list has 4 values, 3 are needed; ",
         ),
         (
             order("{ kind = \"goal\", place_m = [1, 1] }"),
-            "s.toml:9: intervention[0].do: the list has 2 values, 3 are needed; ",
+            "s.toml:9:33: intervention[0].do.place_m: the list has 2 values, 3 are needed; ",
         ),
         (
             order("{ kind = \"solid\", solid = [\"circle\", [1, 2], 0.5] }"),
-            "s.toml:9: intervention[0].do: a list is not a table; ",
+            "s.toml:9:32: intervention[0].do.solid: a list is not a table; ",
         ),
-        (order("{ kind = 3 }"), "s.toml:9: intervention[0].do.kind: 3 is not a name in quotes; "),
+        (order("{ kind = 3 }"), "s.toml:9:15: intervention[0].do.kind: 3 is not a name in quotes; "),
     ] {
         let refusal = refusal(&text);
         assert!(refusal.starts_with(expected), "expected {expected}\n     got {refusal}");
@@ -55,15 +55,15 @@ fn events_after_the_end_are_refused() {
     let master = "[authentication]\nmaster = \"passphrase: a\"\n[[authentication.roll]]\nat_s = 6\n";
     let robots = "robots = { list = [{ start_m = [0, 0], goal_m = [1, 1] }] }\n";
     for (text, field) in [
-        (cells("[[fault]]\nrobot = 1\nat_s = 6\n"), "9: fault[0].at_s"),
-        (cells("[[intervention]]\nat_s = 6\ndo = { kind = \"down\", robot = 1 }\n"), "8: intervention[0].at_s"),
+        (cells("[[fault]]\nrobot = 1\nat_s = 6\n"), "9:8: fault[0].at_s"),
+        (cells("[[intervention]]\nat_s = 6\ndo = { kind = \"down\", robot = 1 }\n"), "8:8: intervention[0].at_s"),
         (
             cells("[[attack]]\nkind = \"unsigned\"\nplace_m = [0, 0]\nlure_m = [1, 1]\nfrom_s = 6\n"),
-            "11: attack[0].from_s",
+            "11:10: attack[0].from_s",
         ),
-        (cells("[[terrain.change]]\nat_s = 6\nclass = 0\ncells = [[1, 0]]\n"), "8: terrain.change[0].at_s"),
-        (cells(master), "10: authentication.roll[0].at_s"),
-        (metres(&format!("{robots}[[plane.order]]\nat_s = 6\nplace_m = [1, 1]\n")), "8: plane.order[0].at_s"),
+        (cells("[[terrain.change]]\nat_s = 6\nclass = 0\ncells = [[1, 0]]\n"), "8:8: terrain.change[0].at_s"),
+        (cells(master), "10:8: authentication.roll[0].at_s"),
+        (metres(&format!("{robots}[[plane.order]]\nat_s = 6\nplace_m = [1, 1]\n")), "8:8: plane.order[0].at_s"),
     ] {
         let refusal = refusal(&text);
         let expected = format!("s.toml:{field}: 6 s {late}");
@@ -95,7 +95,7 @@ fn attacks_end_after_they_begin() {
     let attack =
         |times: &str| cells(&format!("[[attack]]\nkind = \"unsigned\"\nplace_m = [0, 0]\nlure_m = [1, 1]\n{times}\n"));
     let expected =
-        "s.toml:12: attack[0].to_s: the attack is over before its first tick; give a tick or more after from_s";
+        "s.toml:12:8: attack[0].to_s: the attack is over before its first tick; give a tick or more after from_s";
     for times in ["from_s = 3\nto_s = 1", "from_s = 3\nto_s = 3", "from_s = 2.5\nto_s = 2.7"] {
         let refusal = refusal(&attack(times));
         assert!(refusal.starts_with(expected), "{refusal}");
@@ -109,7 +109,7 @@ fn load_options_are_refused_without_a_file() {
     let uniform = "uniform = { width = 4, height = 3 }\n";
     let text = cells("").replace("file = \"m.map\"\n", &format!("{uniform}load = {{ swamp = 3 }}\n"));
     let refusal = refusal(&text);
-    let expected = "s.toml:5: terrain.load: only map files are converted; give terrain.file, or leave it out";
+    let expected = "s.toml:5:8: terrain.load: only map files are converted; give terrain.file, or leave it out";
     assert!(refusal.starts_with(expected), "{refusal}");
     parse(&format!("{text}[scouting]\nmap = \"m.map\"\n")).expect("the map of [scouting] is converted");
 }
@@ -123,15 +123,15 @@ fn robots_do_not_start_faster_than_their_highest_speed() {
     for (text, expected) in [
         (
             list("velocity_mps = [30, 0]"),
-            "s.toml:6: plane.robots.list[0].velocity_mps: 30 m/s exceeds the highest speed; give at most 1 m/s in all",
+            "s.toml:6:55: plane.robots.list[0].velocity_mps: 30 m/s exceeds the highest speed; give at most 1 m/s in all",
         ),
-        (list("velocity_mps = [0.8, 0.8]"), "s.toml:6: plane.robots.list[0].velocity_mps: 1.13"),
+        (list("velocity_mps = [0.8, 0.8]"), "s.toml:6:55: plane.robots.list[0].velocity_mps: 1.13"),
         (
             list("velocity_mps = [0.6, 0], max_speed_mps = 0.5"),
-            "s.toml:6: plane.robots.list[0].velocity_mps: 0.6 m/s exceeds the highest speed; give at most 0.5 m/s",
+            "s.toml:6:55: plane.robots.list[0].velocity_mps: 0.6 m/s exceeds the highest speed; give at most 0.5 m/s",
         ),
-        (cloud("velocity_from_mps = [-2, 0]"), "s.toml:10: plane.robots.cloud.velocity_from_mps: 2 m/s exceeds"),
-        (cloud("velocity_to_mps = [1, 1]"), "s.toml:10: plane.robots.cloud.velocity_to_mps: 1.41"),
+        (cloud("velocity_from_mps = [-2, 0]"), "s.toml:10:21: plane.robots.cloud.velocity_from_mps: 2 m/s exceeds"),
+        (cloud("velocity_to_mps = [1, 1]"), "s.toml:10:19: plane.robots.cloud.velocity_to_mps: 1.41"),
     ] {
         let refusal = refusal(&text);
         assert!(refusal.starts_with(expected), "expected {expected}\n     got {refusal}");

@@ -9,30 +9,28 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
 
+/// The paths of all fields.
+fn paths(lines: Vec<Line>, table: &str, all: &mut Vec<(String, Line)>) {
+    for mut line in lines {
+        let path = format!("{table}{}", line.name);
+        paths(std::mem::take(&mut line.inner), &format!("{path}."), all);
+        all.push((path, line));
+    }
+}
+
 #[test]
 fn every_field_is_in_the_table_of_the_readme() {
-    let readme = include_str!("../../../../../scenarios/README.md");
-    let sources = [
-        include_str!("../schema.rs"),
-        include_str!("../params.rs"),
-        include_str!("../plane/table.rs"),
-        include_str!("../robots/table.rs"),
-        include_str!("../../radio/params.rs"),
-    ];
-    let mut fields = 0;
-    for source in sources {
-        let declared = source.lines().filter_map(|line| line.strip_prefix("    pub "));
-        for (name, _) in declared.filter_map(|field| field.split_once(": ")) {
-            let in_code = format!("`{name}`");
-            let is_table = format!("`[{name}]`");
-            let is_list = format!("`[[{name}]]`");
-            let in_plane = [format!("`[plane.{name}]`"), format!("`[[plane.{name}]]`")];
-            let said = [in_code, is_table, is_list].iter().chain(&in_plane).any(|word| readme.contains(word));
-            assert!(said, "{name} is missing");
-            fields += 1;
-        }
+    // The page of maps lists the fields of `terrain.load`.
+    let pages = [include_str!("../../../../../scenarios/README.md"), include_str!("../../../../../maps/README.md")];
+    let mut fields = Vec::new();
+    paths(ScenarioFile::lines(), "", &mut fields);
+    for (path, line) in &fields {
+        let name = line.name;
+        let words = [format!("`{name}`"), format!("`[{path}]`"), format!("`[[{path}]]`")];
+        assert!(words.iter().any(|word| pages.iter().any(|page| page.contains(word))), "{path} is missing");
+        assert!(!line.doc.is_empty(), "{path} has no documentation");
     }
-    assert!(fields > 60, "only {fields} were found");
+    assert!(fields.len() > 200, "only {} were found", fields.len());
 }
 
 #[test]
@@ -68,6 +66,19 @@ fn the_ranges_in_the_readme_are_those_of_the_parameters() {
         let parameter = parameters().find(|row| row.name == name).expect("a parameter");
         let [least, greatest] = parameter.range;
         assert!(row_of(field).contains(&format!("{least} to {greatest}")), "{field}");
+    }
+}
+
+#[test]
+fn the_range_of_bodies_is_that_of_the_parameter() {
+    let mut fields = Vec::new();
+    paths(ScenarioFile::lines(), "", &mut fields);
+    let parameter = parameters().find(|row| row.name == "radius_m").expect("a parameter");
+    for field in ["plane.radius_m", "plane.group.radius_m", "plane.intruder.radius_m"] {
+        let (_, line) = fields.iter().find(|(path, _)| path == field).unwrap_or_else(|| panic!("no {field}"));
+        let (range, unit) = line.range.as_ref().expect("a range");
+        assert_eq!([range.start(), range.end()].map(f64::to_string), parameter.range.map(|end| end.to_string()));
+        assert_eq!(*unit, "metres");
     }
 }
 

@@ -15,8 +15,7 @@ const ROUGH: u32 = 0x0054_0002;
 const ONE: u64 = 256;
 
 /// Decrease of impassability from the highest class l to 1 with distance d from an obstacle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hills {
     /// By one per cell: l - floor d.
     #[default]

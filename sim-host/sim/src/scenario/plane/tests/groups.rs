@@ -19,131 +19,134 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
             format!(
                 "{HEAD}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{{ start_m = [1, 1], goal_m = [9, 1] }}]\n"
             ),
-            "s.toml:7: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
+            "s.toml:7:12: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
         ),
         (
             by_route("{ start_m = [1, 1] }"),
-            "s.toml:11: plane.group[0].robots: robot 1 of the group goes from cell to cell and has no",
+            "s.toml:11:1: plane.group[0].robots: robot 1 of the group goes from cell to cell and has no",
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, 1] }, { start_m = [19, 1], goal_m = [9, 1] }"),
-            "s.toml:11: plane.group[0].robots: robot 2 of the group goes from cell to cell and starts in no free cell",
+            "s.toml:11:1: plane.group[0].robots: robot 2 of the group goes from cell to cell and starts in no free cell",
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, -0.1] }"),
-            "s.toml:11: plane.group[0].robots: robot 1 of the group goes from cell to cell and has its goal in no free",
+            "s.toml:11:1: plane.group[0].robots: robot 1 of the group goes from cell to cell and has its goal in no free",
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, 1] }").replace("\"route\"", "\"formation\""),
-            "s.toml:10: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
+            "s.toml:10:12: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
         ),
         (
             in_formation("start = [0, 0], goal = [0, 8]").replace("\"formation\"", "\"route\""),
-            "s.toml:10: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
+            "s.toml:10:12: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
         ),
         (
             in_formation("goal = [0, 8]"),
-            "s.toml:11: plane.group[0].robots.formation: it is not clear where they start; give start, of robot 1",
+            "s.toml:11:20: plane.group[0].robots.formation: it is not clear where they start; give start, of robot 1",
         ),
         (
             in_formation("start = [0, 0], goal = [99, 9]"),
-            "s.toml:11: plane.group[0].robots.formation.goal: the goal (99, 9) of robot 1 is not on the map",
+            "s.toml:11:86: plane.group[0].robots.formation.goal: the goal (99, 9) of robot 1 is not on the map",
         ),
         (
             in_formation("start = [0, 0], goal = [0, 8]").replace("guidance", "flock = 9\nguidance"),
-            "s.toml:10: plane.group[0].flock: robots in formation are in no flock; leave it out",
+            "s.toml:10:9: plane.group[0].flock: robots in formation are in no flock; leave it out",
         ),
         (
             format!(
                 "{}[[plane.group]]\nflock = 1\nrobots.list = [{{ start_m = [9, 9] }}]\n",
                 in_formation("start = [0, 0], goal = [0, 8]")
             ),
-            "s.toml:13: plane.group[1].flock: 1 is also the number of a place in a formation, and robots cannot tell these apart; give 2 or",
+            "s.toml:13:9: plane.group[1].flock: 1 is also the number of a place in a formation, and robots cannot tell these apart; give 2 or",
         ),
         (
             format!(
                 "{HEAD}{LAND}{PLANE}[plane.robots.formation]\nrows = 1\ncolumns = 2\nstart = [0, 0]\ngoal = [0, 8]\n"
             ),
-            "s.toml:9: plane.robots.formation: a formation stands in cells; give it as the top-level robots.formation, or",
+            "s.toml:9:1: plane.robots.formation: a formation stands in cells; give it as the top-level robots.formation, or",
         ),
-        (group("radius_m = -1"), "s.toml:9: plane.group[0].radius_m: -1 is out of range; give 0.001 to 65 metres"),
-        (group("max_speed_mps = 0.5\ncruise_mps = 0.6"), "s.toml:10: plane.group[0].cruise_mps: 0.6 is out of range"),
-        (group("colour = 1"), "s.toml:9: plane.group[0].colour: unknown field `colour`"),
-        (group("guidance = \"lattice\""), "s.toml:8: plane.group[0].lattice: this guidance needs distances"),
+        (group("radius_m = -1"), "s.toml:9:12: plane.group[0].radius_m: -1 is out of range; give 0.001 to 65 metres"),
+        (
+            group("max_speed_mps = 0.5\ncruise_mps = 0.6"),
+            "s.toml:10:14: plane.group[0].cruise_mps: 0.6 is out of range",
+        ),
+        (group("colour = 1"), "s.toml:9:1: plane.group[0].colour: unknown field `colour`"),
+        (group("guidance = \"lattice\""), "s.toml:8:1: plane.group[0].lattice: this guidance needs distances"),
         (
             group("guidance = \"route\""),
-            "s.toml:9: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
+            "s.toml:9:12: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
         ),
-        (group("orca = { share = 2 }"), "s.toml:9: plane.group[0].orca.share: 2 is out of range; give 0 to 1"),
+        (group("orca = { share = 2 }"), "s.toml:9:18: plane.group[0].orca.share: 2 is out of range; give 0 to 1"),
         (
             group("safety = \"none\"\norca = { share = 0.5 }"),
-            "s.toml:10: plane.group[0].orca: these robots have another safety layer; give plane.group[0].safety",
+            "s.toml:10:8: plane.group[0].orca: these robots have another safety layer; give plane.group[0].safety",
         ),
         (
             group("boids = { crowded_m = 1, closest_m = 2 }"),
-            "s.toml:9: plane.group[0].boids: these robots have another guidance; give plane.group[0].guidance",
+            "s.toml:9:9: plane.group[0].boids: these robots have another guidance; give plane.group[0].guidance",
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots = {{ }}\n"),
-            "s.toml:7: plane.group[0].robots: the robots are not defined exactly once; give exactly one of",
+            "s.toml:7:10: plane.group[0].robots: the robots are not defined exactly once; give exactly one of",
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots.list = [{{ start_m = [nan, 0] }}]\n"),
-            "s.toml:7: plane.group[0].robots.list[0].start_m: this is too far away",
+            "s.toml:7:28: plane.group[0].robots.list[0].start_m: this is too far away",
         ),
         (
             format!("{HEAD}{PLANE}{TWO}[[plane.group]]\nradius_m = 3\nrobots.list = [{{ start_m = [6.0, 0] }}]\n"),
-            "s.toml:6: plane.robots: robots 2 and 3 overlap at the start; put them 3.2 m apart",
+            "s.toml:6:1: plane.robots: robots 2 and 3 overlap at the start; put them 3.2 m apart",
         ),
         (
             robots("list = [{ start_m = [0, 0], radius_m = 66 }]"),
-            "s.toml:7: plane.robots.list[0].radius_m: 66 is out of range",
+            "s.toml:7:40: plane.robots.list[0].radius_m: 66 is out of range",
         ),
         (
             robots("list = [{ start_m = [0, 0], max_speed_mps = 0 }]"),
-            "s.toml:7: plane.robots.list[0].max_speed_mps: 0 is out of range",
+            "s.toml:7:45: plane.robots.list[0].max_speed_mps: 0 is out of range",
         ),
         (
             robots("list = [{ start_m = [0, 0], via_m = [[1, 0]] }]"),
-            "s.toml:7: plane.robots.list[0].via_m: a way needs an end; give goal_m too",
+            "s.toml:7:37: plane.robots.list[0].via_m: a way needs an end; give goal_m too",
         ),
         (
             robots("list = [{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0], [2, 0], [3, 0], [4, 0]] }]"),
-            "s.toml:7: plane.robots.list[0].via_m: 4 places on the way are too many; give at most 3",
+            "s.toml:7:54: plane.robots.list[0].via_m: 4 places on the way are too many; give at most 3",
         ),
         (
             robots("list = [{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0], [nan, 0]] }]"),
-            "s.toml:7: plane.robots.list[0].via_m[1]: this is too far away",
+            "s.toml:7:63: plane.robots.list[0].via_m[1]: this is too far away",
         ),
         (
             format!(
                 "{HEAD}{PLANE}guidance = \"lattice\"\nlattice = {{ spacing_m = 1 }}\n[plane.robots]\n\
                  list = [{{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0]] }}]\n"
             ),
-            "s.toml:9: plane.robots.list[0].via_m: robots with guidance \"lattice\" go by no places",
+            "s.toml:9:54: plane.robots.list[0].via_m: robots with guidance \"lattice\" go by no places",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [33, 0]\nradius_m = 1\n"),
-            "s.toml:10: plane.intruder[0].velocity_mps: this is too fast",
+            "s.toml:10:16: plane.intruder[0].velocity_mps: this is too fast",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, inf]\nvelocity_mps = [1, 0]\nradius_m = 1\n"),
-            "s.toml:9: plane.intruder[0].start_m: this is too far away",
+            "s.toml:9:11: plane.intruder[0].start_m: this is too far away",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [1, 0]\nradius_m = 0\n"),
-            "s.toml:11: plane.intruder[0].radius_m: 0 is out of range",
+            "s.toml:11:12: plane.intruder[0].radius_m: 0 is out of range",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [0, 1]\nvelocity_mps = [1, 0]\nradius_m = 1\n"),
-            "s.toml:6: plane.robots: robot 1 starts in an intruder; keep its start 0.2 m away",
+            "s.toml:6:1: plane.robots: robot 1 starts in an intruder; keep its start 0.2 m away",
         ),
         (
             after(
                 "[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [1, 0]\nradius_m = 1\n\
                  [authentication]\nkey = \"passphrase: open sesame now\"\n",
             ),
-            "s.toml:8: plane.intruder[0].heard: an intruder does not have the key, so robots reject its beacons; give heard = false",
+            "s.toml:8:1: plane.intruder[0].heard: an intruder does not have the key, so robots reject its beacons; give heard = false",
         ),
     ];
     refused(&cases);
