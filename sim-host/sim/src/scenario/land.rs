@@ -7,6 +7,7 @@ use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use crate::terrain::Terrain;
 use crate::terrain::change::{ChangeKind, LandChange};
+use crate::world::plane::contains;
 use staya_controller::grid::Cell;
 use std::num::NonZeroU32;
 
@@ -116,14 +117,6 @@ pub(super) fn changes(
 ) -> Result<Vec<LandChange>, ScenarioError> {
     let tables = file.terrain.iter().flat_map(|terrain| &terrain.change);
     tables.enumerate().map(|(index, table)| Entry { source, index, table }.change(file, land)).collect()
-}
-
-/// Even-odd test: a ray to the east crosses an odd number of the polygon's sides.
-pub(super) fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let before = corners.iter().cycle().skip(corners.len() - 1);
-    let sides = before.zip(corners).filter(|([_, from], [_, to])| (*from > y) != (*to > y));
-    let crossed = sides.filter(|([x0, y0], [x1, y1])| x < x0 + (x1 - x0) * (y - y0) / (y1 - y0));
-    crossed.count() % 2 == 1
 }
 
 #[cfg(test)]

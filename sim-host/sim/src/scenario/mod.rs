@@ -4,7 +4,6 @@
 
 mod authentication;
 mod check;
-pub use read::nearest;
 mod field;
 mod fingerprint;
 mod formation;
@@ -39,7 +38,7 @@ pub use plane::{
 };
 pub use plausibility::PlausibilityTable;
 pub use ranges::within;
-pub use read::{AnyTable, Field as Read, Fields, Line, Node, Table, Wrong, empty, plain, word};
+pub use read::{AnyTable, Field as Read, Fields, Line, Node, Table, Wrong, empty, nearest, plain, word};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,

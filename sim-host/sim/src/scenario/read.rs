@@ -1,7 +1,6 @@
 //! Reads the tables of a settings file without serde. [`table!`](crate::table!) defines a struct
 //! with reader, ranges, units, defaults and documentation. An error carries the place of the value.
 
-use super::plane::Place;
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 use std::path::PathBuf;
@@ -273,18 +272,6 @@ impl<T: Field> Field for BTreeMap<String, T> {
             Ok((key.get_ref().clone().into_owned(), value))
         };
         table.iter().map(entry).collect()
-    }
-}
-
-impl Field for Place {
-    const KIND: &'static str = "[x, y] or [x, y, z]";
-
-    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
-        match Vec::read(node).ok().as_deref() {
-            Some(&[x, y]) => Ok(Self([x, y, 0.0])),
-            Some(&[x, y, z]) => Ok(Self([x, y, z])),
-            _ => Err(Wrong::new(node, "expected [x, y] or [x, y, z]")),
-        }
     }
 }
 

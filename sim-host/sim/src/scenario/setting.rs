@@ -29,8 +29,8 @@ impl Scenario {
     /// Like [`Scenario::load`], with settings applied.
     ///
     /// # Errors
-    /// See [`Scenario::load`]; also two settings of one field. The place is that of the field in the
-    /// file, if it is there.
+    /// See [`Scenario::load`]; also two settings of one field. The place is that of the field in
+    /// the file, if it is there.
     pub fn load_with(path: &Path, overrides: &Overrides, settings: &[Setting]) -> Result<Self, ScenarioError> {
         Self::parse_with(&read(path)?, path, overrides, settings)
     }

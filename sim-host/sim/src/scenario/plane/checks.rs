@@ -3,7 +3,7 @@
 use super::super::ScenarioError;
 use super::super::ranges::short;
 use super::super::source::Source;
-use super::group::Group;
+use super::fields::Group;
 use super::table::{CloudEntry, FAR_M, MAX_ROBOTS, Place, PlaneRobotEntry};
 use super::{PlaneSetup, Start, within};
 use crate::nearby::{Cells, Query, Search};

@@ -3,7 +3,7 @@
 use super::super::ranges::{range, row, unit};
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
-use super::group::Group;
+use super::fields::Group;
 use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::boids::BoidsParams;

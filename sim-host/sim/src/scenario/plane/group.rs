@@ -1,15 +1,16 @@
 //! Groups of identical robots: body, law and safety layer.
 
-use super::super::ranges::{self, range, short, within};
+use super::super::ranges::{self, range, short};
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile, params};
+use super::fields::Group;
 use super::flocks;
-use super::table::{BodyTable, GroupTable, OrcaTable, PlaneRobotEntry};
+use super::table::OrcaTable;
 use crate::world::plane::Abilities;
 use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
-use staya_controller::parameters::{MIN_DISTANCE, Parameters, TOLERANCE};
+use staya_controller::parameters::{MIN_DISTANCE, TOLERANCE};
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::template::Template;
 use staya_controller::time::Duration;
@@ -117,73 +118,7 @@ const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32>
     StalenessInflation { growth_mps: max_speed_mps as f32, max_m: radius_m as f32 }
 }
 
-/// The fields of a group of robots, with their place in the file.
-#[derive(Clone, Debug)]
-pub(super) struct Group {
-    /// The table that defines the group: `plane` or `plane.group[1]`.
-    pub table: String,
-    pub body: BodyTable,
-    pub flock: u8,
-}
-
 impl Group {
-    /// The robots of `[plane]`. `places` is the size of the largest formation.
-    pub fn general(body: &BodyTable, places: u8) -> Self {
-        let flock = if body.guidance == GuidanceKind::Formation { 0 } else { places };
-        Self { table: "plane".to_owned(), body: body.clone(), flock }
-    }
-
-    /// The robots of `[[plane.group]]` number `index`.
-    pub fn numbered(index: usize, table: &GroupTable, places: u8) -> Self {
-        let flock = match table.body.guidance {
-            // A beacon stores a formation place and a flock number in the same field.
-            GuidanceKind::Formation => 0,
-            // Each group has its own flock; when numbers run out, the last groups share one.
-            _ => table.flock.unwrap_or(places.saturating_add(u8::try_from(index + 1).unwrap_or(u8::MAX))),
-        };
-        Self { table: format!("plane.group[{index}]"), body: table.body.clone(), flock }
-    }
-
-    /// The group of a listed robot that has a body of its own.
-    pub fn of_entry(&self, entry: &PlaneRobotEntry) -> Option<Self> {
-        (entry.radius_m.is_some() || entry.max_speed_mps.is_some()).then(|| {
-            let mut own = self.clone();
-            own.body.radius_m = entry.radius_m.unwrap_or(own.body.radius_m);
-            own.body.max_speed_mps = entry.max_speed_mps.unwrap_or(own.body.max_speed_mps);
-            own
-        })
-    }
-
-    /// Path of a field of the group.
-    pub fn field(&self, name: &str) -> String {
-        format!("{}.{name}", self.table)
-    }
-
-    pub fn within(
-        &self,
-        source: &Source<'_>,
-        name: &str,
-        value: f64,
-        [low, high]: [f64; 2],
-        unit: &str,
-    ) -> Result<(), ScenarioError> {
-        within(source, &self.field(name), value, low, high, unit)
-    }
-
-    /// Checks the fields of `table` against the parameters with the same names and stores them.
-    pub fn set(
-        &self,
-        source: &Source<'_>,
-        table: &str,
-        params: &mut dyn Parameters,
-        fields: &[(&str, Option<f64>)],
-    ) -> Result<(), ScenarioError> {
-        let mut fields = fields.iter();
-        fields.try_for_each(|(name, value)| {
-            ranges::set(source, &self.field(&format!("{table}.{name}")), *value, params, name)
-        })
-    }
-
     pub fn build(&self, source: &Source<'_>, file: &ScenarioFile) -> Result<RobotGroup, ScenarioError> {
         let body = &self.body;
         if body.max_acceleration_mps2.is_nan() || body.max_acceleration_mps2 <= 0.0 {

@@ -1,6 +1,7 @@
 //! `[plane]`: robots that move in the plane or in space, and their choice of velocity.
 
 mod checks;
+mod fields;
 mod flocks;
 mod group;
 mod inherit;
@@ -34,7 +35,7 @@ use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::world::MoveRules;
 use crate::world::plane::Solid;
-use group::Group;
+use fields::Group;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceKind, RouteSetup};
 use staya_controller::formation::FormationParams;

@@ -1,8 +1,7 @@
 //! Warnings about valid but probably unintended settings in `[plane]`.
 
-use super::super::land::contains;
 use super::{PlaneSetup, RobotGroup, Start};
-use crate::world::plane::{Solid, Solids};
+use crate::world::plane::{Solid, Solids, contains};
 use staya_controller::agent::{GuidanceKind, SafetySetup};
 
 const NAMED: usize = 3;

@@ -2,7 +2,7 @@
 
 use super::super::ScenarioError;
 use super::super::source::Source;
-use super::group::Group;
+use super::fields::Group;
 use super::place::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
 use super::{checks, within};

@@ -3,7 +3,7 @@
 use super::super::source::Source;
 use super::super::{Robot, ScenarioError, ScenarioFile};
 use super::checks;
-use super::group::Group;
+use super::fields::Group;
 use super::group::RobotGroup;
 use super::place::{Start, Target};
 use super::scattered::{self, TRIES, Taken, between, is_clear, unit};

@@ -1,6 +1,7 @@
 //! `[plane]` as written in a scenario file, with the documentation of its fields.
 
 use super::super::formation::FormationEntry;
+use super::super::read::{Field, Node, Wrong};
 use crate::{defaults, names, table};
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::push_out::Model;
@@ -175,6 +176,18 @@ table! {
 /// `[x, y]` or `[x, y, z]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place(pub [f64; 3]);
+
+impl Field for Place {
+    const KIND: &'static str = "[x, y] or [x, y, z]";
+
+    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
+        match Vec::read(node).ok().as_deref() {
+            Some(&[x, y]) => Ok(Self([x, y, 0.0])),
+            Some(&[x, y, z]) => Ok(Self([x, y, z])),
+            _ => Err(Wrong::new(node, "expected [x, y] or [x, y, z]")),
+        }
+    }
+}
 
 table! {
     /// `plane.robots.circle`.

@@ -13,6 +13,7 @@ mod solids;
 #[doc(hidden)]
 pub use border::Beside;
 pub use sensing::{Sensing, Sight};
+pub(crate) use shape::contains;
 pub use shape::{FAR_M, Shape};
 pub use solid::Solid;
 pub use solid::narrow;

@@ -70,3 +70,11 @@ impl Shape {
         }
     }
 }
+
+/// Even-odd test: a ray to the east crosses an odd number of the polygon's sides.
+pub(crate) fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let before = corners.iter().cycle().skip(corners.len() - 1);
+    let sides = before.zip(corners).filter(|([_, from], [_, to])| (*from > y) != (*to > y));
+    let crossed = sides.filter(|([x0, y0], [x1, y1])| x < x0 + (x1 - x0) * (y - y0) / (y1 - y0));
+    crossed.count() % 2 == 1
+}
