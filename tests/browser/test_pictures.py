@@ -74,6 +74,44 @@ def test_pictures_are_saved_as_png_and_svg(view, look, tmp_path):
     assert share < 0.01
 
 
+def test_a_movie_is_recorded_while_the_run_plays(browser, view, look, tmp_path):
+    page = look(view(SWAP, "--paused").url)
+    page.locator("#save-movie").click()
+    until(lambda: tick(page) > 10, what="the run to play")
+    assert page.locator("#save-movie").inner_text() == "End movie"
+    with page.expect_download() as download:
+        page.locator("#play").click()
+    movie = tmp_path / "movie.webm"
+    download.value.save_as(movie)
+    assert movie.read_bytes().startswith(b"\x1a\x45\xdf\xa3")
+    assert page.locator("#save-movie").inner_text() == "Movie"
+    # Its pictures change and have the size of the page's, which plays no movies itself.
+    player = browser.new_page()
+    size, differ = player.evaluate(
+        """async movie => {
+            const video = document.createElement("video");
+            video.muted = true;
+            const picture = () => {
+                const canvas = document.createElement("canvas");
+                [canvas.width, canvas.height] = [video.videoWidth, video.videoHeight];
+                canvas.getContext("2d").drawImage(video, 0, 0);
+                return canvas.toDataURL();
+            };
+            const pictures = new Set();
+            const ended = new Promise(resolve => video.addEventListener("ended", resolve));
+            video.addEventListener("timeupdate", () => pictures.add(picture()));
+            video.src = `data:video/webm;base64,${movie}`;
+            await video.play();
+            await ended;
+            return [[video.videoWidth, video.videoHeight], pictures.size];
+        }""",
+        encoded(movie),
+    )
+    player.close()
+    assert size == page.locator("#overlay").evaluate("canvas => [canvas.width, canvas.height]")
+    assert differ > 1
+
+
 def encoded(path) -> str:
     return base64.b64encode(path.read_bytes()).decode()
 

@@ -1,10 +1,13 @@
-// Saves the picture as PNG, and as SVG with all lines and texts as shapes.
+// Saves the picture as PNG, as SVG with all lines and texts as shapes, and as a movie.
 
 import { duration } from "staya/controls.js";
 import { niceStep } from "staya/ground.js";
 import { metres } from "staya/view.js";
 
 const SCALE_PIXELS = 80;
+/** Formats of movies, the best first; a browser writes some of them. */
+const MOVIES = ["video/webm;codecs=vp9", "video/webm", "video/mp4"];
+const MOVIE_BITS_PER_SECOND = 8e6;
 
 /** Saves a blob as a file. */
 export function download(name, blob) {
@@ -20,6 +23,8 @@ export class Picture {
     this.app = app;
     document.getElementById("save-png").addEventListener("click", () => this.png());
     document.getElementById("save-svg").addEventListener("click", () => this.svg());
+    this.button = document.getElementById("save-movie");
+    this.button.addEventListener("click", () => (this.recorder ? this.recorder.stop() : this.movie()));
   }
 
   save(kind, blob) {
@@ -34,15 +39,54 @@ export class Picture {
     if (!app.scene) return;
     // WebGL keeps a picture only until the next task.
     app.draw(performance.now());
-    const layers = ["ground", "bodies", "overlay"].map((id) => document.getElementById(id));
     const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [layers[0].width, layers[0].height];
+    this.layers(canvas);
+    canvas.toBlob((blob) => this.save("png", blob), "image/png");
+  }
+
+  /** Copies what was drawn in this task, with the caption; the canvas keeps the size that it has. */
+  layers(canvas) {
+    const layers = ["ground", "bodies", "overlay"].map((id) => document.getElementById(id));
+    if (!this.recorder) [canvas.width, canvas.height] = [layers[0].width, layers[0].height];
     const context = canvas.getContext("2d");
+    context.setTransform(1, 0, 0, 1, 0, 0);
     for (const layer of layers) context.drawImage(layer, 0, 0, canvas.width, canvas.height);
-    const ratio = canvas.width / app.camera.width;
+    const ratio = canvas.width / this.app.camera.width;
     context.scale(ratio, ratio);
     this.caption(context);
-    canvas.toBlob((blob) => this.save("png", blob), "image/png");
+  }
+
+  /** Records what the page shows, from playing on until the run pauses or the button is pressed. */
+  movie() {
+    const { app } = this;
+    if (!app.scene) return;
+    const kind = MOVIES.find((kind) => window.MediaRecorder?.isTypeSupported(kind));
+    if (!kind) return app.toast("This browser records no movies. Save pictures, or use staya run --gif.");
+    const canvas = document.createElement("canvas");
+    app.draw(performance.now());
+    this.layers(canvas);
+    const options = { mimeType: kind, videoBitsPerSecond: MOVIE_BITS_PER_SECOND };
+    const recorder = (this.recorder = new MediaRecorder(canvas.captureStream(), options));
+    const parts = [];
+    recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
+    recorder.addEventListener("stop", () => {
+      this.recorder = null;
+      this.button.textContent = "Movie";
+      this.save(kind.match(/\/(\w+)/)[1], new Blob(parts, { type: kind }));
+    });
+    recorder.start();
+    this.button.textContent = "End movie";
+    if (app.state.paused) document.getElementById("play").click();
+    let hasPlayed = false;
+    const paint = () => {
+      if (recorder.state !== "recording") return;
+      app.draw(performance.now());
+      this.layers(canvas);
+      hasPlayed ||= !app.state.paused;
+      if (hasPlayed && app.state.paused) recorder.stop();
+      else requestAnimationFrame(paint);
+    };
+    requestAnimationFrame(paint);
   }
 
   svg() {
