@@ -40,7 +40,7 @@ fn events(scenario: &Scenario) -> Vec<(&'static str, u32)> {
     let ends = |from: u32, to: u32| if to >= scenario.ticks { from } else { to };
     let tick = |at_s: f64| (at_s / scenario.tick_s()) as u32;
     let orders = scenario.plane.iter().flat_map(|plane| &plane.orders);
-    let rolls = scenario.keeping.iter().flat_map(|keeping| &keeping.rolls);
+    let rolls = scenario.key_rotation().into_iter().flat_map(|keeping| &keeping.rolls);
     let blackouts = scenario.radio.blackout_s.iter().map(|&[from_s, to_s]| ends(tick(from_s), tick(to_s)));
     let mut events: Vec<_> = orders.map(|order| ("an order", order.tick)).collect();
     events.extend(rolls.map(|roll| ("a key change", roll.tick)));

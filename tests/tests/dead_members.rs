@@ -1,7 +1,7 @@
 //! Formations with failed robots: the others arrive, whichever robots fail.
 
 use staya_controller::robot::{Mode, RobotId};
-use staya_sim::scenario::{Fault, Scenario};
+use staya_sim::scenario::{Fault, FormationSetup, Scenario};
 use staya_tests::{run, scenario};
 
 fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
@@ -49,7 +49,9 @@ fn ranks_close_the_gap_of_a_dead_robot() {
         let mut scenario = without("figure-5", 1, &dead, 300);
         let goals: Vec<_> = scenario.robots.iter().map(|robot| robot.goal).collect();
         let mut ends = [false, true].map(|closes_ranks| {
-            scenario.formation_params.closes_ranks = closes_ranks;
+            let mut params = scenario.formation_law.params();
+            params.closes_ranks = closes_ranks;
+            scenario.formation_law = FormationSetup::Staya(params);
             assert_eq!(missing(&scenario, &dead), [0_usize; 0], "without {robot}");
             let (_, rows) = run(&scenario);
             let (_, robots) = rows.last().expect("at least the start").clone();

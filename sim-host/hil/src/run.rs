@@ -10,8 +10,8 @@ use staya_runner::{Options, Shadows};
 use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_with};
 use staya_sim::expected::Expected;
 use staya_sim::record::RobotRow;
-use staya_sim::scenario::FormationLaw;
 use staya_sim::scenario::Scenario;
+use staya_sim::scenario::{FormationLaw, FormationSetup};
 use staya_view::watch::{About, DeviceFigures, Insight, Watcher};
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -48,8 +48,12 @@ impl HilArgs {
 /// Missing devices, firmware or firmware features, or a device that fails or differs from its
 /// shadow.
 pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
-    if scenario.published.is_some() || scenario.looks_ahead {
-        let law = if scenario.looks_ahead { FormationLaw::Lookahead } else { FormationLaw::Paper };
+    let other = match scenario.formation_law {
+        FormationSetup::Staya(_) => None,
+        FormationSetup::Lookahead(_) => Some(FormationLaw::Lookahead),
+        FormationSetup::Published(_) => Some(FormationLaw::Paper),
+    };
+    if let Some(law) = other {
         bail!("formation.law = \"{law}\" is not available in firmware; give \"staya\", or run without devices");
     }
     drive(&Ours, scenario, devices, page, global)
@@ -111,7 +115,7 @@ pub(crate) fn drive(
     if scenario.sensing.is_some() {
         bail!("plane.sensing is not available on devices; remove it, or run without devices");
     }
-    if scenario.key.is_some() {
+    if scenario.keys.is_some() {
         bail!("{}: devices do not support keys; remove [authentication]", scenario.name);
     }
     let plan = devices.plan(scenario)?;

@@ -221,7 +221,7 @@ impl Summary {
                     .collect(),
             ),
             packets: outcome.packets,
-            is_authenticated: scenario.key.is_some(),
+            is_authenticated: scenario.keys.is_some(),
             packets_throttled: outcome.throttled,
             waits: outcome.waits.iter().map(|count| Waited::new(count, scenario.tick_s())).collect(),
             formation_error_per_agent: formation.map(|f| f.error_per_agent),

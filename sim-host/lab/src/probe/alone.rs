@@ -22,7 +22,7 @@ impl Probe for Alone {
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>> {
         let mut alone = scenario.clone();
         alone.formations.clear();
-        (alone.published, alone.looks_ahead, alone.maps) = (None, false, None);
+        alone.maps = None;
         alone.route.sharpness = Sharpness::Greedy;
         alone.radio = RadioParams { range_m: scenario.radio.range_m, ..RadioParams::default() };
         let other = simulate(&alone, |_, _| ControlFlow::Continue(())).ok();

@@ -42,7 +42,7 @@ impl Attacker {
         let guess = Key::of_passphrase(b"guessed");
         let (key, starts) = match attack.kind {
             AttackKind::Forge => (Some(&guess), STARTS),
-            AttackKind::Insider => (scenario.key.as_ref(), TAKEN),
+            AttackKind::Insider => (scenario.key(), TAKEN),
             AttackKind::Replay | AttackKind::Unsigned => (None, STARTS),
         };
         let index = scenario.robots.binary_search_by_key(&attack.claims, |robot| robot.id);

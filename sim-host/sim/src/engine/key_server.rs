@@ -34,8 +34,8 @@ pub(super) struct KeyServer {
 impl KeyServer {
     /// The key server of a scenario; `None` if robots have no keys of their own.
     pub(super) fn new(scenario: &Scenario) -> Option<Self> {
-        let keeping = scenario.keeping.as_ref()?;
-        let (_, id) = radio::operator(scenario.radio.format, scenario.key.as_ref(), 1);
+        let keeping = scenario.key_rotation()?;
+        let (_, id) = radio::operator(scenario.radio.format, scenario.key(), 1);
         let wire = OperatorWire::at_start(Master::new(&keeping.master), id, 0)?;
         Some(Self {
             wire,

@@ -2,7 +2,7 @@
 
 use super::witness::Witness;
 use crate::own_law::{Own, OwnLaw};
-use crate::scenario::{NamedLaw, Scenario};
+use crate::scenario::{FormationSetup, NamedLaw, Scenario};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     AnyLaw, AnySafety, AnySurroundings, CellState, FormationGuidance, GridWorkspace, GuidanceSetup, Guided,
@@ -10,7 +10,6 @@ use staya_controller::agent::{
 };
 use staya_controller::geom::Vec2;
 use staya_controller::laws;
-use staya_papers::criteria::PublishedParams;
 use staya_papers::{Course, PublishedFormation};
 use std::collections::HashMap;
 use thiserror::Error;
@@ -40,14 +39,14 @@ laws! {
 }
 
 /// Staya's law for a robot, or that of a paper instead of Staya's formation.
-fn law_of(setup: &GuidanceSetup, published: Option<PublishedParams>, looks_ahead: bool, map: Map) -> ScenarioLaw {
-    match (setup, published) {
-        (GuidanceSetup::Formation { route, template, .. }, Some(params)) => {
-            let law = PublishedFormation::new(route.params, params, template.clone());
+fn law_of(setup: &GuidanceSetup, formation: &FormationSetup, map: Map) -> ScenarioLaw {
+    match (setup, formation) {
+        (GuidanceSetup::Formation { route, template, .. }, FormationSetup::Published(params)) => {
+            let law = PublishedFormation::new(route.params, *params, template.clone());
             ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
         }
-        (GuidanceSetup::Formation { route, formation, template, .. }, None) if looks_ahead => {
-            let law = FormationGuidance::steered(route.params, *formation, template.clone(), Course::new(), map);
+        (GuidanceSetup::Formation { route, template, .. }, FormationSetup::Lookahead(params)) => {
+            let law = FormationGuidance::steered(route.params, *params, template.clone(), Course::new(), map);
             ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
         }
         _ => ScenarioLaw::BuiltIn(setup.law(map)),
@@ -73,15 +72,13 @@ pub fn agents(scenario: &Scenario) -> Agents {
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, published, looks_ahead) = (scenario.maps, scenario.published, scenario.looks_ahead);
+    let (maps, formation) = (scenario.maps, scenario.formation_law);
     let own = scenario.law.as_ref().map(NamedLaw::law);
     Box::new(move |index| {
         let (guidance, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
         let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
-        let law = own
-            .as_ref()
-            .map_or_else(|| law_of(guidance, published, looks_ahead, map), |own| ScenarioLaw::Own(own.clone()));
+        let law = own.as_ref().map_or_else(|| law_of(guidance, &formation, map), |own| ScenarioLaw::Own(own.clone()));
         (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     })
 }

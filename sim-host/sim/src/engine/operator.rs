@@ -51,9 +51,9 @@ pub(super) struct Operator {
 
 impl Operator {
     fn new(scenario: &Scenario) -> Self {
-        let key = scenario.key.as_ref();
+        let key = scenario.key();
         let (wire, number) = radio::operator(scenario.radio.format, key, 1);
-        let own = scenario.keeping.as_ref().and_then(|keeping| {
+        let own = scenario.key_rotation().and_then(|keeping| {
             let (_, id) = radio::operator(scenario.radio.format, key, 0);
             OperatorWire::at_start(Master::new(&keeping.master), id, 0)
         });

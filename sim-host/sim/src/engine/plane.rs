@@ -100,10 +100,10 @@ impl PlaneGround {
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
             range_m: scenario.radio.range_m.min(FARTHEST_M) as f32,
-            orders: frames(&setup.orders, scenario.radio.format, scenario.key.as_ref()),
+            orders: frames(&setup.orders, scenario.radio.format, scenario.key()),
             since: vec![0; scenario.robots.len()],
             format: scenario.radio.format,
-            key: scenario.key.clone(),
+            key: scenario.key().cloned(),
             setup: setup.clone(),
         }
     }

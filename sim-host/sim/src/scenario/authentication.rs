@@ -59,13 +59,18 @@ pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) ->
     }
     let (key, remark) = found;
     let key = if has_master { Master::new(&key).seed(0).key(0) } else { key };
-    Ok(Some(Keys { key, remark, keeping }))
+    Ok(Some(Keys { key, remark, rotation: keeping }))
 }
 
-pub(super) struct Keys {
+/// The keys of a swarm whose beacons are authenticated.
+#[derive(Clone, Debug)]
+pub struct Keys {
+    /// The key that all robots share, or the operator's first one.
     pub key: Key,
+    /// The operator's keys, if each robot has its own key.
+    pub rotation: Option<KeyRotation>,
+    /// Warning for the owner of the key file.
     pub remark: Option<String>,
-    pub keeping: Option<KeyRotation>,
 }
 
 fn keeping(

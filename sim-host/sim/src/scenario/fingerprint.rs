@@ -1,6 +1,6 @@
 //! A hash of everything that determines a run.
 
-use super::{KeyRotation, Scenario, Scouting};
+use super::{FormationSetup, KeyRotation, Scenario, Scouting};
 use staya_controller::auth::Key;
 use std::fmt::{self, Debug, Write as _};
 
@@ -54,16 +54,12 @@ impl Scenario {
             law,
             route,
             maps,
-            formation_params,
-            published,
-            looks_ahead,
+            formation_law,
             sensing,
             faults,
             interventions,
             misnumbered,
-            key,
-            keeping,
-            key_remark: _,
+            keys,
             plausibility,
             attacks,
             parameters: _,
@@ -71,7 +67,12 @@ impl Scenario {
         let mut all = Fingerprint(0xCBF2_9CE4_8422_2325);
         all.mix(terrain.cells());
         all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m));
-        all.add(&(seed, tick_us, rules, radio, robots, formations.first(), plane, route, formation_params, published));
+        let published = match formation_law {
+            FormationSetup::Published(params) => Some(params),
+            _ => None,
+        };
+        let formation = formation_law.params();
+        all.add(&(seed, tick_us, rules, radio, robots, formations.first(), plane, route, formation, published));
         all.add(&(faults, interventions, misnumbered, plausibility, attacks));
         if !changes.is_empty() {
             all.add(changes);
@@ -87,8 +88,8 @@ impl Scenario {
         if let Some(law) = law {
             all.add(law);
         }
-        if *looks_ahead {
-            all.add(looks_ahead);
+        if matches!(formation_law, FormationSetup::Lookahead(_)) {
+            all.add(&true);
         }
         if let Some(maps) = maps {
             all.add(maps);
@@ -97,9 +98,10 @@ impl Scenario {
             all.add(sensing);
         }
         // `Debug` output hides secrets.
-        all.key(key.as_ref());
-        all.key(keeping.as_ref().map(|keeping| &keeping.master));
-        if let Some(KeyRotation { master: _, place_m, overlap_ticks, rolls }) = keeping {
+        let rotation = keys.as_ref().and_then(|keys| keys.rotation.as_ref());
+        all.key(keys.as_ref().map(|keys| &keys.key));
+        all.key(rotation.map(|rotation| &rotation.master));
+        if let Some(KeyRotation { master: _, place_m, overlap_ticks, rolls }) = rotation {
             all.add(&(place_m, overlap_ticks, rolls));
         }
         all.0

@@ -215,7 +215,7 @@ impl Scenario {
         let interventions = self.interventions.iter().map(|(tick, _)| *tick);
         let orders = self.plane.iter().flat_map(|plane| &plane.orders).map(|order| order.tick);
         let changes = self.changes.iter().map(|change| change.first);
-        let rolls = self.keeping.iter().flat_map(|keeping| &keeping.rolls).map(|roll| roll.tick);
+        let rolls = self.key_rotation().into_iter().flat_map(|keeping| &keeping.rolls).map(|roll| roll.tick);
         let attacks = self.attacks.iter().map(|attack| attack.from_tick);
         let all = faults.chain(interventions).chain(orders).chain(changes).chain(rolls).chain(attacks);
         all.max().unwrap_or_default()

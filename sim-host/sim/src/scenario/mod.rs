@@ -24,12 +24,13 @@ mod setup;
 mod source;
 mod write;
 
+pub use authentication::Keys;
 pub use field::Field;
 pub use formation::FormationEntry;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use law::{LawTable, NamedLaw};
 pub use maps::MapsTable;
-pub use params::{FormationLaw, FormationTable, GridTable, RouteTable};
+pub use params::{FormationLaw, FormationSetup, FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{
     BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
@@ -57,11 +58,9 @@ pub use crate::world::scouts::Scouting;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceSetup, RouteSetup};
 use staya_controller::auth::Key;
-use staya_controller::formation::FormationParams;
 use staya_controller::land::MapParams;
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
-use staya_papers::criteria::PublishedParams;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -178,24 +177,16 @@ pub struct Scenario {
     pub route: RouteSetup,
     /// Exchange of terrain maps; `None`: disabled.
     pub maps: Option<MapParams>,
-    /// Parameters of formation keeping.
-    pub formation_params: FormationParams,
-    /// Parameters of the published formation law, if it replaces Staya's; grid only.
-    pub published: Option<PublishedParams>,
-    /// Whether followers predict the course of their formation; grid only.
-    pub looks_ahead: bool,
+    /// The law of formations.
+    pub formation_law: FormationSetup,
     /// Temporary failures of robots.
     pub faults: Vec<Fault>,
     /// Interventions with their ticks, sorted by tick.
     pub interventions: Vec<(u32, Intervention)>,
     /// Robots with a wrong id: the id in this scenario, then the id that the robot claims.
     pub misnumbered: Vec<(RobotId, RobotId)>,
-    /// Shared key of the swarm; `None`: beacons are not authenticated.
-    pub key: Option<Key>,
-    /// The operator's keys, if each robot has its own key.
-    pub keeping: Option<KeyRotation>,
-    /// Warning for the owner of the key file.
-    pub key_remark: Option<String>,
+    /// Keys of the swarm; `None`: beacons are not authenticated.
+    pub keys: Option<Keys>,
     /// Plausibility limits on received beacons.
     pub plausibility: PlausibilityLimits<f32>,
     /// Attackers.
@@ -284,8 +275,6 @@ impl Scenario {
         };
         check::memory(&source, &file, &positions_m, &terrain)?;
         let keys = authentication::key(&source, &file, &robots)?;
-        let (key, key_remark, keeping) =
-            keys.map_or((None, None, None), |keys| (Some(keys.key), keys.remark, keys.keeping));
         let attacks = authentication::attacks(&source, &file, &robots)?;
         let faults = check::faults(&source, &file, &robots)?;
         let interventions = intervention::interventions(&source, &file, &robots)?;
@@ -300,9 +289,7 @@ impl Scenario {
             None => None,
         };
         let maps = maps::sharing(&source, &file, &route, plane.as_ref())?;
-        let formation_params = params::formation(&source, &file.formation)?;
-        let published = params::published(&source, &file.formation)?;
-        let looks_ahead = params::looks_ahead(&file.formation);
+        let formation_law = FormationSetup::new(&source, &file.formation)?;
         let law = law::law(&source, &file, plane.as_ref(), land)?;
         let mut scenario = Self {
             name: file.name.clone(),
@@ -315,7 +302,7 @@ impl Scenario {
             rules: MoveRules {
                 norm: file.grid.norm,
                 corner_cutting: file.grid.corner_cutting,
-                crossing: published.is_some(),
+                crossing: matches!(formation_law, FormationSetup::Published(_)),
                 orthogonal: file.grid.moves == 4,
                 simultaneous: file.grid.simultaneous,
             },
@@ -328,15 +315,11 @@ impl Scenario {
             law,
             route,
             maps,
-            formation_params,
-            published,
-            looks_ahead,
+            formation_law,
             faults,
             interventions,
             misnumbered,
-            key,
-            key_remark,
-            keeping,
+            keys,
             plausibility: PlausibilityLimits::ANY,
             attacks,
             files: source.files(),
@@ -355,7 +338,19 @@ impl Scenario {
             _ => None,
         });
         let plane = self.plane.iter().flat_map(|setup| plane::remarks(setup, self.tick_s()));
-        self.key_remark.clone().into_iter().chain(gains).chain(plane).collect()
+        self.keys.iter().filter_map(|keys| keys.remark.clone()).chain(gains).chain(plane).collect()
+    }
+
+    /// The key that all robots share, or the operator's first one.
+    #[must_use]
+    pub fn key(&self) -> Option<&Key> {
+        self.keys.as_ref().map(|keys| &keys.key)
+    }
+
+    /// The operator's keys, if each robot has its own key.
+    #[must_use]
+    pub fn key_rotation(&self) -> Option<&KeyRotation> {
+        self.keys.as_ref()?.rotation.as_ref()
     }
 
     /// The robots with the ids that they claim ([`misnumbered`](Self::misnumbered)).

@@ -138,7 +138,8 @@ pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteS
 }
 
 pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<FormationParams, ScenarioError> {
-    let mut params = if looks_ahead(table) { FormationParams::looking_ahead() } else { FormationParams::default() };
+    let looks_ahead = table.law == Some(FormationLaw::Lookahead);
+    let mut params = if looks_ahead { FormationParams::looking_ahead() } else { FormationParams::default() };
     params.eps = table.eps.unwrap_or(params.eps);
     params.lead = table.lead.unwrap_or(params.lead);
     set(source, "formation.gain", table.gain, &mut params, "place_gain")?;
@@ -164,14 +165,46 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
     Ok(params)
 }
 
-pub(super) fn looks_ahead(table: &FormationTable) -> bool {
-    table.law == Some(FormationLaw::Lookahead)
+/// The law of formations, with its parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FormationSetup {
+    /// Staya's.
+    Staya(FormationParams),
+    /// Staya's, whose followers predict the course of their formation; grid only.
+    Lookahead(FormationParams),
+    /// The published one; grid only.
+    Published(PublishedParams),
 }
 
-pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<Option<PublishedParams>, ScenarioError> {
-    if table.law != Some(FormationLaw::Paper) {
-        return Ok(None);
+impl FormationSetup {
+    pub(super) fn new(source: &Source<'_>, table: &FormationTable) -> Result<Self, ScenarioError> {
+        Ok(match table.law {
+            None | Some(FormationLaw::Staya) => Self::Staya(formation(source, table)?),
+            Some(FormationLaw::Lookahead) => Self::Lookahead(formation(source, table)?),
+            Some(FormationLaw::Paper) => Self::Published(published(source, table)?),
+        })
     }
+
+    /// Parameters of Staya's law; with the published law, the defaults.
+    #[must_use]
+    pub fn params(&self) -> FormationParams {
+        match self {
+            Self::Staya(params) | Self::Lookahead(params) => *params,
+            Self::Published(_) => FormationParams::default(),
+        }
+    }
+
+    /// Distance from its place within which a member counts as found, cells.
+    #[must_use]
+    pub fn eps(&self) -> u8 {
+        match self {
+            Self::Published(params) => params.eps,
+            _ => self.params().eps,
+        }
+    }
+}
+
+fn published(source: &Source<'_>, table: &FormationTable) -> Result<PublishedParams, ScenarioError> {
     let mut params = PublishedParams::default();
     params.eps = table.eps.unwrap_or(params.eps);
     if let Some(gain) = table.gain {
@@ -189,7 +222,7 @@ pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<O
     params.resume = params.resume.min(params.halt);
     params.crowd = table.crowd.unwrap_or(params.crowd);
     params.prediction = table.prediction.unwrap_or(params.prediction);
-    Ok(Some(params))
+    Ok(params)
 }
 
 fn most(name: &str) -> f64 {

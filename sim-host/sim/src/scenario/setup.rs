@@ -7,8 +7,8 @@ use staya_controller::agent::{GuidanceSetup, SafetySetup};
 use staya_controller::grid::Cell;
 
 impl Scenario {
-    /// Guidance law of robot `index`, with its formation template. A law of a paper
-    /// ([`Scenario::published`], [`Scenario::looks_ahead`]) replaces the formation.
+    /// Guidance law of robot `index`, with its formation template. Another
+    /// [`Scenario::formation_law`] than Staya's replaces the formation on the grid.
     #[must_use]
     pub fn guidance(&self, index: usize) -> GuidanceSetup {
         let mut guidance = match (&self.plane, self.formation_of(index)) {
@@ -16,7 +16,7 @@ impl Scenario {
             (None, None) => GuidanceSetup::Route { route: self.route, speed_mps: None },
             (None, Some(_)) => GuidanceSetup::Formation {
                 route: self.route,
-                formation: self.formation_params,
+                formation: self.formation_law.params(),
                 template: Default::default(),
                 speed_mps: None,
             },
@@ -70,11 +70,6 @@ impl Scenario {
 
     pub(crate) fn scouts(&self) -> Option<Scouts> {
         self.scouting.as_ref().map(|known| Scouts::new(known, self.route.params.radius, self.robots.len()))
-    }
-
-    /// Distance from its place within which a member of the formation counts as found, cells.
-    pub(crate) fn eps(&self) -> u8 {
-        self.published.map_or(self.formation_params.eps, |published| published.eps)
     }
 
     /// Safety layer of robot `index`.

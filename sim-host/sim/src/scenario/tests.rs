@@ -333,13 +333,14 @@ fn parameters_of_routes_and_formations_are_checked() {
     };
     let scenario = parse(&with("")).expect("good");
     assert_eq!(scenario.route, RouteSetup::default());
-    assert_eq!(scenario.formation_params, FormationParams::default());
+    assert_eq!(scenario.formation_law, FormationSetup::Staya(FormationParams::default()));
     let scenario = parse(&with(
         "[grid]\ncorner_cutting = true\n[route]\nradius = 16\nexit = \"ray\"\n\
          a2 = 0.5\nhalved_per_ticks = 2\n[formation]\nhalt_cells = 2\ngain = 4095\nfootprint = 1\n\
          prediction = \"reflexive\"\nrecovery = \"def\"\n",
     ));
-    let Scenario { route, formation_params: formation, .. } = scenario.expect("good");
+    let Scenario { route, formation_law, .. } = scenario.expect("good");
+    let formation = formation_law.params();
     assert_eq!((route.params.radius, route.params.exit), (16, ExitRule::Ray));
     assert_eq!(route.params.a2, Gain::from_sixteenths(8));
     assert!(route.params.corner_cutting);
@@ -371,18 +372,21 @@ fn a_formation_has_the_law_of_its_file() {
         format!("{}[formation]\n{rest}", with_robots(robots))
     };
     let ours = parse(&with("law = \"staya\"\nwaits = false\n")).expect("good");
-    assert_eq!((ours.published, ours.formation_params.halt_lag), (None, NEVER));
+    assert!(matches!(ours.formation_law, FormationSetup::Staya(params) if params.halt_lag == NEVER));
     let paper = parse(&with("law = \"paper\"\neps = 3\nhalt_cells = 6\nresume_cells = 2\ncrowd = 2\n"));
     let paper = paper.expect("good");
     let expected = PublishedParams { eps: 3, halt: 420, resume: 140, crowd: 2, ..PublishedParams::default() };
-    assert_eq!((paper.published, paper.eps()), (Some(expected), 3));
+    assert_eq!((paper.formation_law, paper.formation_law.eps()), (FormationSetup::Published(expected), 3));
     assert!(matches!(paper.guidance(1), GuidanceSetup::Formation { template, .. } if template.slot == 1));
     let ahead = parse(&with("law = \"lookahead\"\n")).expect("good");
-    assert_eq!((ahead.looks_ahead, ahead.formation_params), (true, FormationParams::looking_ahead()));
+    assert_eq!(ahead.formation_law, FormationSetup::Lookahead(FormationParams::looking_ahead()));
     assert!(matches!(ahead.guidance(1), GuidanceSetup::Formation { template, .. } if template.slot == 1));
     assert_ne!(ahead.fingerprint(), parse(&with("")).expect("good").fingerprint());
     let low = parse(&with("law = \"paper\"\nhalt_cells = 1\n")).expect("good");
-    assert_eq!(low.published.map(|params| params.resume), Some(70), "resume is at most halt");
+    assert!(
+        matches!(low.formation_law, FormationSetup::Published(params) if params.resume == 70),
+        "resume is at most halt"
+    );
     for (rest, expected) in [
         ("law = \"other\"\n", "law: unknown value `other`"),
         ("law = \"paper\"\nlead = 2\n", "lead: the law \"paper\" has no use for it; leave it out"),

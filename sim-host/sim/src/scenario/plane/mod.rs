@@ -29,7 +29,7 @@ pub use table::*;
 
 use super::ranges::within;
 use super::source::Source;
-use super::{Formation, Part, Robot, Scenario, ScenarioError, ScenarioFile};
+use super::{Formation, FormationSetup, Part, Robot, Scenario, ScenarioError, ScenarioFile};
 use crate::nearby::Space;
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
@@ -173,17 +173,13 @@ impl Scenario {
             parts: Vec::new(),
             plane: Some(setup),
             route: RouteSetup::default(),
-            formation_params: FormationParams::default(),
+            formation_law: FormationSetup::Staya(FormationParams::default()),
             law: None,
-            published: None,
-            looks_ahead: false,
             sensing: None,
             faults: Vec::new(),
             interventions: Vec::new(),
             misnumbered: Vec::new(),
-            key: None,
-            key_remark: None,
-            keeping: None,
+            keys: None,
             plausibility: PlausibilityLimits::ANY,
             maps: None,
             attacks: Vec::new(),
