@@ -61,9 +61,13 @@ enum Command {
     /// Flights with your build of ArduPilot
     Autopilots(autopilots::Options),
     /// Benchmarks: medians, ratios, goals
-    Bench { name: Option<String> },
+    Bench {
+        /// Only benchmarks whose name contains this
+        name: Option<String>,
+    },
     /// Rewrite golden files by tests named NAME
     Bless {
+        /// Part of the tests' names
         #[arg(default_value = "golden")]
         name: String,
     },
@@ -74,7 +78,10 @@ enum Command {
     /// The library for C, on this machine and on an emulated STM32F405
     C,
     /// MAVLink clients against staya
-    Clients { name: Option<String> },
+    Clients {
+        /// Only tests whose name contains this
+        name: Option<String>,
+    },
     /// Sweeps on Slurm and GNU parallel, on this machine
     Cluster,
     /// The example firmware of examples/stm32f4
@@ -90,6 +97,7 @@ enum Command {
     Firmware(firmware::Options),
     /// Each fuzz target for some seconds
     Fuzz {
+        /// Seconds for each target
         #[arg(long, value_name = "N", default_value = "60")]
         seconds: NonZeroU64,
     },
