@@ -167,7 +167,7 @@ impl<'a> Story<'a> {
             }
         }
         if self.colour_by != ColourBy::Mode && samples().any(|sample| sample.mode == Mode::Fault) {
-            keys.push(("down".into(), DOWN));
+            keys.push((Mode::Fault.name().to_owned(), DOWN));
         }
         if self.scenario.plane.as_ref().is_some_and(|setup| !setup.intruders.is_empty()) {
             keys.push(("intruder".into(), marks::INTRUDER));
