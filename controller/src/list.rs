@@ -4,9 +4,9 @@
 use heapless::{LenType, Vec};
 
 /// A list that is short in nearly all robots, such as pending requests. Firmware reserves its
-/// memory; hosts with many robots allocate it on demand.
+/// memory, with a length of type `L`; hosts with many robots allocate it on demand.
 #[cfg(all(not(feature = "host"), any(feature = "route", feature = "wire")))]
-pub(crate) type SparseVec<T, const N: usize> = heapless::Vec<T, N>;
+pub(crate) type SparseVec<T, const N: usize, L = usize> = heapless::Vec<T, N, L>;
 #[cfg(feature = "host")]
 pub(crate) use sparse_vec::SparseVec;
 

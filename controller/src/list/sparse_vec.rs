@@ -1,19 +1,20 @@
 //! A bounded list that allocates memory on demand.
 
 use alloc::vec::Vec;
+use core::marker::PhantomData;
 use core::ops::{Deref, DerefMut};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// At most `N` items, with the functions of [`heapless::Vec`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct SparseVec<T, const N: usize>(Vec<T>);
+pub(crate) struct SparseVec<T, const N: usize, L = usize>(Vec<T>, PhantomData<L>);
 
 /// Bytes by which a list grows, about: unused memory of that size costs less than moves.
 const STEP: usize = 48;
 
-impl<T, const N: usize> SparseVec<T, N> {
+impl<T, const N: usize, L> SparseVec<T, N, L> {
     pub(crate) const fn new() -> Self {
-        Self(Vec::new())
+        Self(Vec::new(), PhantomData)
     }
 
     pub(crate) fn is_full(&self) -> bool {
@@ -46,26 +47,26 @@ impl<T, const N: usize> SparseVec<T, N> {
     }
 }
 
-impl<T, const N: usize> Default for SparseVec<T, N> {
+impl<T, const N: usize, L> Default for SparseVec<T, N, L> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T, const N: usize> Deref for SparseVec<T, N> {
+impl<T, const N: usize, L> Deref for SparseVec<T, N, L> {
     type Target = [T];
     fn deref(&self) -> &[T] {
         &self.0
     }
 }
 
-impl<T, const N: usize> DerefMut for SparseVec<T, N> {
+impl<T, const N: usize, L> DerefMut for SparseVec<T, N, L> {
     fn deref_mut(&mut self) -> &mut [T] {
         &mut self.0
     }
 }
 
-impl<'a, T, const N: usize> IntoIterator for &'a SparseVec<T, N> {
+impl<'a, T, const N: usize, L> IntoIterator for &'a SparseVec<T, N, L> {
     type Item = &'a T;
     type IntoIter = core::slice::Iter<'a, T>;
     fn into_iter(self) -> Self::IntoIter {
@@ -73,7 +74,7 @@ impl<'a, T, const N: usize> IntoIterator for &'a SparseVec<T, N> {
     }
 }
 
-impl<'a, T, const N: usize> IntoIterator for &'a mut SparseVec<T, N> {
+impl<'a, T, const N: usize, L> IntoIterator for &'a mut SparseVec<T, N, L> {
     type Item = &'a mut T;
     type IntoIter = core::slice::IterMut<'a, T>;
     fn into_iter(self) -> Self::IntoIter {
@@ -82,16 +83,16 @@ impl<'a, T, const N: usize> IntoIterator for &'a mut SparseVec<T, N> {
 }
 
 // Like `heapless::Vec`, so that digests are equal.
-impl<T: Serialize, const N: usize> Serialize for SparseVec<T, N> {
+impl<T: Serialize, const N: usize, L> Serialize for SparseVec<T, N, L> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.deref().serialize(serializer)
     }
 }
 
-impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for SparseVec<T, N> {
+impl<'de, T: Deserialize<'de>, const N: usize, L> Deserialize<'de> for SparseVec<T, N, L> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let items = heapless::Vec::<T, N>::deserialize(deserializer)?;
-        Ok(Self(items.into_iter().collect()))
+        Ok(Self(items.into_iter().collect(), PhantomData))
     }
 }
 

@@ -5,9 +5,9 @@ use super::make_way::MakeWay;
 use super::protocol::{WAYPOINTS, Waypoint, WaypointOrder, Waypoints};
 use crate::geom::{Vec2, Vec3};
 use crate::law::{Action, BadInput, Decision, InPlane, Law, Scene, Status, Tools, View, Wait};
+use crate::list::SparseVec;
 use crate::parameters::{Parameters, SPEED, TOLERANCE};
 use crate::scalar::Scalar;
-use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 crate::parameters! {
@@ -25,7 +25,7 @@ const PASSED_RADII: i32 = 3;
 /// waypoint. The course is passed in the order of indices.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WaypointGuidance<S> {
-    course: Vec<Waypoint<S>, WAYPOINTS, u8>,
+    course: SparseVec<Waypoint<S>, WAYPOINTS, u8>,
     leg: u8,
     beside: GoalOccupancy<S>,
     make_way: MakeWay<S>,
@@ -38,7 +38,14 @@ impl<S: Scalar> WaypointGuidance<S> {
     /// some millimetres, because waypoints are rounded to millimetres.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
-        Self { course: Vec::new(), leg: 0, beside: GoalOccupancy::NEW, make_way: MakeWay::NEW, tolerance_m, speed_mps }
+        Self {
+            course: SparseVec::new(),
+            leg: 0,
+            beside: GoalOccupancy::NEW,
+            make_way: MakeWay::NEW,
+            tolerance_m,
+            speed_mps,
+        }
     }
 
     /// Starts a new course.
