@@ -8,6 +8,7 @@ use super::{KinematicState, Outgoing, Protocol, Radio};
 use crate::body::Body;
 use crate::geom::{Position, Torus, Vec3};
 use crate::law::Queued;
+use crate::list::SparseVec;
 use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
@@ -16,7 +17,6 @@ use crate::wire::{
     Ack, Addressed, Arrival, Beacon, Broadcast, Content, DecodeError, Due, EncodeError, Frame, Header,
     IncomingMessages, IncomingOrders, KeyHeld, MAX_PAYLOAD, Message, OutgoingMessages, SequenceWindow, Wire,
 };
-use heapless::Vec;
 use lost::LostNews;
 use serde::{Deserialize, Serialize};
 
@@ -55,7 +55,7 @@ pub(super) struct Link<S, const N: usize, W, Q: Protocol> {
     pub(super) listening: Listening,
     suspects: PlausibilityFilter,
     loss: LossEstimate,
-    windows: Vec<(RobotId, SequenceWindow), N>,
+    windows: SparseVec<(RobotId, SequenceWindow), N>,
     outgoing: OutgoingMessages<PENDING>,
     incoming: IncomingMessages<INCOMING>,
     orders: IncomingOrders<ORDERS>,
@@ -91,7 +91,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             listening: Listening::NotStarted,
             suspects: PlausibilityFilter::new(),
             loss: LossEstimate::new(),
-            windows: Vec::new(),
+            windows: SparseVec::new(),
             outgoing: OutgoingMessages::new(id, boot, retry),
             incoming: IncomingMessages::new(ages.expire_after),
             orders: IncomingOrders::new(),
@@ -163,32 +163,33 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         self.wire.next_frame(inbox)
     }
 
+    /// Decodes a frame, or counts it as rejected. Frames of other systems on the same band count as
+    /// neither received nor rejected.
+    pub(super) fn decode(&mut self, bytes: &[u8], out: &mut Outputs<S>) -> Option<Frame> {
+        let error = match self.wire.decode(bytes) {
+            Ok(frame) => return Some(frame),
+            Err(DecodeError::Foreign) => return None,
+            Err(error) => error,
+        };
+        out.refused.count(error);
+        out.rejected = out.rejected.saturating_add(1);
+        None
+    }
+
     /// Returns a message that the agent must handle.
     pub(super) fn hear(
         &mut self,
-        bytes: &[u8],
+        frame: &Frame,
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
     ) -> Option<Received<Q>> {
-        let frame = match self.wire.decode(bytes) {
-            // Frames of other systems on the same band count as neither received nor rejected.
-            Err(DecodeError::Foreign) => return None,
-            Err(error) => {
-                out.refused.count(error);
-                None
-            }
-            Ok(frame) => Some(frame),
-        };
-        let frame = frame.and_then(|frame| {
-            let id = self.known_as(&frame, listener, out)?;
-            let arrival = self.arrival(id, frame.header, out)?;
-            Some((frame, id, arrival))
-        });
-        let count = if frame.is_some() { &mut out.received } else { &mut out.rejected };
+        let id = self.known_as(frame, listener, out);
+        let accepted = id.and_then(|id| Some((id, self.arrival(id, frame.header, out)?)));
+        let count = if accepted.is_some() { &mut out.received } else { &mut out.rejected };
         *count = count.saturating_add(1);
-        let (frame, id, arrival) = frame?;
-        self.take(&frame, id, arrival, now, listener, out)
+        let (id, arrival) = accepted?;
+        self.take(frame, id, arrival, now, listener, out)
     }
 
     /// `None` if the frame must be refused.

@@ -17,7 +17,7 @@ use crate::safety::is_hindered;
 use crate::scalar::Scalar;
 use crate::supervisor::{moves, next_mode};
 use crate::time::{Duration, Instant};
-use crate::wire::Wire;
+use crate::wire::{Frame, Wire};
 use heapless::Vec;
 
 const PURPOSE: u32 = u32::from_be_bytes(*b"step");
@@ -58,8 +58,20 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
 
     /// The first half of [`Agent::step_into`]: clears `out` and receives frames and detections.
     pub fn hear_into(&mut self, inputs: &Inputs<'_, S, L::Surroundings<'_>>, now: Instant, out: &mut Outputs<S>) {
+        self.hear_decoded_into(core::iter::empty(), inputs, now, out);
+    }
+
+    /// [`Agent::hear_into`] with frames that came before the bytes of the inbox, and that its wire
+    /// format has already decoded: for a host whose robots hear the same frames. O(frames * N).
+    pub fn hear_decoded_into<'f>(
+        &mut self,
+        frames: impl Iterator<Item = &'f Frame>,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
+        now: Instant,
+        out: &mut Outputs<S>,
+    ) {
         out.clear();
-        self.hear(inputs, now, out);
+        self.hear(frames, inputs, now, out);
         self.merge_sightings(inputs.state.position, now, out);
     }
 
@@ -125,7 +137,13 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
     }
 
     #[inline(never)]
-    fn hear(&mut self, inputs: &Inputs<'_, S, L::Surroundings<'_>>, now: Instant, out: &mut Outputs<S>) {
+    fn hear<'f>(
+        &mut self,
+        mut frames: impl Iterator<Item = &'f Frame>,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
+        now: Instant,
+        out: &mut Outputs<S>,
+    ) {
         let body = self.body(inputs);
         let Self { config, law, safety, link, last, .. } = self;
         let leader = law.report().leader;
@@ -145,7 +163,16 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             report(out, Event::ContactLost);
         }
         let mut inbox = inputs.inbox;
-        while let Some(bytes) = link.next_frame(&mut inbox) {
+        loop {
+            let own_frame;
+            let frame = if let Some(frame) = frames.next() {
+                frame
+            } else {
+                let Some(bytes) = link.next_frame(&mut inbox) else { break };
+                let Some(frame) = link.decode(bytes, out) else { continue };
+                own_frame = frame;
+                &own_frame
+            };
             let listener = ReceiveContext {
                 position: own,
                 velocity_mps: inputs.state.velocity_mps,
@@ -155,7 +182,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 plausibility: &config.plausibility,
                 needs: &|id| id == leader || id == config.id.duplicate() || law.needs(id),
             };
-            match link.hear(bytes, now, &listener, out) {
+            match link.hear(frame, now, &listener, out) {
                 Some(Received::Message(from, message, receipt)) => {
                     let takes = law.receive(from, &message, &mut Radio::new(now, config.message_valid, &mut outgoing));
                     if let Some(receipt) = receipt.filter(|_| takes) {

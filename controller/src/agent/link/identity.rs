@@ -68,12 +68,13 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let double = if has_doubles { self.known(header.sender.duplicate()) } else { None };
         match (self.known(header.sender), double) {
             (None, _) => false,
-            (Some(known), None) => !is_within(
-                self.image(place, known.position),
-                known,
-                self.time_since(known, header, listener),
-                fastest_mps,
-            ),
+            (Some(known), None) => {
+                let place = self.image(place, known.position);
+                let is_within = |time| is_within(place, known, time, fastest_mps);
+                // Numbers only add to the time, and take a search.
+                !is_within(known.age(at).unwrap_or(Duration::ZERO))
+                    && !is_within(self.time_since(known, header, listener))
+            }
             (Some(known), Some(double)) => {
                 let longest = self.table.ages().stale_after;
                 let distance = |known: &Neighbor<S, Q::Payload>| {

@@ -74,7 +74,8 @@ impl Engine {
                 continue;
             }
             let moment = Tick { tick, ground: &*self.ground, radio: &self.radio, orders };
-            let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
+            let delivered = moment.inbox(index, computer).pieces();
+            let inputs = moment.inputs(index, computer, &mut senses, delivered, &mut heard);
             let now = computer.now(tick, self.tick_us);
             external.controllers.send(index, tick, now, &inputs);
         }

@@ -2,7 +2,7 @@
 
 use super::witness::Asked;
 use super::{Engine, Senses, Tick, WIDE};
-use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Law as _};
+use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Law as _, Outputs};
 use staya_controller::cost::TICK;
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Cell;
@@ -116,13 +116,16 @@ impl Engine {
         let (mut senses, mut heard) = (Senses::default(), Vec::new());
         let orders = self.ground.view(self.tick).orders;
         let moment = Tick { tick: self.tick, ground: &*self.ground, radio: &self.radio, orders };
-        let inputs = moment.inputs(index, computer, &mut senses, &mut heard);
+        let inbox = moment.inbox(index, computer);
+        let inputs = moment.inputs(index, computer, &mut senses, iter::once(inbox.bytes), &mut heard);
         let now = computer.now(self.tick, self.tick_us);
         let mut workspace = GridWorkspace::<WIDE>::default();
         let mut seen = Vec::new();
         self.ground.sightings(index, self.tick, &mut seen);
         let _ = agent.see(&seen, &inputs.state, now);
-        let out = agent.step(&inputs, now, &mut workspace);
+        let mut out = Outputs::default();
+        agent.hear_decoded_into(inbox.frames(), &inputs, now, &mut out);
+        agent.act_into(&inputs, now, &mut workspace, &mut out);
         let own = inputs.state.position;
         let own_m = self.ground.motion(index, self.tick).position_m;
         let window = match &inputs.surroundings {

@@ -47,7 +47,7 @@ pub use status::Status;
 
 use crate::metrics::waits::Waits;
 use crate::metrics::{Arrivals, FormationMeters, FormationQuality, Member, in_cells};
-use crate::radio::{self, HostWire, Radio};
+use crate::radio::{self, HostWire, Inbox, Radio};
 use crate::record::{Motion, PacketCounts, TickRow};
 use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
@@ -65,6 +65,7 @@ use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
 use staya_controller::wire::Ring;
 use std::collections::{HashMap, VecDeque};
+use std::iter;
 use std::ops::Range;
 pub use transmitter::Transmitter;
 use transmitters::transmitters;
@@ -109,29 +110,28 @@ struct Tick<'a> {
 }
 
 impl Tick<'_> {
-    fn inputs<'b>(
+    /// Received bytes, behind the decoded frames.
+    fn inbox<'b>(&'b self, index: usize, computer: &OnboardComputer) -> Inbox<'b> {
+        let inbox = self.radio.inbox(index);
+        // Frames that arrived while it was down are lost.
+        let has_just_restarted = computer.boot > 0 && computer.epoch == self.tick;
+        if has_just_restarted { inbox.cleared() } else { inbox }
+    }
+
+    /// The inputs with these received bytes, and the orders behind them.
+    fn inputs<'b, 'c>(
         &'b self,
         index: usize,
         computer: &OnboardComputer,
         senses: &'b mut Senses,
+        delivered: impl Iterator<Item = &'c [u8]>,
         heard: &'b mut Vec<u8>,
     ) -> AnyInputs<'b, f32> {
-        // Frames that arrived while it was down are lost.
-        let has_just_restarted = computer.boot > 0 && computer.epoch == self.tick;
-        let delivered = match has_just_restarted {
-            true => &[],
-            false => self.radio.inbox(index),
-        };
-        let inbox = if self.orders.is_empty() && computer.mail.is_empty() {
-            delivered
-        } else {
-            heard.clear();
-            for bytes in [delivered, self.orders, &computer.mail] {
-                heard.extend_from_slice(bytes);
-            }
-            heard
-        };
-        Inputs { inbox, ..self.ground.sense(index, self.tick, senses) }
+        heard.clear();
+        delivered.for_each(|bytes| heard.extend_from_slice(bytes));
+        heard.extend_from_slice(self.orders);
+        heard.extend_from_slice(&computer.mail);
+        Inputs { inbox: heard, ..self.ground.sense(index, self.tick, senses) }
     }
 }
 
@@ -224,7 +224,9 @@ impl Engine {
             shapes: scenario.formations.iter().map(Formation::members).collect(),
             is_mute: scenario.sensing.is_some_and(|sensing| !sensing.has_beacons),
             meter: FormationMeters::new(scenario),
-            radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
+            radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids)
+                .on_torus(scenario.torus_m())
+                .with_keys(scenario.key().is_some()),
             ground,
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],
@@ -399,7 +401,9 @@ impl Engine {
                         return PacketCounts::default();
                     }
                     let now = computer.now(tick, tick_us);
-                    let inputs = moment.inputs(index, computer, senses, heard);
+                    let inbox = moment.inbox(index, computer);
+                    let inputs = moment.inputs(index, computer, senses, iter::once(inbox.bytes), heard);
+                    let heard_bytes = inbox.frame_bytes() + inputs.inbox.len();
                     let Some(agent) = &mut computer.agent else {
                         return PacketCounts::default();
                     };
@@ -407,12 +411,12 @@ impl Engine {
                     if !seen.is_empty() {
                         let _ = agent.see(seen, &inputs.state, now);
                     }
-                    agent.step_into(&inputs, now, workspace, out);
+                    agent.hear_decoded_into(inbox.frames(), &inputs, now, out);
+                    agent.act_into(&inputs, now, workspace, out);
                     if is_mute {
                         out.outbox.clear();
                     }
-                    let heard_bytes = inputs.inbox.len() as u64;
-                    computer.heard_bytes += heard_bytes;
+                    computer.heard_bytes += heard_bytes as u64;
                     computer.sent_bytes += out.outbox.len() as u64;
                     // Beacons have similar lengths, so the buffer does not need spare capacity.
                     computer.outbox.reserve_exact(out.outbox.len());

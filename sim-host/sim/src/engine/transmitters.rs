@@ -33,7 +33,7 @@ impl Engine {
                 self.others[at].take(&ring);
             }
             let (other, intruders) = (&mut self.others[at], self.ground.view(self.tick).intruders);
-            other.act(self.tick, self.radio.inbox(robots + at), intruders);
+            other.act(self.tick, &self.radio.inbox(robots + at).to_vec(), intruders);
             self.positions_m[robots + at] = other.place_m(intruders);
         }
     }

@@ -95,7 +95,7 @@ impl Radio {
 
     fn resize(&mut self) {
         self.medium.resize(self.receivers.len());
-        self.inboxes.resize_with(self.receivers.len().div_ceil(BLOCK), Inboxes::new);
+        self.inboxes.resize_with(self.receivers.len().div_ceil(BLOCK), Inboxes::default);
     }
 
     fn put(&mut self, index: usize, end: End) {

@@ -138,9 +138,14 @@ impl Fates {
         (u64::from(tick) + 1) * self.tick_us
     }
 
+    /// Whether bits can flip.
+    pub(super) fn damages(&self) -> bool {
+        self.ln_intact != 0.0
+    }
+
     /// Returns whether any bit flipped. The radio separates packets, so it spares the last byte.
     pub(super) fn damage(&self, draws: &mut Rng, packet: &mut [u8]) -> bool {
-        if self.ln_intact == 0.0 {
+        if !self.damages() {
             return false;
         }
         let bytes = match packet {

@@ -1,7 +1,7 @@
 //! Packets that arrive in a later tick. Their bytes are kept once for all receivers.
 
+use super::append;
 use super::medium::{Medium, Packet};
-use super::{Inboxes, append};
 use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
 use std::collections::{HashMap, VecDeque};
@@ -100,7 +100,7 @@ impl Late {
     }
 
     /// Moves the packets that arrive until `now_us` to an inbox.
-    pub(super) fn release(&mut self, now_us: u64, air: &Air, inbox: &mut Inboxes) {
+    pub(super) fn release(&mut self, now_us: u64, air: &Air, inbox: &mut Vec<u8>) {
         if self.held.is_empty() {
             return;
         }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use staya_controller::agent::OUTBOX;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::Wire;
+use staya_controller::wire::{Frame, Wire};
 use staya_mavlink::any::AnyWire;
 use std::ops::Add;
 
@@ -23,15 +23,54 @@ pub(super) struct Packet {
     part: u32,
     start: u32,
     length: u16,
+    /// Index in [`Part::frames`], or [`UNREAD`].
+    frame: u32,
 }
+
+impl Packet {
+    pub(super) const fn len(&self) -> usize {
+        self.length as usize
+    }
+}
+
+/// Marks a packet that each receiver must decode itself.
+const UNREAD: u32 = u32::MAX;
 
 const PART: usize = 1024;
 
 #[derive(Clone, Debug, Default)]
 struct Part {
     bytes: Vec<u8>,
+    frames: Vec<Frame>,
     queue: Vec<(u32, Packet)>,
     counts: Counts,
+}
+
+impl Part {
+    fn clear(&mut self) {
+        self.bytes.clear();
+        self.frames.clear();
+        self.queue.clear();
+        self.counts = Counts::default();
+    }
+
+    /// Appends the bytes of a packet and, with a `wire`, its frame. Returns start, length and the
+    /// index of the frame.
+    fn push(&mut self, bytes: &[u8], wire: Option<&AnyWire>) -> (u32, u16, u32) {
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(bytes);
+        let frame = wire.and_then(|wire| {
+            // Without its delimiter a frame would continue in the next packet.
+            self.bytes.push(1);
+            let frame = wire.next_frame(&mut &self.bytes[start..]).and_then(|frame| wire.clone().decode(frame).ok());
+            self.bytes.pop();
+            frame
+        });
+        let number = self.frames.len() as u32;
+        let number = if frame.is_some() { number } else { UNREAD };
+        self.frames.extend(frame);
+        (start as u32, bytes.len() as u16, number)
+    }
 }
 
 /// Token buckets of the bandwidth limit, in millionths of a byte.
@@ -45,6 +84,8 @@ struct Buckets {
 #[derive(Clone, Debug)]
 pub(super) struct Medium {
     wire: AnyWire,
+    /// Receivers have keys, so that each must decode each frame itself.
+    has_keys: bool,
     seed: u64,
     range_m: f64,
     torus_m: Option<[f64; 2]>,
@@ -73,6 +114,7 @@ impl Medium {
         });
         Self {
             wire: AnyWire::new(params.format),
+            has_keys: false,
             seed,
             range_m: params.range_m,
             torus_m: None,
@@ -86,6 +128,10 @@ impl Medium {
 
     pub(super) const fn set_range_m(&mut self, range_m: f64) {
         self.range_m = range_m;
+    }
+
+    pub(super) const fn set_keys(&mut self, has_keys: bool) {
+        self.has_keys = has_keys;
     }
 
     pub(super) const fn set_torus_m(&mut self, torus_m: Option<[f64; 2]>) {
@@ -126,7 +172,7 @@ impl Medium {
             Some(buckets) => buckets.tokens.chunks_mut(PART).map(Some).collect(),
             None => self.parts.iter().map(|_| None).collect(),
         };
-        let (wire, lattice, seed) = (&self.wire, &self.lattice, self.seed);
+        let (wire, lattice, seed, has_keys) = (&self.wire, &self.lattice, self.seed, self.has_keys);
         let parts = (&mut self.parts, &mut buckets, outboxes.par_chunks(PART)).into_par_iter().enumerate();
         parts.for_each(|(number, (part, tokens, outboxes))| {
             part.clear();
@@ -141,10 +187,10 @@ impl Medium {
                         part.counts.throttled += 1;
                         continue;
                     }
-                    let (start, length) = (part.bytes.len() as u32, bytes.len() as u16);
-                    let packet = Packet { sender, number: place, key, from_m, part: number as u32, start, length };
+                    let (start, length, frame) = part.push(bytes, (!has_keys).then_some(wire));
+                    let packet =
+                        Packet { sender, number: place, key, from_m, part: number as u32, start, length, frame };
                     part.counts.sent += 1;
-                    part.bytes.extend_from_slice(bytes);
                     part.queue.push((cell, packet));
                 }
             }
@@ -167,10 +213,9 @@ impl Medium {
         let number = self.parts.len() as u32;
         for Sent { sender, number: place, from_m, bytes } in elsewhere {
             let key = Rng::keyed(self.seed, PACKET, sender.0, tick).next_u64();
-            let (start, length) = (part.bytes.len() as u32, bytes.len() as u16);
-            part.bytes.extend_from_slice(bytes);
+            let (start, length, frame) = part.push(bytes, (!self.has_keys).then_some(&self.wire));
             let (sender, from_m) = (*sender, *from_m);
-            let packet = Packet { sender, number: *place, key, from_m, part: number, start, length };
+            let packet = Packet { sender, number: *place, key, from_m, part: number, start, length, frame };
             part.queue.push((self.lattice.cell(from_m) as u32, packet));
         }
         self.parts.push(part);
@@ -254,6 +299,11 @@ impl Medium {
     pub(super) fn bytes(&self, packet: &Packet) -> &[u8] {
         let bytes = &self.parts[packet.part as usize].bytes;
         &bytes[packet.start as usize..][..packet.length.into()]
+    }
+
+    /// The packet's frame, if any receiver decodes these bytes to it, whatever bytes follow.
+    pub(super) fn frame(&self, packet: &Packet) -> Option<&Frame> {
+        self.parts[packet.part as usize].frames.get(packet.frame as usize)
     }
 }
 
@@ -351,12 +401,4 @@ fn take(tokens: &mut u64, bytes: usize) -> bool {
         *tokens -= price;
     }
     enough
-}
-
-impl Part {
-    fn clear(&mut self) {
-        self.bytes.clear();
-        self.queue.clear();
-        self.counts = Counts::default();
-    }
 }

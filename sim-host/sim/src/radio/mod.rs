@@ -25,6 +25,7 @@ use medium::Medium;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
+use staya_controller::wire::Frame;
 use std::ops::{Add, AddAssign, Range};
 
 /// Packet statistics; receptions are counted per receiver in range.
@@ -64,15 +65,61 @@ impl AddAssign for Counts {
 #[derive(Clone, Debug, Default)]
 struct Receiver {
     id: RobotId,
-    /// Range of its inbox in its block's [`Inboxes`].
-    inbox: Range<u32>,
+    /// Ranges of its inbox in its block's [`Inboxes`].
+    packets: Range<u32>,
+    bytes: Range<u32>,
     late: Option<Box<Late>>,
     log: Option<Vec<(RobotId, Reception)>>,
 }
 
 const BLOCK: usize = 64;
 
-type Inboxes = Vec<u8>;
+/// The inboxes of [`BLOCK`] receivers.
+#[derive(Clone, Debug, Default)]
+struct Inboxes {
+    /// Numbers in the [`Medium`] of packets that were already decoded.
+    packets: Vec<u32>,
+    bytes: Vec<u8>,
+}
+
+/// What a robot received for its next step.
+#[derive(Clone, Copy, Debug)]
+pub struct Inbox<'a> {
+    medium: &'a Medium,
+    packets: &'a [u32],
+    /// What came behind the decoded frames: from the first frame on that is damaged, late, sealed
+    /// or none.
+    pub bytes: &'a [u8],
+}
+
+impl<'a> Inbox<'a> {
+    /// An inbox without frames.
+    pub const fn cleared(self) -> Self {
+        Self { packets: &[], bytes: &[], ..self }
+    }
+
+    /// The first frames, decoded.
+    pub fn frames(self) -> impl Iterator<Item = &'a Frame> {
+        self.packets.iter().filter_map(move |&at| self.medium.frame(self.medium.packet(at)))
+    }
+
+    /// Length of the first frames, bytes.
+    pub fn frame_bytes(self) -> usize {
+        self.packets.iter().map(|&at| self.medium.packet(at).len()).sum()
+    }
+
+    /// The pieces of all received bytes.
+    pub fn pieces(self) -> impl Iterator<Item = &'a [u8]> {
+        let packets = self.packets.iter().map(move |&at| self.medium.bytes(self.medium.packet(at)));
+        packets.chain([self.bytes])
+    }
+
+    /// All received bytes.
+    #[must_use]
+    pub fn to_vec(self) -> Vec<u8> {
+        self.pieces().flatten().copied().collect()
+    }
+}
 
 /// Fate of one packet at one receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,7 +167,7 @@ impl Radio {
             fates: Fates::new(params, seed, tick_us),
             medium: Medium::new(params, seed, tick_us, receivers.len()),
             air: Air::new(tick_us),
-            inboxes: vec![Inboxes::new(); receivers.len().div_ceil(BLOCK)],
+            inboxes: vec![Inboxes::default(); receivers.len().div_ceil(BLOCK)],
             receivers,
             total: Counts::default(),
         }
@@ -133,11 +180,22 @@ impl Radio {
         self
     }
 
-    /// Bytes that robot `index` (in the order given to [`Radio::new`]) received for its next step.
+    /// Sets whether the receivers have keys. Without keys a packet is decoded once for all of them.
     #[must_use]
-    pub fn inbox(&self, index: usize) -> &[u8] {
-        let Range { start, end } = self.receivers[index].inbox;
-        &self.inboxes[index / BLOCK][start as usize..end as usize]
+    pub const fn with_keys(mut self, has_keys: bool) -> Self {
+        self.medium.set_keys(has_keys);
+        self
+    }
+
+    /// What robot `index` (in the order given to [`Radio::new`]) received for its next step.
+    #[must_use]
+    pub fn inbox(&self, index: usize) -> Inbox<'_> {
+        let (Receiver { packets, bytes, .. }, inboxes) = (&self.receivers[index], &self.inboxes[index / BLOCK]);
+        Inbox {
+            medium: &self.medium,
+            packets: &inboxes.packets[packets.start as usize..packets.end as usize],
+            bytes: &inboxes.bytes[bytes.start as usize..bytes.end as usize],
+        }
     }
 
     /// Changes the loss probability and the range in metres; `None` keeps a value.
@@ -192,7 +250,8 @@ impl Radio {
         let received = blocks
             .into_par_iter()
             .map_init(Vec::new, |heard, (receivers, positions_m, inboxes)| {
-                inboxes.clear();
+                inboxes.packets.clear();
+                inboxes.bytes.clear();
                 let counts = receivers.iter_mut().zip(positions_m).map(|(receiver, &position_m)| {
                     medium.heard_at(position_m, receiver.id, heard);
                     receiver.receive(tick, medium, heard, (fates, air), inboxes)
@@ -216,7 +275,7 @@ impl Receiver {
         inboxes: &mut Inboxes,
     ) -> Counts {
         let mut counts = Counts::default();
-        let begin = inboxes.len();
+        let (packets, begin) = (inboxes.packets.len() as u32, inboxes.bytes.len());
         if let Some(log) = &mut self.log {
             log.clear();
         }
@@ -235,10 +294,14 @@ impl Receiver {
                 let after_us = fates.after_us(&mut draws);
                 let bytes = medium.bytes(packet);
                 let is_damaged = match after_us {
+                    None if inboxes.bytes.len() == begin && !fates.damages() && medium.frame(packet).is_some() => {
+                        append(&mut inboxes.packets, &[at]);
+                        false
+                    }
                     None => {
-                        let start = inboxes.len();
-                        append(inboxes, bytes);
-                        fates.damage(&mut draws, &mut inboxes[start..])
+                        let start = inboxes.bytes.len();
+                        append(&mut inboxes.bytes, bytes);
+                        fates.damage(&mut draws, &mut inboxes.bytes[start..])
                     }
                     Some(after_us) => {
                         let late = self.late.get_or_insert_default();
@@ -254,19 +317,20 @@ impl Receiver {
             }
         }
         if let Some(late) = &mut self.late {
-            late.release(fates.next_step_us(tick), air, inboxes);
+            late.release(fates.next_step_us(tick), air, &mut inboxes.bytes);
         }
-        self.inbox = begin as u32..inboxes.len() as u32;
+        self.packets = packets..inboxes.packets.len() as u32;
+        self.bytes = begin as u32..inboxes.bytes.len() as u32;
         counts
     }
 }
 
 /// Appends to a buffer that grows by an eighth, because there are many of them.
-fn append(buffer: &mut Vec<u8>, bytes: &[u8]) {
-    if buffer.capacity() - buffer.len() < bytes.len() {
-        buffer.reserve_exact(bytes.len() + buffer.len() / 8);
+fn append<T: Copy>(buffer: &mut Vec<T>, items: &[T]) {
+    if buffer.capacity() - buffer.len() < items.len() {
+        buffer.reserve_exact(items.len() + buffer.len() / 8);
     }
-    buffer.extend_from_slice(bytes);
+    buffer.extend_from_slice(items);
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ impl Radio {
     pub(crate) fn end(&self, index: usize) -> impl Serialize {
         let receiver = &self.receivers[index];
         let (held, bytes) = receiver.late.as_ref().map(|late| late.saved(&self.air)).unwrap_or_default();
-        (self.inbox(index), held, bytes, self.medium.tokens(index))
+        (self.inbox(index).to_vec(), held, bytes, self.medium.tokens(index))
     }
 
     /// Fails if the state belongs to another radio, or is invalid.
@@ -36,9 +36,10 @@ impl Radio {
         let receiver = &mut self.receivers[index];
         // The previous content is removed in the next tick.
         let inboxes = &mut self.inboxes[index / BLOCK];
-        let begin = inboxes.len() as u32;
-        inboxes.extend_from_slice(&inbox);
-        receiver.inbox = begin..inboxes.len() as u32;
+        let (packets, begin) = (inboxes.packets.len() as u32, inboxes.bytes.len() as u32);
+        inboxes.bytes.extend_from_slice(&inbox);
+        receiver.packets = packets..packets;
+        receiver.bytes = begin..inboxes.bytes.len() as u32;
         receiver.late = (!held.is_empty()).then(|| Box::new(late));
         Ok(())
     }

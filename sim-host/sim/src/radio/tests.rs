@@ -1,5 +1,6 @@
 use super::*;
 use proptest::prelude::*;
+use staya_controller::wire::{Beacon, Format, Header, Message, Wire};
 
 const TICK_US: u32 = 100_000;
 const FRAME: [u8; 8] = [7, 7, 7, 7, 7, 7, 7, 0];
@@ -33,11 +34,11 @@ fn a_perfect_radio_delivers_by_sender_and_not_to_the_sender() {
     let mut radio = radio(RadioParams::default(), 3);
     let frames: Vec<_> = (1..=3).map(|i| [i, 0, i, 0]).collect();
     let counts = radio.carry(0, &line(3), |i| &frames[i]);
-    assert_eq!(radio.inbox(0), [2, 0, 2, 0, 3, 0, 3, 0]);
-    assert_eq!(radio.inbox(1), [1, 0, 1, 0, 3, 0, 3, 0]);
+    assert_eq!(radio.inbox(0).to_vec(), [2, 0, 2, 0, 3, 0, 3, 0]);
+    assert_eq!(radio.inbox(1).to_vec(), [1, 0, 1, 0, 3, 0, 3, 0]);
     assert_eq!((counts.sent, counts.delivered, counts.lost), (6, 12, 0));
     radio.carry(1, &line(3), |_| &[]);
-    assert!((0..3).all(|i| radio.inbox(i).is_empty()), "inboxes hold one tick");
+    assert!((0..3).all(|i| radio.inbox(i).to_vec().is_empty()), "inboxes hold one tick");
 }
 
 #[test]
@@ -91,7 +92,7 @@ fn bursts_of_different_links_are_independent() {
     let mut both = 0;
     for tick in 0..20_000 {
         radio.carry(tick, &line(3), |i| if i == 0 { &FRAME } else { &[] });
-        both += u32::from(radio.inbox(1).is_empty() && radio.inbox(2).is_empty());
+        both += u32::from(radio.inbox(1).to_vec().is_empty() && radio.inbox(2).to_vec().is_empty());
     }
     assert!((4_000..6_000).contains(&both), "{both}");
 }
@@ -103,10 +104,10 @@ fn delay_is_rounded_up_to_the_next_step() {
         let mut radio = radio(params, 2);
         let arrived = (0..10).find(|&tick| {
             radio.carry(tick, &line(2), |i| if i == 0 && tick == 0 { &FRAME } else { &[] });
-            !radio.inbox(1).is_empty()
+            !radio.inbox(1).to_vec().is_empty()
         });
         assert_eq!(arrived, Some(steps), "{delay_ms} ms");
-        assert_eq!(radio.inbox(1), FRAME);
+        assert_eq!(radio.inbox(1).to_vec(), FRAME);
     }
 }
 
@@ -121,7 +122,7 @@ fn jitter_and_reorder_change_the_order_and_lose_no_packet() {
             let frame = [1 + tick as u8, 0];
             let sent = if tick < 200 { &frame[..] } else { &[] };
             radio.carry(tick, &line(2), |i| if i == 0 { sent } else { &[] });
-            order.extend(radio.inbox(1).iter().filter(|byte| **byte != 0));
+            order.extend(radio.inbox(1).to_vec().iter().filter(|byte| **byte != 0));
         }
         assert!(order.windows(2).any(|w| w[0] > w[1]), "some overtake");
         order.sort_unstable();
@@ -217,7 +218,7 @@ proptest! {
                 for tick in 0..12 {
                     radio.carry(tick, &positions, |i| &frames[order[i]]);
                     for (at, &i) in order.iter().enumerate() {
-                        heard[i].extend_from_slice(radio.inbox(at));
+                        heard[i].extend_from_slice(&radio.inbox(at).to_vec());
                     }
                 }
                 (radio.total(), heard)
@@ -247,7 +248,51 @@ proptest! {
                 .filter(|&j| j != i && near(&positions[j]))
                 .flat_map(|j| frames[j])
                 .collect();
-            prop_assert_eq!(radio.inbox(i), expected);
+            prop_assert_eq!(radio.inbox(i).to_vec(), expected);
+        }
+    }
+
+    #[test]
+    fn decoded_frames_are_those_that_a_receiver_would_decode(
+        is_mavlink: bool,
+        has_keys: bool,
+        junk in prop::collection::vec((0..5_usize, prop::collection::vec(any::<u8>(), 0..9), 0..3_usize), 1..30),
+    ) {
+        let params = RadioParams {
+            format: if is_mavlink { Format::Mavlink } else { Format::Postcard },
+            ..RadioParams::default()
+        };
+        // Some frames are whole, some cut, some have other bytes before or behind them.
+        let outboxes = junk.into_iter().zip(1..).map(|((kind, other, cut), id)| {
+            let header = Header { boot: 0, sender: RobotId(id), sequence: 7 };
+            let mut frame = heapless::Vec::<u8, 60>::new();
+            let message = Message::Beacon(Beacon { radius_mm: id as u16, ..Beacon::default() });
+            wire(params.format, None, 0).encode(header, &message, &mut frame).expect("room");
+            let frame = frame.to_vec();
+            match kind {
+                0 => frame[..frame.len() - cut].to_vec(),
+                1 => [other, frame].concat(),
+                2 => [frame, other].concat(),
+                _ => [frame.clone(), frame].concat(),
+            }
+        });
+        let outboxes: Vec<Vec<u8>> = outboxes.collect();
+        let robots = outboxes.len();
+        let mut radio = Radio::new(&params, 3, TICK_US, (1..).map(RobotId).take(robots)).with_keys(has_keys);
+        radio.carry(0, &line(robots as u32), |i| &outboxes[i]);
+        let decoded = |bytes: &[u8]| {
+            let (mut rest, mut own) = (bytes, wire(params.format, None, 0));
+            let pieces = std::iter::from_fn(|| own.next_frame(&mut rest)).map(<[u8]>::to_vec).collect::<Vec<_>>();
+            pieces.iter().map(|piece| own.decode(piece)).collect::<Vec<_>>()
+        };
+        for own in 0..robots {
+            let inbox = radio.inbox(own);
+            prop_assert_eq!(inbox.frame_bytes() + inbox.bytes.len(), inbox.to_vec().len());
+            prop_assert!(!has_keys || inbox.frames().next().is_none());
+            let shared = inbox.frames().cloned().map(Ok);
+            let others = (0..robots).filter(|&other| other != own).flat_map(|other| outboxes[other].clone());
+            let sent = decoded(&others.collect::<Vec<_>>());
+            prop_assert_eq!(shared.chain(decoded(inbox.bytes)).collect::<Vec<_>>(), sent);
         }
     }
 
@@ -276,7 +321,7 @@ proptest! {
             prop_assume!(positions.iter().all(|b| (distance_m(b) - range_m).abs() > 1e-9));
             let near = (0..positions.len()).filter(|&j| j != i && distance_m(&positions[j]) <= range_m);
             let expected: Vec<u8> = near.flat_map(|j| frames[j]).collect();
-            prop_assert_eq!(radio.inbox(i), expected);
+            prop_assert_eq!(radio.inbox(i).to_vec(), expected);
         }
     }
 }
