@@ -1,9 +1,10 @@
 //! A ground station that sends orders to a formation and collects the confirmations.
 
-use super::{Graph, GraphError, Order, STATION, orders};
+use super::{Graph, Order, STATION, orders};
 use crate::framed::{framed, signed};
 use crate::{Endpoint, Lines};
 use anyhow::{Result, bail};
+use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::grid::Dir;
 use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_WARNING, MAV_TYPE_GCS};
@@ -45,17 +46,16 @@ impl Given {
 }
 
 /// Assignment of places to robots.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Places {
+    /// Smallest sum of squared distances, so that paths do not cross.
+    Nearest,
     /// In the order of robot numbers, the first in front.
     Number,
-    /// Short paths that do not cross, see [`Graph::nearest`].
-    #[default]
-    Nearest,
 }
 
 /// Selection of robots and their places.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Members {
     /// Selected robots; `None` for all that are found.
     pub robots: Option<BTreeSet<u8>>,
@@ -205,7 +205,7 @@ pub fn numbers(robots: &BTreeSet<u8>) -> String {
 pub fn give(
     endpoint: &Endpoint,
     signing: Option<&mut Signing>,
-    graph: impl FnOnce(usize) -> Result<Graph, GraphError>,
+    graph: impl FnOnce(usize) -> Result<Graph>,
     members: &Members,
     order: &Order,
     wait: Duration,
