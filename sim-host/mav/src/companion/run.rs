@@ -99,7 +99,6 @@ struct Companions<'a> {
     links: Vec<Link>,
     next_look: Duration,
     vehicles: Vec<Vehicle>,
-    wire: AnyWire,
     roll: Roll,
     options: &'a Options,
     log_error: Option<record::Error>,
@@ -207,7 +206,6 @@ impl<'a> Companions<'a> {
             links: config.lines.iter().enumerate().map(link).collect(),
             next_look: Duration::ZERO,
             vehicles: config.vehicles.iter().map(vehicle).collect(),
-            wire: AnyWire::new(format),
             roll: Roll::new(config.overlap, seal.is_some_and(Seal::has_old)),
             options,
             log_error: None,
@@ -432,9 +430,8 @@ impl<'a> Companions<'a> {
             self.machine.tell_others(said);
         }
         if self.config.air == MediumSetup::Tunnel {
-            for message in tunnel(&self.wire, said) {
-                self.send(index, &message);
-            }
+            let messages = tunnel(self.vehicles[index].controller.wire_mut(), said);
+            messages.iter().for_each(|message| self.send(index, message));
         }
     }
 
@@ -444,7 +441,7 @@ impl<'a> Companions<'a> {
         self.vehicles[index].offboard.poll(now, &mut messages);
         while let Some(event) = self.vehicles[index].offboard.event() {
             self.tell(index, &event.to_string());
-            if let Event::State { to, .. } = event {
+            if let Event::State(to) = event {
                 let text = format!("staya: {}", to.words());
                 messages.push(status_text(&text, to.is_worrying()));
             }

@@ -464,8 +464,8 @@ impl OffboardStateMachine {
     }
 
     fn settle(&mut self, now: Duration) {
-        let (from, to) = (self.state, self.next_state(now));
-        if from == to {
+        let to = self.next_state(now);
+        if to == self.state {
             return;
         }
         if to == State::Steering && !self.rules.rehearses {
@@ -479,7 +479,7 @@ impl OffboardStateMachine {
         }
         self.command = None;
         self.state = to;
-        self.events.push_back(Event::State { from, to });
+        self.events.push_back(Event::State(to));
     }
 }
 

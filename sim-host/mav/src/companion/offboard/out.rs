@@ -35,7 +35,7 @@ pub fn request(system: u8, kind: Kind, ask: Ask, altitude_m: f64) -> Option<MavM
     match ask {
         Ask::Mode => Some(command(system, MAV_CMD_DO_SET_MODE, [1.0, f64::from(kind.outside_control())], 0.0)),
         Ask::Arm => Some(command(system, MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0], 0.0)),
-        Ask::Takeoff => (!kind.needs_stream()).then(|| command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)),
+        Ask::Takeoff => (!kind.is_px4()).then(|| command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)),
     }
 }
 
