@@ -15,9 +15,9 @@ use crate::terminal::{number, result_words};
 use crate::{Endpoint, Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
-use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_ERROR};
+use staya_mavlink::constants::MAV_SEVERITY_ERROR;
 use staya_mavlink::dialect::MavMessage;
-use staya_mavlink::frame::{RawFrame, Sender};
+use staya_mavlink::frame::RawFrame;
 use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::{Counts, Signing};
 use staya_sim::engine::{Engine, Moment, operated};
@@ -78,7 +78,6 @@ pub struct Swarm {
     engine: Engine,
     vehicles: Vec<Vehicle>,
     boots: Vec<u8>,
-    senders: Vec<Sender>,
     model: Arc<VehicleModel>,
     lines: Lines,
     options: Options,
@@ -109,27 +108,19 @@ impl Swarm {
             operated(scenario).map_err(|error| anyhow!("the robots cannot be placed: {error}; change their starts"))?;
         let model = Arc::new(VehicleModel::new(scenario, options.origin));
         let count = numbers.len();
-        let mut vehicles = Vec::with_capacity(count);
-        let sender = |system: &u32| Sender { system: *system as u8, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 };
-        let senders = numbers.iter().map(sender).collect();
-        for (index, number) in numbers.into_iter().enumerate() {
-            let vehicle = Vehicle::new(
-                number as u8,
-                Arc::clone(&model),
-                Parameters::new(&model, &engine.parameters(index)),
-                Streams::new(options.rate, index as f64 / count as f64),
-                (0, engine.observation(index)),
-                !options.disarmed,
-            );
-            vehicles.push(vehicle);
-        }
+        let vehicle = |(index, number): (usize, u32)| {
+            let parameters = Parameters::new(&model, &engine.parameters(index));
+            let streams = Streams::new(options.rate, index as f64 / count as f64);
+            let state = (0, engine.observation(index));
+            Vehicle::new(number as u8, Arc::clone(&model), parameters, streams, state, !options.disarmed)
+        };
+        let vehicles = numbers.into_iter().enumerate().map(vehicle).collect();
         let lines = Lines::open(&options.mavlink)?;
         let create = |path: &PathBuf| Tlog::create(path, &mut Files::reading(&scenario.files));
         let log = options.tlog.as_ref().map(create).transpose()?;
         let listing = Budget::per_second(parameters_per_s(&options.mavlink));
         Ok(Self {
             boots: vec![0; count],
-            senders,
             engine,
             vehicles,
             model,
@@ -239,8 +230,8 @@ impl Swarm {
         let mut is_heard = false;
         for index in 0..self.vehicles.len() {
             let vehicle = &mut self.vehicles[index];
-            let is_own = from.system == vehicle.system;
-            if is_for_some && !is_own && (system == 0 || system == vehicle.system) {
+            let is_own = from.system == vehicle.sender.system;
+            if is_for_some && !is_own && (system == 0 || system == vehicle.sender.system) {
                 vehicle.receive(from, &message, now_us);
                 is_heard = true;
                 answers += self.carry_out(index)?;
@@ -325,14 +316,14 @@ impl Swarm {
                 }
             }
         }
-        let messages = &mut self.vehicles[index].out.messages;
-        let answers = messages.len();
-        for message in messages.drain(..) {
+        let Vehicle { sender, out, .. } = &mut self.vehicles[index];
+        let answers = out.messages.len();
+        for message in out.messages.drain(..) {
             if let MavMessage::COMMAND_ACK(ack) = &message {
                 *self.report.commands.entry(result_words(ack.result)).or_default() += 1;
             }
             let signing = self.options.signing.as_mut();
-            let Some(frame) = framed(&mut self.senders[index], &message, signing) else { continue };
+            let Some(frame) = framed(sender, &message, signing) else { continue };
             if let Some(log) = &mut self.log {
                 log.add(&frame)?;
             }

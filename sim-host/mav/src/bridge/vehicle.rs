@@ -49,7 +49,7 @@ pub struct Out {
 /// The vehicle that clients see for one robot.
 #[derive(Clone, Debug)]
 pub struct Vehicle {
-    pub(super) system: u8,
+    pub(super) sender: Sender,
     pub(super) model: Arc<VehicleModel>,
     pub(super) streams: Streams,
     pub(super) parameters: Parameters,
@@ -98,7 +98,7 @@ impl Vehicle {
         let [x, y, _] = seen.motion.position_m;
         let actions = if starts_armed { Vec::new() } else { vec![Action::Wish(Wish::Off)] };
         Self {
-            system,
+            sender: Sender { system, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 },
             streams,
             parameters,
             mission: Mission::default(),
@@ -120,10 +120,16 @@ impl Vehicle {
 
     /// Resets the vehicle after its onboard computer restarted. Only the mission is kept.
     pub fn restart(&mut self, parameters: Parameters, state: (u64, Observation)) {
-        let fresh =
-            Self::new(self.system, Arc::clone(&self.model), parameters, self.streams.clone(), state, self.starts_armed);
+        let fresh = Self::new(
+            self.sender.system,
+            Arc::clone(&self.model),
+            parameters,
+            self.streams.clone(),
+            state,
+            self.starts_armed,
+        );
         let old = core::mem::replace(self, fresh);
-        (self.mission, self.home_m) = (old.mission, old.home_m);
+        (self.mission, self.home_m, self.sender) = (old.mission, old.home_m, old.sender);
         (self.now_us, self.yaw) = (old.now_us, old.yaw);
         self.text(Kind::News, MAV_SEVERITY_WARNING, "restarted");
     }
@@ -287,7 +293,7 @@ impl Vehicle {
 
     fn is_for_me(&self, message: &MavMessage) -> bool {
         let (system, component) = (message.target_system_id(), message.target_component_id());
-        let is_mine = system.is_none_or(|system| system == 0 || system == self.system);
+        let is_mine = system.is_none_or(|system| system == 0 || system == self.sender.system);
         // Broadcasts must not configure all vehicles alike.
         let is_private = matches!(
             message,
@@ -297,7 +303,7 @@ impl Vehicle {
                 | MavMessage::MISSION_ITEM_INT(_)
                 | MavMessage::FILE_TRANSFER_PROTOCOL(_)
         );
-        let is_addressed = !is_private || system == Some(self.system);
+        let is_addressed = !is_private || system == Some(self.sender.system);
         // 0 addresses all components; this vehicle has one.
         let is_here = component.is_none_or(|to| to == 0 || to == MAV_COMP_ID_AUTOPILOT1);
         is_mine && is_addressed && is_here
@@ -346,11 +352,11 @@ impl Vehicle {
     pub(super) fn goal(&self, [x, y, z]: [f64; 3]) -> Option<Wish<f32>> {
         let place_m = [x, y, if self.model.flies { z } else { self.seen.motion.position_m[2] }];
         let is_near = place_m.iter().all(|m| m.abs() <= FAR_M);
+        if self.model.grid.is_some() {
+            return self.model.cell(place_m).map(Wish::Cell);
+        }
         if !is_near || !self.model.has_room(place_m) {
             return None;
-        }
-        if self.model.grid.is_some() {
-            return Some(Wish::Cell(self.model.cell(place_m)?));
         }
         Some(Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_metres(place_m)?), valid: None })
     }

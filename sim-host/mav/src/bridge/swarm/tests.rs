@@ -2,6 +2,7 @@ use super::*;
 use crate::geo::{Global, Origin};
 use staya_controller::auth::Key;
 use staya_mavlink::dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA};
+use staya_mavlink::frame::Sender;
 use staya_sim::scenario::Overrides;
 use std::net::{SocketAddr, UdpSocket};
 use std::path::Path;
