@@ -55,11 +55,6 @@ pub struct FormationArgs {
     key: Option<std::path::PathBuf>,
 }
 
-enum Wanted {
-    Shape(Shape),
-    Graph(Graph),
-}
-
 fn cell(text: &str) -> Result<Cell, String> {
     let numbers: Result<Vec<i16>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     match numbers.as_deref() {
@@ -99,13 +94,9 @@ impl FormationArgs {
     /// # Errors
     /// The shape is unknown or invalid, a link cannot be opened, no robot is found, or one refuses.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        let wanted = match Shape::from_name(&self.shape) {
-            Some(shape) => Wanted::Shape(shape),
-            None => Wanted::Graph(self.read(Path::new(&self.shape))?),
-        };
-        let graph = |robots| match wanted {
-            Wanted::Shape(shape) => shape.graph(robots, self.spacing),
-            Wanted::Graph(graph) => Ok(graph),
+        let graph: Box<dyn FnOnce(usize) -> Result<Graph>> = match Shape::from_name(&self.shape) {
+            Some(shape) => Box::new(move |robots| shape.graph(robots, self.spacing)),
+            None => self.read(Path::new(&self.shape)).map(|graph| Box::new(|_| Ok(graph)))?,
         };
         let mut signing = signing(self.key.as_deref(), 2)?;
         // Every call gets a new boot counter, so robots accept its version 1.
