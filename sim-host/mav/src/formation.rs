@@ -8,10 +8,11 @@ mod nearest;
 pub mod station;
 
 use crate::framed::Frame;
+use anyhow::{Context as _, Error, Result, anyhow, bail, ensure};
 use staya_controller::agent::{Grid, GridOrder, Protocol as _, TEMPLATE, TemplatePart};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::robot::RobotId;
-use staya_controller::template::{Template, TemplateError, rotated};
+use staya_controller::template::{Template, rotated};
 use staya_controller::wire::{Header, Message};
 use staya_mavlink::wire::{MAX_ROBOT, encode};
 use staya_sim::scenario::Source;
@@ -58,8 +59,8 @@ impl Shape {
     /// Builds the formation of `count` robots whose neighbours are `spacing` cells apart.
     ///
     /// # Errors
-    /// [`GraphError`]: too few or too many robots, or places off any map or in one cell.
-    pub fn graph(self, count: usize, spacing: i16) -> Result<Graph, GraphError> {
+    /// Too few or too many robots, or places off any map or in one cell.
+    pub fn graph(self, count: usize, spacing: i16) -> Result<Graph> {
         let robots = i32::try_from(count).unwrap_or(i32::MAX).min(i32::from(MAX_ROBOT) + 1);
         let step = i32::from(spacing);
         let flank = |index: i32| (index + 1) / 2 * if index % 2 == 1 { 1 } else { -1 };
@@ -98,35 +99,6 @@ pub struct Graph {
     edges: Vec<(u16, u16)>,
 }
 
-/// Why a formation is invalid.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum GraphError {
-    /// The number of robots is not 1 to 254.
-    #[error("a formation of {0} robots is not possible; give 1 to {MAX_ROBOT}")]
-    Count(usize),
-    /// A place is outside the range of cells.
-    #[error("robot {0} would be off any map: give a smaller spacing")]
-    Far(usize),
-    /// The first place is not the origin of places.
-    #[error("the first place is not [0, 0]: give places in cells relative to robot 1, x forward, y to the left")]
-    First,
-    /// Two places are in one cell.
-    #[error("places {0} and {1} would share a cell; give a larger spacing, or another heading")]
-    Shared(usize, usize),
-    /// An edge does not connect two robots.
-    #[error("edges: [{0}, {1}] does not connect two robots of the formation; give two different numbers from 1 to {2}")]
-    Edge(u32, u32, usize),
-    /// A robot without a path of edges to robot 1.
-    #[error("edges: robot {0} is not connected to robot 1; connect every robot to the formation")]
-    Lost(usize),
-    /// A robot has too many neighbours.
-    #[error("robot {0} has more than {TEMPLATE} neighbours; give it fewer edges")]
-    Neighbors(usize),
-    /// The file is invalid.
-    #[error("{0}")]
-    File(String),
-}
-
 table! {
     /// A formation's file.
     pub struct GraphFile {
@@ -138,55 +110,63 @@ table! {
 }
 
 impl Graph {
-    fn new(places: &[(i32, i32)], edges: Vec<(u16, u16)>) -> Result<Self, GraphError> {
-        if places.is_empty() || places.len() > usize::from(MAX_ROBOT) {
-            return Err(GraphError::Count(places.len()));
-        }
+    fn new(places: &[(i32, i32)], edges: Vec<(u16, u16)>) -> Result<Self> {
+        let count = places.len();
+        ensure!(
+            (1..=usize::from(MAX_ROBOT)).contains(&count),
+            "a formation of {count} robots is not possible; give 1 to {MAX_ROBOT}"
+        );
         let narrow = |v: i32| i16::try_from(v).ok().filter(|v| v.unsigned_abs() < 10_000);
-        let cell = |(index, &(x, y)): (usize, &(i32, i32))| match (narrow(x), narrow(y)) {
+        let cell = |(robot, &(x, y)): (usize, &(i32, i32))| match (narrow(x), narrow(y)) {
             (Some(x), Some(y)) => Ok(Cell::new(x, y)),
-            _ => Err(GraphError::Far(index + 1)),
+            _ => bail!("robot {robot} would be off any map: give a smaller spacing"),
         };
-        let places = places.iter().enumerate().map(cell).collect::<Result<Vec<_>, _>>()?;
-        let graph = Self { places, edges };
-        graph.check_apart(&graph.places)?;
-        match graph.unreached() {
-            Some(lost) => Err(GraphError::Lost(lost + 1)),
-            None => Ok(graph),
+        let graph = Self { places: (1..).zip(places).map(cell).collect::<Result<_>>()?, edges };
+        graph.check_apart()?;
+        if let Some(lost) = graph.unreached() {
+            bail!("edges: robot {} is not connected to robot 1; connect every robot to the formation", lost + 1);
         }
+        Ok(graph)
     }
 
     /// Parses `places` and `edges` as in a scenario's `[robots.formation]`. Errors name `path`.
     ///
     /// # Errors
-    /// [`GraphError`]: invalid text, or too many, too far, colliding or unconnected places.
-    pub fn parse(text: &str, path: &Path) -> Result<Self, GraphError> {
-        let file = Source::new(path, text).and_then(|source| source.read("scenarios/README.md"));
-        let file: GraphFile = file.map_err(|error| GraphError::File(error.to_string()))?;
-        if file.places.first() != Some(&[0, 0]) {
-            return Err(GraphError::First);
-        }
-        let count = file.places.len();
+    /// Invalid text, or too many, too far, colliding or unconnected places.
+    pub fn parse(text: &str, path: &Path) -> Result<Self> {
+        let file = Source::new(path, text)?.read("scenarios/README.md")?;
+        Self::of_file(file).with_context(|| path.display().to_string())
+    }
+
+    fn of_file(GraphFile { places, edges: pairs }: GraphFile) -> Result<Self> {
+        ensure!(
+            places.first() == Some(&[0, 0]),
+            "the first place is not [0, 0]: give places in cells relative to robot 1, x forward, y to the left"
+        );
+        let count = places.len();
         let mut edges = BTreeSet::new();
-        for [a, b] in file.edges {
+        for [a, b] in pairs {
             let place = |id: u32| u16::try_from(id.checked_sub(1)?).ok().filter(|&place| usize::from(place) < count);
             match (place(a), place(b)) {
                 (Some(a), Some(b)) if a != b => drop(edges.insert((a.min(b), a.max(b)))),
-                _ => return Err(GraphError::Edge(a, b, count)),
+                _ => bail!(
+                    "edges: [{a}, {b}] does not connect two robots of the formation; give two different numbers from \
+                     1 to {count}"
+                ),
             }
         }
-        let places: Vec<_> = file.places.iter().map(|&[x, y]| (x, y)).collect();
+        let places: Vec<_> = places.iter().map(|&[x, y]| (x, y)).collect();
         Self::new(&places, edges.into_iter().collect())
     }
 
     /// The formation turned from east to `heading`; `Stay` leaves it unchanged.
     ///
     /// # Errors
-    /// [`GraphError::Shared`] if two places are in one cell after the turn.
-    pub fn turned(&self, heading: Dir) -> Result<Self, GraphError> {
-        let places: Vec<_> = self.places.iter().map(|&place| rotated(place, heading)).collect();
-        self.check_apart(&places)?;
-        Ok(Self { places, edges: self.edges.clone() })
+    /// Two places are in one cell after the turn.
+    pub fn turned(&self, heading: Dir) -> Result<Self> {
+        let places = self.places.iter().map(|&place| rotated(place, heading)).collect();
+        let turned = Self { places, edges: self.edges.clone() };
+        turned.check_apart().map(|()| turned)
     }
 
     /// Number of robots.
@@ -195,10 +175,11 @@ impl Graph {
         self.places.len()
     }
 
-    fn check_apart(&self, places: &[Cell]) -> Result<(), GraphError> {
-        for (index, place) in places.iter().enumerate() {
-            if let Some(before) = places.iter().take(index).position(|other| other == place) {
-                return Err(GraphError::Shared(before + 1, index + 1));
+    fn check_apart(&self) -> Result<()> {
+        for (index, place) in self.places.iter().enumerate() {
+            if let Some(before) = self.places[..index].iter().position(|other| other == place) {
+                let (a, b) = (before + 1, index + 1);
+                bail!("places {a} and {b} would share a cell; give a larger spacing, or another heading");
             }
         }
         Ok(())
@@ -217,7 +198,7 @@ impl Graph {
         reached.iter().position(|is_reached| !is_reached)
     }
 
-    fn templates(&self) -> Result<Vec<Template<TEMPLATE>>, GraphError> {
+    fn templates(&self) -> Result<Vec<Template<TEMPLATE>>> {
         let with = |rho| {
             let template =
                 |own| Template::from_graph(&self.places, &self.edges, own, rho).map_err(|error| (own, error));
@@ -227,11 +208,13 @@ impl Graph {
         for rho in &RADII[1..] {
             last = last.or_else(|_| with(*rho));
         }
-        last.map_err(|(own, error)| match error {
-            TemplateError::TooMany => GraphError::Neighbors(own + 1),
-            TemplateError::NoSuchPlace | TemplateError::BadEdge => GraphError::Count(self.robots()),
-        })
+        // Places and edges were validated, so the error is a full template.
+        last.map_err(|(own, _)| too_many_neighbors(own))
     }
+}
+
+fn too_many_neighbors(own: usize) -> Error {
+    anyhow!("robot {} has more than {TEMPLATE} neighbours; give it fewer edges", own + 1)
 }
 
 /// The goal of a formation, and the identity of the order.
@@ -250,11 +233,8 @@ pub struct Order {
 /// Encodes the orders for `robots` (sorted): the parts of each template, then the goal.
 ///
 /// # Errors
-/// [`GraphError`] if the robots and places differ in number, or a robot has too many neighbours.
-pub(crate) fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Frame>, GraphError> {
-    if robots.len() != graph.robots() {
-        return Err(GraphError::Count(robots.len()));
-    }
+/// A robot has too many neighbours.
+pub(crate) fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Frame>> {
     let id = |place: usize| robots.get(place).map_or(RobotId::NONE, |&robot| RobotId(robot.into()));
     let mut messages = Vec::new();
     for (own, mut template) in graph.templates()?.into_iter().enumerate() {
@@ -262,7 +242,7 @@ pub(crate) fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<
             entry.id = id(entry.id.0 as usize - 1);
         }
         let parts = TemplatePart::split(order.version, template.slot, template.offset, &template.entries)
-            .map_err(|_| GraphError::Neighbors(own + 1))?;
+            .map_err(|_| too_many_neighbors(own))?;
         messages.extend(parts.filter_map(|part| {
             Grid::order(id(own), order.version, &GridOrder::Template { part, is_restarted: false })
         }));

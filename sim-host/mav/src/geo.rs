@@ -10,6 +10,7 @@
 
 use staya_sim::table;
 use std::f64::consts::PI;
+use std::str::FromStr;
 
 const A_M: f64 = 6_378_137.0;
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
@@ -149,6 +150,20 @@ pub fn ned<T: Copy + std::ops::Neg<Output = T>>([east, north, up]: [T; 3]) -> [T
 #[must_use]
 pub fn enu<T: Copy + std::ops::Neg<Output = T>>([north, east, down]: [T; 3]) -> [T; 3] {
     [east, north, -down]
+}
+
+impl FromStr for Origin {
+    type Err = &'static str;
+
+    /// Reads degrees north, degrees east and metres between commas.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+        let place = match numbers.as_deref() {
+            Ok(&[latitude_deg, longitude_deg, altitude_m]) => Some(Global { latitude_deg, longitude_deg, altitude_m }),
+            _ => None,
+        };
+        place.and_then(Self::new).ok_or("give LAT,LON,ALT: -90 to 90 degrees, -180 to 180 degrees, metres")
+    }
 }
 
 fn radians(degrees: f64) -> f64 {

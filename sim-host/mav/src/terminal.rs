@@ -1,5 +1,6 @@
-//! Numbers in options, and remarks to the operator.
+//! Numbers in options, and words for the operator.
 
+use staya_mavlink::constants::*;
 use std::io::{self, Write as _};
 
 /// Parses a number within limits.
@@ -13,4 +14,21 @@ pub(crate) fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, Stri
 /// Tells the operator something. Standard error may be closed.
 pub(crate) fn say(remark: &str) {
     let _ = writeln!(io::stderr(), "staya: {remark}");
+}
+
+/// Describes a MAV_RESULT.
+pub(crate) const fn result_words(result: u8) -> &'static str {
+    const FAILED: u8 = 4;
+    const CANCELLED: u8 = 6;
+    match result {
+        MAV_RESULT_ACCEPTED => "accepted",
+        MAV_RESULT_TEMPORARILY_REJECTED => "temporarily rejected",
+        MAV_RESULT_DENIED => "denied",
+        MAV_RESULT_UNSUPPORTED => "unsupported",
+        FAILED => "failed",
+        CANCELLED => "cancelled",
+        MAV_RESULT_COMMAND_INT_ONLY => "as COMMAND_INT only",
+        MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME => "unsupported frame",
+        _ => "refused",
+    }
 }

@@ -3,11 +3,11 @@
 //! ```ignore
 //! use staya_plot::{Chart, Panels, Series};
 //! # fn main() -> Result<(), staya_sim::record::Error> {
-//! let loss = Chart::new("Route loss on natural land", "obstacles", "loss (%)")
-//!     .note("1000 runs each, 95 % intervals")
+//! let mut loss = Chart::new("Route loss on natural land", "obstacles", "loss (%)")
 //!     .with(Series::intervals("measured", [[10.0, 4.1, 3.9, 4.3], [40.0, 9.0, 8.6, 9.4]])
 //!         .joined())
 //!     .with(Series::reference("paper", [[10.0, 5.0], [40.0, 11.0]]));
+//! loss.note = "1000 runs each, 95 % intervals".into();
 //! let times = Chart::new("Arrival times", "ticks", "runs")
 //!     .with(Series::bars("runs", [[0.0, 10.0, 3.0], [10.0, 20.0, 8.0]]));
 //! loss.draw().write("out/loss".as_ref())?;
@@ -98,13 +98,17 @@ impl Series {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     pub(super) title: String,
-    pub(super) note: String,
+    /// A small line of text under the title; may be empty.
+    pub note: String,
     pub(super) x_label: String,
     pub(super) y_label: String,
-    pub(super) x_range: Option<[f64; 2]>,
+    /// Lowest and highest x; `None` fits all data.
+    pub x_range: Option<[f64; 2]>,
     pub(super) x_names: Vec<String>,
-    pub(super) log_x: bool,
-    pub(super) log_y: bool,
+    /// Whether the x axis is logarithmic; values of 0 and below are skipped.
+    pub log_x: bool,
+    /// Whether the y axis is logarithmic; values of 0 and below are skipped, and bars too.
+    pub log_y: bool,
     pub(super) size: [f64; 2],
     pub(super) series: Vec<Series>,
 }
@@ -134,35 +138,11 @@ impl Chart {
         self
     }
 
-    /// Sets a small line of text under the title.
-    #[must_use]
-    pub fn note(self, note: impl Into<String>) -> Self {
-        Self { note: note.into(), ..self }
-    }
-
-    /// Sets the range of x. By default it fits all data.
-    #[must_use]
-    pub fn x_range(self, low: f64, high: f64) -> Self {
-        Self { x_range: Some([low, high]), ..self }
-    }
-
     /// Writes names instead of the numbers 1, 2, ... below the x axis, which has no label then.
     #[must_use]
     pub fn names(self, names: Vec<String>) -> Self {
         let x_range = Some([0.5, names.len() as f64 + 0.5]);
         Self { x_names: names, x_range, x_label: String::new(), ..self }
-    }
-
-    /// Makes the x axis logarithmic; values of 0 and below are skipped.
-    #[must_use]
-    pub fn log_x(self) -> Self {
-        Self { log_x: true, ..self }
-    }
-
-    /// Makes the y axis logarithmic; values of 0 and below are skipped, and bars too.
-    #[must_use]
-    pub fn log_y(self) -> Self {
-        Self { log_y: true, ..self }
     }
 
     /// Sets width and height in units, limited to 200 x 150 and 4000 x 4000.

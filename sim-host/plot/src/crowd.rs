@@ -27,15 +27,9 @@ impl Density {
         let [columns, rows, _] = map.raster();
         let mut this = Self { columns, rows, entered: vec![0; columns as usize * rows as usize] };
         for way in ways {
-            let mut squares = way.iter().map(|position| map.square(*position));
-            let Some(mut at) = squares.next() else {
-                continue;
-            };
-            this.enter(at);
-            for to in squares {
-                walk(at, to, |square| this.enter(square));
-                at = to;
-            }
+            let squares: Vec<[i64; 2]> = way.iter().map(|position| map.square(*position)).collect();
+            squares.first().into_iter().for_each(|square| this.enter(*square));
+            squares.windows(2).for_each(|pair| walk(pair[0], pair[1], |square| this.enter(square)));
         }
         this
     }

@@ -52,20 +52,14 @@ impl Look<'_> {
     }
 
     pub fn mark(&self, canvas: &mut Canvas, [x, y]: Point) {
-        let edge = Some(Stroke::new(WHITE, 0.7));
-        let fill = Some(self.colour);
-        let m = MARK;
-        let corners = match self.mark % 4 {
-            0 => return canvas.circle([x, y], m, fill, edge),
-            1 => vec![
-                [x - m * 0.9, y - m * 0.9],
-                [x + m * 0.9, y - m * 0.9],
-                [x + m * 0.9, y + m * 0.9],
-                [x - m * 0.9, y + m * 0.9],
-            ],
-            2 => vec![[x, y - m * 1.2], [x + m * 1.15, y + m * 0.9], [x - m * 1.15, y + m * 0.9]],
-            _ => vec![[x, y - m * 1.3], [x + m * 1.3, y], [x, y + m * 1.3], [x - m * 1.3, y]],
+        let (fill, edge) = (Some(self.colour), Some(Stroke::new(WHITE, 0.7)));
+        let corners: &[Point] = match self.mark % 4 {
+            0 => return canvas.circle([x, y], MARK, fill, edge),
+            1 => &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
+            2 => &[[0.0, -1.2], [1.15, 0.9], [-1.15, 0.9]],
+            _ => &[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]],
         };
+        let corners = corners.iter().map(|[dx, dy]| [x + MARK * dx, y + MARK * dy]).collect();
         canvas.polygon(corners, fill, edge);
     }
 }

@@ -2,7 +2,7 @@
 
 mod palette;
 
-use super::canvas::{Anchor, Canvas, Stroke, Text};
+use super::canvas::{Anchor, Canvas, Stroke, Text, extent};
 use super::colour::WHITE;
 use super::flock::marks;
 use super::map::scale_bar;
@@ -96,15 +96,13 @@ fn changed(before: Option<&[u8]>, now: &[u8], width: usize, height: usize) -> [u
     let Some(before) = before else {
         return [0, 0, width, height];
     };
-    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-    for (at, _) in before.iter().zip(now).enumerate().filter(|(_, (before, now))| before != now) {
-        let place = [at % width, at / width];
-        for axis in 0..2 {
-            low[axis] = low[axis].min(place[axis]);
-            high[axis] = high[axis].max(place[axis]);
-        }
+    let changes = before.iter().zip(now).enumerate().filter(|(_, (before, now))| before != now);
+    let [low, high] = extent(changes.map(|(at, _)| [at % width, at / width].map(|side| side as f64)));
+    if low[0] > high[0] {
+        return [0, 0, 1, 1];
     }
-    if low[0] == usize::MAX { [0, 0, 1, 1] } else { [low[0], low[1], high[0] - low[0] + 1, high[1] - low[1] + 1] }
+    let size = [0, 1].map(|axis| (high[axis] - low[axis]) as usize + 1);
+    [low[0] as usize, low[1] as usize, size[0], size[1]]
 }
 
 /// Unchanged pixels are transparent.

@@ -87,33 +87,29 @@ pub(super) fn packets(of: &str, history: &History) -> Panels {
     };
     let per = format!("packets per {}", clock.one);
     let ends = [series.first(), series.last()].map(|point| point.map_or(0.0, |point| clock.at(point)));
-    // Starts at the first tick, although the first mean is slightly later.
-    let chart = |title| Chart::new(title, clock.label, &per).x_range(ends[0], ends[1]).size(760.0, 300.0);
+    let chart = |title, note| {
+        let chart = Chart::new(title, clock.label, &per).size(760.0, 300.0);
+        // Starts at the first tick, although the first mean is slightly later.
+        Chart { x_range: Some(ends), note, ..chart }
+    };
     let all = history.totals();
-    let n = ticks::grouped;
+    let [sent, delivered, lost, damaged, rejected] =
+        [all.sent, all.delivered, all.lost, all.damaged, all.rejected].map(ticks::grouped);
+    let carried = format!("in all {sent} sent, {delivered} delivered (one sent packet may reach many), {lost} lost");
+    let refused =
+        format!("in all {damaged} damaged on the way, {rejected} rejected by receivers (damaged, foreign or replayed)");
     Panels::new(format!("{of}: packets over time"))
         .with(
-            chart("Sent, delivered and lost")
-                .note(format!(
-                    "in all {} sent, {} delivered (one sent packet may reach many), {} lost",
-                    n(all.sent),
-                    n(all.delivered),
-                    n(all.lost)
-                ))
+            chart("Sent, delivered and lost", carried)
                 .with(line("delivered", 0, |packets| packets.delivered))
                 .with(line("lost", 1, |packets| packets.lost))
                 .with(line("sent", 6, |packets| packets.sent)),
         )
-        .with(
-            chart("Corrupted and rejected")
-                .note(format!(
-                    "in all {} damaged on the way, {} rejected by receivers (damaged, foreign or replayed)",
-                    n(all.damaged),
-                    n(all.rejected)
-                ))
-                .with(line("damaged", 3, |packets| packets.damaged))
-                .with(line("rejected", 2, |packets| packets.rejected)),
-        )
+        .with(chart("Corrupted and rejected", refused).with(line("damaged", 3, |packets| packets.damaged)).with(line(
+            "rejected",
+            2,
+            |packets| packets.rejected,
+        )))
 }
 
 fn bin(points: &[SeriesPoint], clock: &Clock) -> (f64, f64, PacketCounts) {

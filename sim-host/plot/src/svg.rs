@@ -28,14 +28,10 @@ pub fn text(canvas: &Canvas) -> io::Result<String> {
                 lines.iter().for_each(|line| path(&mut out, line, *closed));
                 writeln!(out, "\"{}/>", Paint(*stroke, *fill))
             }
-            Shape::Circle { centre: [x, y], radius, stroke, fill } => writeln!(
-                out,
-                "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}/>",
-                Number(*x),
-                Number(*y),
-                Number(*radius),
-                Paint(*stroke, *fill)
-            ),
+            Shape::Circle { centre: [x, y], radius, stroke, fill } => {
+                let ([x, y, r], paint) = ([*x, *y, *radius].map(Number), Paint(*stroke, *fill));
+                writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"{paint}/>")
+            }
             Shape::Text(text) => element(&mut out, text),
             Shape::Image { area, pixels } => {
                 let [x, y, width, height] = area.map(Number);

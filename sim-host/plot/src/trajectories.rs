@@ -291,13 +291,9 @@ fn draw_formation(
     let moments: Vec<usize> = evenly(frames.len(), MOMENTS).collect();
     for (number, &at) in moments.iter().enumerate() {
         let (frame, share) = (&frames[at], number as f64 / (moments.len() - 1).max(1) as f64);
-        let places: BTreeMap<u32, Point> = frame
-            .samples
-            .iter()
-            .map(|sample| (sample.id, [sample.position_m[0], sample.position_m[1]]))
-            .filter(|(_, place)| place.iter().all(|value| value.is_finite()))
-            .map(|(id, place)| (id, map.place(place)))
-            .collect();
+        let places = frame.samples.iter().map(|sample| (sample.id, [sample.position_m[0], sample.position_m[1]]));
+        let places = places.filter(|(_, at_m)| at_m.iter().all(|value| value.is_finite()));
+        let places: BTreeMap<u32, Point> = places.map(|(id, at_m)| (id, map.place(at_m))).collect();
         let lines: Vec<Vec<Point>> =
             edges.iter().filter_map(|(a, b)| Some(vec![*places.get(a)?, *places.get(b)?])).collect();
         let colour = moment_colour(share);

@@ -4,7 +4,7 @@ use crate::server::Server;
 use crate::session::Session;
 use anyhow::{Context as _, Result, ensure};
 use clap::Args;
-use serde::Serialize;
+use serde_json::json;
 use staya_console::{Ended, Global, ScenarioArgs, Stop, print, print_json};
 use staya_sim::scenario::text_with;
 use std::fs::OpenOptions;
@@ -37,7 +37,7 @@ impl ListenArgs {
         }
         let url = server.url();
         if global.json {
-            print_json(&Served { url: &url })?;
+            print_json(&json!({ "url": url }))?;
         } else {
             print(&format!("{url}\n"))?;
         }
@@ -49,11 +49,6 @@ impl ListenArgs {
 struct Page {
     server: Server,
     _way_in: Option<WayIn>,
-}
-
-#[derive(Debug, Serialize)]
-struct Served<'a> {
-    url: &'a str,
 }
 
 /// Watch a run in the browser and interact with it, or play a recording.

@@ -142,7 +142,7 @@ fn histogram(title: &str, name: &str, values: &[f64]) -> Option<Chart> {
     if let Some(Goodness { chi2, freedom, p_value, .. }) = law.goodness(values) {
         let [m, alpha, beta] = [law.m(), law.alpha(), law.beta()];
         let test = format!("chi-square {chi2:.1} with {freedom} degrees of freedom, p = {p_value:.3}");
-        chart = chart.note(format!("m = {m:.2}, alpha = {alpha:.2}, beta = {beta:.2}; {test}"));
+        chart.note = format!("m = {m:.2}, alpha = {alpha:.2}, beta = {beta:.2}; {test}");
     }
     Some(chart)
 }
@@ -287,14 +287,9 @@ impl Picture<'_> {
 
     fn chart(&self) -> Chart {
         let PlotTable { figure, over, and, .. } = self.plot;
-        let mut chart =
-            Chart::new(self.title(), worded(over), worded(figure)).note(self.note("means with 95 % intervals"));
-        if self.x.is_log || self.plot.log {
-            chart = chart.log_x();
-        }
-        if self.plot.log {
-            chart = chart.log_y();
-        }
+        let mut chart = Chart::new(self.title(), worded(over), worded(figure));
+        chart.note = self.note("means with 95 % intervals");
+        (chart.log_x, chart.log_y) = (self.x.is_log || self.plot.log, self.plot.log);
         // The interval of a count ends at 0.
         let is_positive = self.rows.iter().all(|(.., figure)| *figure >= 0.0);
         let least = if is_positive { 0.0 } else { f64::NEG_INFINITY };

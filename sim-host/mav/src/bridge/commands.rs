@@ -12,7 +12,7 @@
 use super::items::{fault_without_place, has_no_place};
 use super::mission::{Item, ack};
 use super::model::FlightMode;
-use super::vehicle::{Action, Kind, Out, Vehicle};
+use super::vehicle::{Action, Kind, Vehicle};
 use crate::geo::Global;
 use staya_controller::parameters::SPEED;
 use staya_mavlink::constants::*;
@@ -33,67 +33,60 @@ fn whole(x: f32, most: f32) -> Result<u32, Refusal> {
 
 impl Vehicle {
     /// Without the coordinates, which are too coarse for any command.
-    pub(super) fn command_long(&mut self, from: Sender, command: &COMMAND_LONG_DATA, out: &mut Out) {
+    pub(super) fn command_long(&mut self, from: Sender, command: &COMMAND_LONG_DATA) {
         let COMMAND_LONG_DATA { param1, param2, param7: z, command, .. } = *command;
         let frame = MAV_FRAME_GLOBAL_RELATIVE_ALT;
         let command = COMMAND_INT_DATA { param1, param2, z, command, frame, ..COMMAND_INT_DATA::DEFAULT };
-        self.command(from, &command, false, out);
+        self.command(from, &command, false);
     }
 
-    pub(super) fn command(&mut self, from: Sender, command: &COMMAND_INT_DATA, is_int: bool, out: &mut Out) {
+    pub(super) fn command(&mut self, from: Sender, command: &COMMAND_INT_DATA, is_int: bool) {
         // The acknowledgement is sent before the messages that the command causes.
-        let mut after = Out::default();
-        let result = self.execute(command, is_int, &mut after);
-        let result = result.err().unwrap_or(MAV_RESULT_ACCEPTED);
-        out.messages.push(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
-            command: command.command,
-            result,
-            progress: 0,
-            result_param2: 0,
-            target_system: from.system,
-            target_component: from.component,
-        }));
-        out.messages.append(&mut after.messages);
-        out.actions.append(&mut after.actions);
+        let at = self.out.messages.len();
+        let result = self.execute(command, is_int).err().unwrap_or(MAV_RESULT_ACCEPTED);
+        let (target_system, target_component) = (from.system, from.component);
+        let ack = COMMAND_ACK_DATA { command: command.command, result, ..COMMAND_ACK_DATA::DEFAULT };
+        let ack = COMMAND_ACK_DATA { target_system, target_component, ..ack };
+        self.out.messages.insert(at, MavMessage::COMMAND_ACK(ack));
     }
 
-    fn execute(&mut self, command: &COMMAND_INT_DATA, is_int: bool, out: &mut Out) -> Result<(), Refusal> {
+    fn execute(&mut self, command: &COMMAND_INT_DATA, is_int: bool) -> Result<(), Refusal> {
         let (first, second) = (command.param1, command.param2);
         match command.command {
             MAV_CMD_COMPONENT_ARM_DISARM => {
                 let arms = whole(first, 1.0)? == 1;
-                self.arm(arms, second == ARM_DISARM_FORCE, out)
+                self.arm(arms, second == ARM_DISARM_FORCE)
             }
             MAV_CMD_DO_SET_MODE => {
                 let base = whole(first, 255.0)? as u8;
-                self.set_mode(base, whole(second, 255.0)?, out)
+                self.set_mode(base, whole(second, 255.0)?)
             }
             MAV_CMD_NAV_TAKEOFF => {
                 let frames = [MAV_FRAME_GLOBAL_RELATIVE_ALT, MAV_FRAME_GLOBAL_RELATIVE_ALT_INT];
                 if self.model.flies && !frames.contains(&command.frame) {
                     return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME);
                 }
-                self.take_off(command.z, out)
+                self.take_off(command.z)
             }
             MAV_CMD_NAV_LAND if self.model.flies => {
                 self.needs_arms()?;
-                self.enter(FlightMode::LAND, out);
+                self.enter(FlightMode::LAND);
                 Ok(())
             }
             MAV_CMD_NAV_RETURN_TO_LAUNCH => {
                 self.needs_arms()?;
-                self.set_mode(MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, FlightMode::Return.number(self.model.flies), out)
+                self.set_mode(MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, FlightMode::Return.number(self.model.flies))
             }
             MAV_CMD_DO_REPOSITION if !is_int => Err(MAV_RESULT_COMMAND_INT_ONLY),
-            MAV_CMD_DO_REPOSITION => self.reposition(command, out),
-            MAV_CMD_DO_CHANGE_SPEED => self.change_speed(second, out),
+            MAV_CMD_DO_REPOSITION => self.reposition(command),
+            MAV_CMD_DO_CHANGE_SPEED => self.change_speed(second),
             MAV_CMD_MISSION_START => {
                 self.needs_arms()?;
-                self.start_mission(out)
+                self.start_mission()
             }
             MAV_CMD_DO_SET_MISSION_CURRENT => {
                 let seq = whole(first, f32::from(u16::MAX))?;
-                self.set_current_item(seq as u16, out)
+                self.set_current_item(seq as u16)
             }
             MAV_CMD_SET_MESSAGE_INTERVAL => {
                 let id = self.stream_id(first)?;
@@ -103,16 +96,17 @@ impl Vehicle {
             MAV_CMD_GET_MESSAGE_INTERVAL => {
                 let id = whole(first, 16_777_215.0)?;
                 let interval_us = self.streams.interval_us(id).unwrap_or(0);
-                out.messages
+                self.out
+                    .messages
                     .push(MavMessage::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA { interval_us, message_id: id as u16 }));
                 Ok(())
             }
             MAV_CMD_REQUEST_MESSAGE => {
                 let id = self.stream_id(first)?;
-                self.send_now(id, out)
+                self.send_now(id)
             }
-            MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => self.send_now(AUTOPILOT_VERSION_DATA::ID, out),
-            MAV_CMD_GET_HOME_POSITION => self.send_now(HOME_POSITION_DATA::ID, out),
+            MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => self.send_now(AUTOPILOT_VERSION_DATA::ID),
+            MAV_CMD_GET_HOME_POSITION => self.send_now(HOME_POSITION_DATA::ID),
             _ => Err(MAV_RESULT_UNSUPPORTED),
         }
     }
@@ -122,9 +116,9 @@ impl Vehicle {
         if self.streams.has(id) { Ok(id) } else { Err(MAV_RESULT_UNSUPPORTED) }
     }
 
-    fn send_now(&self, id: u32, out: &mut Out) -> Result<(), Refusal> {
+    fn send_now(&mut self, id: u32) -> Result<(), Refusal> {
         let message = self.telemetry(id).ok_or(MAV_RESULT_TEMPORARILY_REJECTED)?;
-        out.messages.push(message);
+        self.out.messages.push(message);
         Ok(())
     }
 
@@ -132,7 +126,7 @@ impl Vehicle {
         if self.is_armed { Ok(()) } else { Err(MAV_RESULT_TEMPORARILY_REJECTED) }
     }
 
-    fn arm(&mut self, arms: bool, forced: bool, out: &mut Out) -> Result<(), Refusal> {
+    fn arm(&mut self, arms: bool, forced: bool) -> Result<(), Refusal> {
         // Disarming a moving vehicle would make others run into it.
         let [vx, vy, vz] = self.seen.motion.velocity_mps;
         let moves = vx * vx + vy * vy + vz * vz > STANDING_MPS * STANDING_MPS;
@@ -146,13 +140,13 @@ impl Vehicle {
         if let (false, FlightMode::Mission { .. }) = (arms, self.mode) {
             self.mode = FlightMode::Auto;
         }
-        self.begin(out);
+        self.begin();
         let text = if arms { "armed" } else { "disarmed" };
-        self.text(out, Kind::News, MAV_SEVERITY_INFO, text);
+        self.text(Kind::News, MAV_SEVERITY_INFO, text);
         Ok(())
     }
 
-    pub(super) fn set_mode(&mut self, base: u8, number: u32, out: &mut Out) -> Result<(), Refusal> {
+    pub(super) fn set_mode(&mut self, base: u8, number: u32) -> Result<(), Refusal> {
         let mode = FlightMode::from_number(number, self.model.flies);
         let mode = mode.filter(|_| base & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED != 0).ok_or(MAV_RESULT_DENIED)?;
         if mode == FlightMode::Return && self.model.in_formation {
@@ -160,13 +154,13 @@ impl Vehicle {
         }
         // AUTO flies the mission if there is one, as ArduPilot does.
         if mode == FlightMode::Auto && self.is_armed && !self.mission.is_empty() {
-            return self.start_mission(out);
+            return self.start_mission();
         }
-        self.enter(mode, out);
+        self.enter(mode);
         Ok(())
     }
 
-    fn take_off(&mut self, height_m: f32, out: &mut Out) -> Result<(), Refusal> {
+    fn take_off(&mut self, height_m: f32) -> Result<(), Refusal> {
         if !self.model.flies {
             return Err(MAV_RESULT_UNSUPPORTED);
         }
@@ -178,11 +172,11 @@ impl Vehicle {
         if self.mode != FlightMode::Guided || self.is_in_air() {
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
         }
-        out.actions.push(Action::Wish(wish));
+        self.wish(wish);
         Ok(())
     }
 
-    fn reposition(&mut self, command: &COMMAND_INT_DATA, out: &mut Out) -> Result<(), Refusal> {
+    fn reposition(&mut self, command: &COMMAND_INT_DATA) -> Result<(), Refusal> {
         let COMMAND_INT_DATA { param1: speed_mps, param2: flags, frame, x, y, z, .. } = *command;
         let place = self.global_place(frame, x, y, z)?;
         let flags = if flags.is_nan() { 0 } else { whole(flags, 255.0)? };
@@ -196,23 +190,23 @@ impl Vehicle {
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
         }
         if speed_mps > 0.0 {
-            self.change_speed(speed_mps, out)?;
+            self.change_speed(speed_mps)?;
         }
         if self.mode != FlightMode::Guided {
-            self.enter(FlightMode::Guided, out);
+            self.enter(FlightMode::Guided);
         }
-        out.actions.push(Action::Wish(wish));
+        self.wish(wish);
         Ok(())
     }
 
-    pub(super) fn guided_item(&mut self, from: Sender, item: &Item, out: &mut Out) -> MavMessage {
+    pub(super) fn guided_item(&mut self, from: Sender, item: &Item) -> MavMessage {
         let is_goto = item.current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
         let result = match self.item_place(item) {
             Some(_) if !is_goto || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
             Some(_) if !self.is_armed || self.mode != FlightMode::Guided => MAV_MISSION_ERROR,
             Some(place) => match self.goal(place) {
                 Some(wish) => {
-                    out.actions.push(Action::Wish(wish));
+                    self.wish(wish);
                     MAV_MISSION_ACCEPTED
                 }
                 None => MAV_MISSION_INVALID_PARAM5_X,
@@ -222,10 +216,10 @@ impl Vehicle {
         ack(from, MAV_MISSION_TYPE_MISSION, result)
     }
 
-    pub(super) fn change_speed(&mut self, speed_mps: f32, out: &mut Out) -> Result<(), Refusal> {
+    pub(super) fn change_speed(&mut self, speed_mps: f32) -> Result<(), Refusal> {
         let index = self.parameters.index_of(SPEED.name).ok_or(MAV_RESULT_UNSUPPORTED)?;
         self.parameters.set(index, speed_mps).map_err(|_| MAV_RESULT_DENIED)?;
-        out.actions.push(Action::Set(SPEED.name, speed_mps));
+        self.out.actions.push(Action::Set(SPEED.name, speed_mps));
         Ok(())
     }
 
@@ -284,23 +278,23 @@ impl Vehicle {
         }
     }
 
-    fn start_mission(&mut self, out: &mut Out) -> Result<(), Refusal> {
+    fn start_mission(&mut self) -> Result<(), Refusal> {
         if self.mission.is_empty() {
             return Err(MAV_RESULT_DENIED);
         }
         if self.mission.current == 0 || self.mission.is_complete {
             self.mission.set_current(1);
         }
-        self.enter(FlightMode::Mission { there_since_us: None }, out);
+        self.enter(FlightMode::Mission { there_since_us: None });
         Ok(())
     }
 
-    pub(super) fn set_current_item(&mut self, seq: u16, out: &mut Out) -> Result<(), Refusal> {
+    pub(super) fn set_current_item(&mut self, seq: u16) -> Result<(), Refusal> {
         if !self.mission.set_current(seq.max(1)) || seq >= self.mission.len() {
             return Err(MAV_RESULT_DENIED);
         }
         if let FlightMode::Mission { .. } = self.mode {
-            self.begin_item(out);
+            self.begin_item();
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::model::FlightMode;
 use super::params::SETPOINT_TIMEOUT;
-use super::vehicle::{Action, Kind, Out, Vehicle};
+use super::vehicle::{Action, Kind, Vehicle};
 use crate::framed::framed;
 use crate::geo::{Global, enu};
 use staya_controller::agent::{Grid, GridOrder, Protocol as _, Waypoint, Wish};
@@ -18,15 +18,15 @@ use staya_mavlink::wire::decode;
 const ORDER: u8 = 2;
 
 impl Vehicle {
-    pub(super) fn follow(&mut self, setpoint: Result<Wish<f32>, &str>, out: &mut Out) {
+    pub(super) fn follow(&mut self, setpoint: Result<Wish<f32>, &str>) {
         match setpoint {
-            Ok(wish) => out.actions.push(Action::Wish(wish)),
-            Err(text) => self.refuse(text, out),
+            Ok(wish) => self.wish(wish),
+            Err(text) => self.refuse(text),
         }
     }
 
-    fn refuse(&mut self, text: &str, out: &mut Out) {
-        self.text(out, Kind::Setpoint, MAV_SEVERITY_WARNING, text);
+    fn refuse(&mut self, text: &str) {
+        self.text(Kind::Setpoint, MAV_SEVERITY_WARNING, text);
     }
 
     /// The error is the text for the operator, here and below.
@@ -127,15 +127,15 @@ impl Vehicle {
         wish.ok_or("setpoint: obstacle or out of range")
     }
 
-    pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
+    pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage) {
         let Some(Frame { header, message, .. }) = order(from, message) else {
             return;
         };
-        self.confirm(header, &message, out);
-        out.actions.push(Action::Tell(header, message));
+        self.confirm(header, &message);
+        self.out.actions.push(Action::Tell(header, message));
     }
 
-    fn confirm(&mut self, header: Header, message: &Message, out: &mut Out) {
+    fn confirm(&mut self, header: Header, message: &Message) {
         let Message::Order(Addressed { number, protocol, content, .. }) = message else {
             return;
         };
@@ -143,10 +143,10 @@ impl Vehicle {
             return;
         };
         if matches!(order, GridOrder::Template { .. }) && !self.model.in_formation {
-            return self.refuse("STAYA_TEMPLATE: not in a formation", out);
+            return self.refuse("STAYA_TEMPLATE: not in a formation");
         }
         if let Some(text) = self.ordered.hear(header, *number, &order) {
-            self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
+            self.text(Kind::News, MAV_SEVERITY_INFO, &text);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::mission::{Item, MAV_MISSION_INVALID_PARAM2};
 use super::model::FlightMode;
-use super::vehicle::{Action, Kind, Out, Vehicle};
+use super::vehicle::{Kind, Vehicle};
 use staya_controller::agent::Wish;
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
@@ -27,69 +27,69 @@ pub(super) fn fault_without_place(item: &Item) -> u8 {
 
 impl Vehicle {
     /// Starts the current item, and the next one if it finishes at once; at most once through all.
-    pub(super) fn begin_item(&mut self, out: &mut Out) {
+    pub(super) fn begin_item(&mut self) {
         self.mode = FlightMode::Mission { there_since_us: None };
         loop {
             let Some(item) = self.mission.item(self.mission.current).cloned() else {
-                return self.stop_mission(out);
+                return self.stop_mission();
             };
             match item.command {
                 MAV_CMD_NAV_RETURN_TO_LAUNCH => {
                     self.mission.is_complete = true;
-                    return self.enter(FlightMode::Return, out);
+                    return self.enter(FlightMode::Return);
                 }
-                MAV_CMD_NAV_LAND => return self.enter(FlightMode::Land { is_item: true }, out),
-                NAV_DELAY => return out.actions.push(Action::Wish(Wish::Hold)),
-                MAV_CMD_DO_CHANGE_SPEED => self.limit_speed(item.param2, out),
+                MAV_CMD_NAV_LAND => return self.enter(FlightMode::Land { is_item: true }),
+                NAV_DELAY => return self.wish(Wish::Hold),
+                MAV_CMD_DO_CHANGE_SPEED => self.limit_speed(item.param2),
                 command if OF_CAMERAS.contains(&command) => {
-                    self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, "no camera or gimbal: item skipped");
+                    self.text(Kind::Setpoint, MAV_SEVERITY_NOTICE, "no camera or gimbal: item skipped");
                 }
                 _ => {
                     return match self.item_place(&item).and_then(|place| self.goal(place)) {
-                        Some(wish) => out.actions.push(Action::Wish(wish)),
-                        None => self.stop_mission(out),
+                        Some(wish) => self.wish(wish),
+                        None => self.stop_mission(),
                     };
                 }
             }
-            if !self.finish_item(out) {
+            if !self.finish_item() {
                 return;
             }
         }
     }
 
     /// Returns whether there is a next item.
-    fn finish_item(&mut self, out: &mut Out) -> bool {
+    fn finish_item(&mut self) -> bool {
         let seq = self.mission.current;
-        out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
+        self.out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
         let has_next = self.mission.set_current(seq + 1);
         if !has_next {
             self.mission.is_complete = true;
             self.mode = FlightMode::Auto;
-            out.actions.push(Action::Wish(Wish::Hold));
-            self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
+            self.wish(Wish::Hold);
+            self.text(Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
         }
         has_next
     }
 
-    fn limit_speed(&mut self, speed_mps: f32, out: &mut Out) {
+    fn limit_speed(&mut self, speed_mps: f32) {
         let most_mps = self.model.max_speed_mps;
         if speed_mps > most_mps {
             let text = format!("mission speed {speed_mps} m/s limited to {most_mps}");
-            self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, &text);
+            self.text(Kind::Setpoint, MAV_SEVERITY_NOTICE, &text);
         }
         if speed_mps > 0.0 {
-            let _ = self.change_speed(speed_mps.min(most_mps), out);
+            let _ = self.change_speed(speed_mps.min(most_mps));
         }
     }
 
-    pub(super) fn finish_landing(&mut self, out: &mut Out) {
+    pub(super) fn finish_landing(&mut self) {
         self.mode = FlightMode::LAND;
         self.mission.is_complete = true;
         let seq = self.mission.current;
-        out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
+        self.out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
     }
 
-    pub(super) fn advance_mission(&mut self, out: &mut Out) {
+    pub(super) fn advance_mission(&mut self) {
         let Some(item) = self.mission.item(self.mission.current) else { return };
         let finite = |x: f32| f64::from(if x.is_finite() { x } else { 0.0 });
         let (wait_us, near_m) = (libm::round(finite(item.param1) * 1e6), finite(item.param2));
@@ -102,22 +102,22 @@ impl Vehicle {
         if ((now - since) as f64) < wait_us {
             return;
         }
-        if self.finish_item(out) {
-            self.begin_item(out);
+        if self.finish_item() {
+            self.begin_item();
         }
     }
 
-    pub(super) fn stop_mission(&mut self, out: &mut Out) {
+    pub(super) fn stop_mission(&mut self) {
         if let FlightMode::Mission { .. } = self.mode {
             self.mode = FlightMode::Auto;
-            out.actions.push(Action::Wish(Wish::Hold));
-            self.text(out, Kind::News, MAV_SEVERITY_NOTICE, "mission ended: holding");
+            self.wish(Wish::Hold);
+            self.text(Kind::News, MAV_SEVERITY_NOTICE, "mission ended: holding");
         }
     }
 
-    pub(super) fn take_item(&mut self, from: Sender, item: Item, out: &mut Out) -> MavMessage {
+    pub(super) fn take_item(&mut self, from: Sender, item: Item) -> MavMessage {
         if item.current >= 2 {
-            return self.guided_item(from, &item, out);
+            return self.guided_item(from, &item);
         }
         let mut mission = core::mem::take(&mut self.mission);
         let now_us = self.now_us;
@@ -130,7 +130,7 @@ impl Vehicle {
         if fault != MAV_MISSION_ACCEPTED {
             // MISSION_ACK cannot say which item was invalid.
             let text = format!("mission item {}: {}", item.seq, self.fault_in_words(&item, fault));
-            self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
+            self.text(Kind::News, MAV_SEVERITY_WARNING, &text);
         }
         answer
     }

@@ -12,6 +12,8 @@ const TRIES: u8 = 6;
 
 /// A mission item: 1e-7 degrees, or 1e-4 metres in local frames.
 pub type Item = MISSION_ITEM_INT_DATA;
+/// The same in degrees or metres.
+type FloatItem = MISSION_ITEM_DATA;
 
 const fn scale(frame: u8) -> f64 {
     match frame {
@@ -21,36 +23,19 @@ const fn scale(frame: u8) -> f64 {
 }
 
 /// A position that is not finite becomes one that fails validation.
-pub fn from_float(item: &MISSION_ITEM_DATA) -> Item {
-    let int = |x: f32| match x.is_finite() {
-        true => libm::round(f64::from(x) * scale(item.frame)) as i32,
-        false => i32::MAX,
-    };
-    let MISSION_ITEM_DATA { param1, param2, param3, param4, x, y, z, seq, command, frame, .. } = *item;
-    let MISSION_ITEM_DATA { current, autocontinue, .. } = *item;
-    let (x, y) = (int(x), int(y));
+pub fn from_float(item: &FloatItem) -> Item {
+    let int = |x: f32| if x.is_finite() { libm::round(f64::from(x) * scale(item.frame)) as i32 } else { i32::MAX };
+    let [x, y] = [item.x, item.y].map(int);
+    let FloatItem { param1, param2, param3, param4, z, seq, command, frame, current, autocontinue, .. } = *item;
     Item { param1, param2, param3, param4, x, y, z, seq, command, frame, current, autocontinue, ..Item::DEFAULT }
 }
 
-fn to_float(item: Item) -> MISSION_ITEM_DATA {
-    let float = |x: i32| (f64::from(x) / scale(item.frame)) as f32;
-    MISSION_ITEM_DATA {
-        param1: item.param1,
-        param2: item.param2,
-        param3: item.param3,
-        param4: item.param4,
-        x: float(item.x),
-        y: float(item.y),
-        z: item.z,
-        seq: item.seq,
-        command: item.command,
-        target_system: item.target_system,
-        target_component: item.target_component,
-        frame: item.frame,
-        current: item.current,
-        autocontinue: item.autocontinue,
-        mission_type: item.mission_type,
-    }
+fn to_float(item: Item) -> FloatItem {
+    let [x, y] = [item.x, item.y].map(|x| (f64::from(x) / scale(item.frame)) as f32);
+    let Item { param1, param2, param3, param4, z, seq, command, frame, current, autocontinue, .. } = item;
+    let Item { target_system, target_component, mission_type, .. } = item;
+    let to = FloatItem { target_system, target_component, mission_type, ..FloatItem::DEFAULT };
+    FloatItem { param1, param2, param3, param4, x, y, z, seq, command, frame, current, autocontinue, ..to }
 }
 
 #[derive(Clone, Debug, PartialEq)]

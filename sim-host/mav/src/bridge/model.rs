@@ -50,11 +50,8 @@ impl VehicleModel {
         land.cell_at([x, y]).filter(|cell| land.is_passable(*cell))
     }
 
-    /// Whether a vehicle fits at a position in metres.
+    /// Whether a body fits between the obstacles at a position in metres.
     pub fn has_room(&self, place_m: [f64; 3]) -> bool {
-        if self.grid.is_some() {
-            return self.cell(place_m).is_some();
-        }
         let radius_m = f64::from(self.radius_m);
         self.solids.iter().all(|solid| solid.distance_m(place_m) >= radius_m)
     }

@@ -14,29 +14,21 @@ pub struct LineReport {
     pub bytes_out_per_s: f64,
 }
 
-/// Rejected frames by reason.
+/// Rejected frames by reason; counts of 32 bits saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Refused {
     /// Without a signature.
-    pub unsigned: u64,
+    pub unsigned: u32,
     /// With the signature of another key, or damaged.
-    pub forged: u64,
+    pub forged: u32,
     /// Received before, or too old.
-    pub replayed: u64,
+    pub replayed: u32,
     /// With a timestamp too far ahead of the clock.
-    pub ahead: u64,
+    pub ahead: u32,
     /// From an unknown sender while the table of senders was full.
-    pub no_room: u64,
+    pub no_room: u32,
     /// Valid, but no timestamp is left to sign an answer with.
     pub unanswerable: u64,
-}
-
-impl Refused {
-    /// Sum over all reasons.
-    pub const fn total(&self) -> u64 {
-        let Self { unsigned, forged, replayed, ahead, no_room, unanswerable } = *self;
-        unsigned + forged + replayed + ahead + no_room + unanswerable
-    }
 }
 
 /// Statistics of a bridge run. The `frames_in` of all links are `frames_heard` + `frames_ignored` +
@@ -64,7 +56,7 @@ pub struct BridgeReport {
     /// Rejected frames by reason.
     pub refused: Refused,
     /// Frames rejected for a timestamp too far ahead of the clock.
-    pub frames_ahead: u64,
+    pub frames_ahead: u32,
     /// Frames still queued at the end.
     pub frames_waiting: u64,
     /// Whether the signing timestamps are used up; the bridge then needs a new key.
@@ -79,16 +71,4 @@ pub struct BridgeReport {
     pub least_gap_m: Option<f64>,
     /// Trace hash, 16 hex digits; equal to that of `staya run` if no command arrived.
     pub trace_hash: String,
-}
-
-pub(super) const fn name(result: u8) -> &'static str {
-    use staya_mavlink::constants::*;
-    match result {
-        MAV_RESULT_ACCEPTED => "accepted",
-        MAV_RESULT_TEMPORARILY_REJECTED => "temporarily rejected",
-        MAV_RESULT_DENIED => "denied",
-        MAV_RESULT_UNSUPPORTED => "unsupported",
-        MAV_RESULT_COMMAND_INT_ONLY => "as COMMAND_INT only",
-        _ => "unsupported frame",
-    }
 }

@@ -6,18 +6,20 @@
 use super::budget::Budget;
 use super::model::VehicleModel;
 use super::params::Parameters;
-use super::report::{BridgeReport, LineReport, name};
+use super::report::{BridgeReport, LineReport, Refused};
 use super::streams::Streams;
-use super::vehicle::{Action, Kind, Out, Vehicle};
+use super::vehicle::{Action, Kind, Vehicle};
 use crate::framed::framed;
 use crate::geo::Origin;
+use crate::terminal::{number, result_words};
 use crate::{Endpoint, Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
-use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_ERROR};
+use clap::Args;
+use staya_mavlink::constants::MAV_SEVERITY_ERROR;
 use staya_mavlink::dialect::MavMessage;
-use staya_mavlink::frame::{RawFrame, Sender};
+use staya_mavlink::frame::RawFrame;
 use staya_mavlink::mavlink_core::Message as _;
-use staya_mavlink::signing::{Signing, Verdict};
+use staya_mavlink::signing::{Counts, Signing};
 use staya_sim::engine::{Engine, Moment, operated};
 use staya_sim::key::timestamp;
 use staya_sim::record::{Files, RobotRow};
@@ -36,24 +38,36 @@ const RESERVE: u64 = 1 << 16;
 const COMPLAIN_US: u64 = 10_000_000;
 
 /// Options of a bridge run.
-#[derive(Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Options {
-    /// Links to clients, at least one.
-    pub endpoints: Vec<Endpoint>,
-    /// Simulated seconds per real second, above 0.
+    /// Link to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or
+    /// serial:PORT,baud=N; may be repeated.
+    #[arg(long, value_name = "LINE", default_value = "udpout:127.0.0.1:14550")]
+    pub mavlink: Vec<Endpoint>,
+    /// Simulated seconds per second of real time.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number(0.01, 1000.0))]
     pub speed: f64,
-    /// Ticks to simulate; `None` runs until stopped.
+    /// Stop after this many ticks [default: run until Ctrl-C].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub ticks: Option<u32>,
-    /// Rate of each position message of each vehicle, Hz.
-    pub position_hz: f64,
-    /// Whether robots follow the scenario from the start; otherwise they wait, disarmed.
-    pub starts_armed: bool,
-    /// Geographic position of the scenario's origin.
+    /// Position messages per second and vehicle, until a client requests another rate.
+    #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = number(0.1, 1000.0))]
+    pub rate: f64,
+    /// Start disarmed and wait for the operator, instead of following the scenario until a command
+    /// arrives.
+    #[arg(long)]
+    pub disarmed: bool,
+    /// Geographic position of the scenario's origin: degrees north, degrees east, metres above sea
+    /// level.
+    #[arg(long, value_name = "LAT,LON,ALT", default_value = "47.397742,8.545594,488")]
     pub origin: Origin,
-    /// Key that signs sent frames. Received frames need a valid signature.
-    pub signing: Option<Signing>,
-    /// Path of the telemetry log.
+    /// Write sent and accepted messages to a log for MAVExplorer and mavlogdump; an older file, and
+    /// each file at 256 MiB, is renamed to FILE.1.
+    #[arg(long, value_name = "FILE")]
     pub tlog: Option<PathBuf>,
+    /// Key that signs sent frames. Received frames need a valid signature.
+    #[arg(skip)]
+    pub signing: Option<Signing>,
 }
 
 /// A callback that observes the swarm after each tick. It delays the next tick, so it must be fast.
@@ -64,7 +78,6 @@ pub struct Swarm {
     engine: Engine,
     vehicles: Vec<Vehicle>,
     boots: Vec<u8>,
-    senders: Vec<Sender>,
     model: Arc<VehicleModel>,
     lines: Lines,
     options: Options,
@@ -75,7 +88,6 @@ pub struct Swarm {
     listing: Budget,
     complained_us: Option<u64>,
     report: BridgeReport,
-    out: Out,
 }
 
 impl Swarm {
@@ -96,30 +108,19 @@ impl Swarm {
             operated(scenario).map_err(|error| anyhow!("the robots cannot be placed: {error}; change their starts"))?;
         let model = Arc::new(VehicleModel::new(scenario, options.origin));
         let count = numbers.len();
-        let mut vehicles = Vec::with_capacity(count);
-        let sender = |system: &u32| Sender { system: *system as u8, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 };
-        let senders = numbers.iter().map(sender).collect();
-        for (index, number) in numbers.into_iter().enumerate() {
-            let vehicle = Vehicle::new(
-                number as u8,
-                Arc::clone(&model),
-                Parameters::new(&model, &engine.parameters(index)),
-                Streams::new(options.position_hz, index as f64 / count as f64),
-                (0, engine.observation(index)),
-                options.starts_armed,
-            );
-            if let Some(Action::Wish(wish)) = vehicle.initial_action() {
-                let _ = engine.command(index, wish);
-            }
-            vehicles.push(vehicle);
-        }
-        let lines = Lines::open(&options.endpoints)?;
+        let vehicle = |(index, number): (usize, u32)| {
+            let parameters = Parameters::new(&model, &engine.parameters(index));
+            let streams = Streams::new(options.rate, index as f64 / count as f64);
+            let state = (0, engine.observation(index));
+            Vehicle::new(number as u8, Arc::clone(&model), parameters, streams, state, !options.disarmed)
+        };
+        let vehicles = numbers.into_iter().enumerate().map(vehicle).collect();
+        let lines = Lines::open(&options.mavlink)?;
         let create = |path: &PathBuf| Tlog::create(path, &mut Files::reading(&scenario.files));
         let log = options.tlog.as_ref().map(create).transpose()?;
-        let listing = Budget::per_second(parameters_per_s(&options.endpoints));
+        let listing = Budget::per_second(parameters_per_s(&options.mavlink));
         Ok(Self {
             boots: vec![0; count],
-            senders,
             engine,
             vehicles,
             model,
@@ -132,7 +133,6 @@ impl Swarm {
             listing,
             complained_us: None,
             report: BridgeReport::default(),
-            out: Out::default(),
         })
     }
 
@@ -148,6 +148,9 @@ impl Swarm {
     /// The log cannot be written.
     pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool, onlooker: &mut Onlooker<'_>) -> Result<BridgeReport> {
         let tick = Duration::from_secs_f64(f64::from(self.tick_us) / 1e6 / self.options.speed);
+        for index in 0..self.vehicles.len() {
+            self.carry_out(index)?;
+        }
         self.began = Instant::now();
         let mut due = self.began + tick;
         while self.options.ticks.is_none_or(|ticks| self.report.ticks < ticks) && !is_over(self.report.ticks) {
@@ -204,18 +207,7 @@ impl Swarm {
             self.report.frames_ignored += 1;
             return Ok(0);
         };
-        let verdict = self.options.signing.as_mut().map(|signing| signing.verify(&frame));
-        let reasons = &mut self.report.refused;
-        let reason = match verdict {
-            None | Some(Verdict::Authentic) => None,
-            Some(Verdict::Unsigned) => Some(&mut reasons.unsigned),
-            Some(Verdict::Forged) => Some(&mut reasons.forged),
-            Some(Verdict::Replayed) => Some(&mut reasons.replayed),
-            Some(Verdict::Ahead) => Some(&mut reasons.ahead),
-            Some(Verdict::NoRoom) => Some(&mut reasons.no_room),
-        };
-        if let Some(reason) = reason {
-            *reason += 1;
+        if self.options.signing.as_mut().is_some_and(|signing| !signing.verify(&frame).is_accepted()) {
             return Ok(0);
         }
         let Some(message) = frame.message() else {
@@ -238,9 +230,9 @@ impl Swarm {
         let mut is_heard = false;
         for index in 0..self.vehicles.len() {
             let vehicle = &mut self.vehicles[index];
-            let is_own = from.system == vehicle.system;
-            if is_for_some && !is_own && (system == 0 || system == vehicle.system) {
-                vehicle.receive(from, &message, now_us, &mut self.out);
+            let is_own = from.system == vehicle.sender.system;
+            if is_for_some && !is_own && (system == 0 || system == vehicle.sender.system) {
+                vehicle.receive(from, &message, now_us);
                 is_heard = true;
                 answers += self.carry_out(index)?;
             }
@@ -257,9 +249,9 @@ impl Swarm {
         for _ in 0..count {
             let index = self.first;
             let vehicle = &mut self.vehicles[index];
-            vehicle.poll(now_us, &mut self.out);
+            vehicle.poll(now_us);
             if vehicle.parameters.is_listing() && self.listing.take(now_us) {
-                self.out.messages.extend(vehicle.parameters.next_listed().map(MavMessage::PARAM_VALUE));
+                vehicle.out.messages.extend(vehicle.parameters.next_listed().map(MavMessage::PARAM_VALUE));
             }
             self.carry_out(index)?;
             self.first = (index + 1) % count;
@@ -279,7 +271,7 @@ impl Swarm {
         self.complained_us = Some(now_us);
         for index in 0..self.vehicles.len() {
             let text = "signing timestamps used up: give a new key";
-            self.vehicles[index].text(&mut self.out, Kind::News, MAV_SEVERITY_ERROR, text);
+            self.vehicles[index].text(Kind::News, MAV_SEVERITY_ERROR, text);
             self.carry_out(index)?;
         }
         Ok(())
@@ -299,10 +291,10 @@ impl Swarm {
             if seen.is_up && seen.boot != self.boots[index] {
                 self.boots[index] = seen.boot;
                 let parameters = Parameters::new(&self.model, &self.engine.parameters(index));
-                self.vehicles[index].restart(parameters, (time_us, seen), &mut self.out);
+                self.vehicles[index].restart(parameters, (time_us, seen));
             }
             let events = self.engine.events(index);
-            self.vehicles[index].observe((time_us, seen), events, now_us, &mut self.out);
+            self.vehicles[index].observe((time_us, seen), events, now_us);
             self.carry_out(index)?;
         }
         Ok(())
@@ -310,7 +302,7 @@ impl Swarm {
 
     /// Returns the number of messages.
     fn carry_out(&mut self, index: usize) -> Result<usize> {
-        for action in core::mem::take(&mut self.out.actions) {
+        for action in core::mem::take(&mut self.vehicles[index].out.actions) {
             match action {
                 Action::Tell(header, message) => self.engine.tell(index, header, &message),
                 Action::Wish(wish) => {
@@ -319,18 +311,19 @@ impl Swarm {
                 Action::Set(name, value) => {
                     if self.engine.set_parameter(index, name, value).is_err() {
                         let value = self.engine.parameter(index, name);
-                        self.vehicles[index].set_back(name, value, &mut self.out);
+                        self.vehicles[index].set_back(name, value);
                     }
                 }
             }
         }
-        let answers = self.out.messages.len();
-        for message in self.out.messages.drain(..) {
+        let Vehicle { sender, out, .. } = &mut self.vehicles[index];
+        let answers = out.messages.len();
+        for message in out.messages.drain(..) {
             if let MavMessage::COMMAND_ACK(ack) = &message {
-                *self.report.commands.entry(name(ack.result)).or_default() += 1;
+                *self.report.commands.entry(result_words(ack.result)).or_default() += 1;
             }
             let signing = self.options.signing.as_mut();
-            let Some(frame) = framed(&mut self.senders[index], &message, signing) else { continue };
+            let Some(frame) = framed(sender, &message, signing) else { continue };
             if let Some(log) = &mut self.log {
                 log.add(&frame)?;
             }
@@ -347,17 +340,21 @@ impl Swarm {
             let bytes_out_per_s = counts.bytes_out as f64 / wall_seconds.max(1e-9);
             LineReport { endpoint: endpoint.to_string(), counts, bytes_out_per_s }
         };
-        let (outcome, refused) = (self.engine.outcome(), self.report.refused);
+        let counts = self.options.signing.as_ref().map(Signing::counts).unwrap_or_default();
+        let Counts { unsigned, forged, replayed, ahead, no_room, .. } = counts;
+        let unanswerable = self.report.refused.unanswerable;
+        let outcome = self.engine.outcome();
         let gap = outcome.clearance.map(|clearance| clearance.bodies_m);
         BridgeReport {
             vehicles: self.vehicles.len(),
             sim_seconds: outcome.seconds,
             wall_seconds,
-            frames_refused: refused.total(),
-            frames_ahead: refused.ahead,
+            frames_refused: u64::from(counts.refused()) + unanswerable,
+            refused: Refused { unsigned, forged, replayed, ahead, no_room, unanswerable },
+            frames_ahead: ahead,
             frames_waiting: self.lines.waiting(),
             is_exhausted: self.is_exhausted(),
-            lines: self.options.endpoints.iter().enumerate().map(line).collect(),
+            lines: self.options.mavlink.iter().enumerate().map(line).collect(),
             collisions: outcome.collisions,
             least_gap_m: gap.filter(|gap| gap.is_finite()),
             trace_hash: format!("{:016x}", outcome.trace_hash),

@@ -194,7 +194,7 @@ impl Vehicle {
                 | MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
                 | MAV_PROTOCOL_CAPABILITY_MAVLINK2
                 | MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST,
-            uid: self.system.into(),
+            uid: self.sender.system.into(),
             flight_sw_version: major << 24 | minor << 16 | patch << 8,
             ..AUTOPILOT_VERSION_DATA::DEFAULT
         }

@@ -60,7 +60,6 @@ pub(super) struct Bench {
     pub(super) vehicle: Vehicle,
     pub(super) sample: Observation,
     pub(super) time_us: u64,
-    pub(super) out: Out,
 }
 
 impl Bench {
@@ -76,19 +75,14 @@ impl Bench {
         let parameters = Parameters::new(&model, &values);
         let streams = Streams::new(10.0, 0.0);
         let sample = sample();
-        Self {
-            vehicle: Vehicle::new(7, Arc::new(model), parameters, streams, (0, sample), true),
-            sample,
-            time_us: 0,
-            out: Out::default(),
-        }
+        Self { vehicle: Vehicle::new(7, Arc::new(model), parameters, streams, (0, sample), true), sample, time_us: 0 }
     }
 
     pub(super) fn give(&mut self, message: MavMessage) -> &Out {
-        self.out = Out::default();
+        self.vehicle.out = Out::default();
         let now_us = self.vehicle.now_us;
-        self.vehicle.receive(GCS, &message, now_us, &mut self.out);
-        &self.out
+        self.vehicle.receive(GCS, &message, now_us);
+        &self.vehicle.out
     }
 
     pub(super) fn command(&mut self, command: u16, params: [f32; 7]) -> u8 {
@@ -115,26 +109,26 @@ impl Bench {
     }
 
     pub(super) fn result(&self) -> u8 {
-        let acks = self.out.messages.iter().filter_map(|message| match message {
+        let acks = self.vehicle.out.messages.iter().filter_map(|message| match message {
             MavMessage::COMMAND_ACK(ack) => Some(ack.result),
             _ => None,
         });
         let acks: Vec<u8> = acks.collect();
         assert_eq!(acks.len(), 1, "each command is answered once");
-        assert!(matches!(self.out.messages[0], MavMessage::COMMAND_ACK(_)));
+        assert!(matches!(self.vehicle.out.messages[0], MavMessage::COMMAND_ACK(_)));
         acks[0]
     }
 
     pub(super) fn tick(&mut self, change: impl FnOnce(&mut Observation)) -> &Out {
         self.time_us += 100_000;
         change(&mut self.sample);
-        self.out = Out::default();
-        self.vehicle.observe((self.time_us, self.sample), &[], self.time_us, &mut self.out);
-        &self.out
+        self.vehicle.out = Out::default();
+        self.vehicle.observe((self.time_us, self.sample), &[], self.time_us);
+        &self.vehicle.out
     }
 
     pub(super) fn wish(&self) -> Option<Wish<f32>> {
-        let mut actions = self.out.actions.iter().rev();
+        let mut actions = self.vehicle.out.actions.iter().rev();
         actions.find_map(|action| match action {
             super::vehicle::Action::Wish(wish) => Some(*wish),
             _ => None,
@@ -142,7 +136,7 @@ impl Bench {
     }
 
     pub(super) fn texts(&self) -> Vec<String> {
-        let texts = self.out.messages.iter().filter_map(|message| match message {
+        let texts = self.vehicle.out.messages.iter().filter_map(|message| match message {
             MavMessage::STATUSTEXT(text) => Some(text.text.to_str().unwrap_or("?").to_owned()),
             _ => None,
         });

@@ -37,7 +37,7 @@ pub enum Action {
     Set(&'static str, f32),
 }
 
-/// The output of one call.
+/// The output of a vehicle.
 #[derive(Clone, Debug, Default)]
 pub struct Out {
     /// Messages to send, in this order.
@@ -49,7 +49,7 @@ pub struct Out {
 /// The vehicle that clients see for one robot.
 #[derive(Clone, Debug)]
 pub struct Vehicle {
-    pub(super) system: u8,
+    pub(super) sender: Sender,
     pub(super) model: Arc<VehicleModel>,
     pub(super) streams: Streams,
     pub(super) parameters: Parameters,
@@ -68,6 +68,8 @@ pub struct Vehicle {
     pub(super) ordered: Ordered,
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
+    /// The output of the calls since it was last taken.
+    pub(super) out: Out,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -94,8 +96,9 @@ impl Vehicle {
         starts_armed: bool,
     ) -> Self {
         let [x, y, _] = seen.motion.position_m;
+        let actions = if starts_armed { Vec::new() } else { vec![Action::Wish(Wish::Off)] };
         Self {
-            system,
+            sender: Sender { system, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 },
             streams,
             parameters,
             mission: Mission::default(),
@@ -110,28 +113,29 @@ impl Vehicle {
             ordered: Ordered::default(),
             texts: [None; Kind::COUNT],
             now_us: 0,
+            out: Out { actions, ..Out::default() },
             model,
         }
     }
 
-    /// Action to perform at the start of the robot.
-    pub const fn initial_action(&self) -> Option<Action> {
-        if self.starts_armed { None } else { Some(Action::Wish(Wish::Off)) }
-    }
-
     /// Resets the vehicle after its onboard computer restarted. Only the mission is kept.
-    pub fn restart(&mut self, parameters: Parameters, state: (u64, Observation), out: &mut Out) {
-        let fresh =
-            Self::new(self.system, Arc::clone(&self.model), parameters, self.streams.clone(), state, self.starts_armed);
+    pub fn restart(&mut self, parameters: Parameters, state: (u64, Observation)) {
+        let fresh = Self::new(
+            self.sender.system,
+            Arc::clone(&self.model),
+            parameters,
+            self.streams.clone(),
+            state,
+            self.starts_armed,
+        );
         let old = core::mem::replace(self, fresh);
-        (self.mission, self.home_m) = (old.mission, old.home_m);
+        (self.mission, self.home_m, self.sender) = (old.mission, old.home_m, old.sender);
         (self.now_us, self.yaw) = (old.now_us, old.yaw);
-        out.actions.extend(self.initial_action());
-        self.text(out, Kind::News, MAV_SEVERITY_WARNING, "restarted");
+        self.text(Kind::News, MAV_SEVERITY_WARNING, "restarted");
     }
 
     /// Records the robot's state and events after a tick.
-    pub fn observe(&mut self, (time_us, seen): (u64, Observation), events: &[Event], now_us: u64, out: &mut Out) {
+    pub fn observe(&mut self, (time_us, seen): (u64, Observation), events: &[Event], now_us: u64) {
         let before = core::mem::replace(&mut self.seen, seen);
         (self.time_us, self.now_us) = (time_us, now_us);
         if !seen.is_up {
@@ -145,15 +149,15 @@ impl Vehicle {
             && seen.wish == Wish::Hold
             && self.mode == FlightMode::Guided
         {
-            self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, "setpoint timed out: holding");
+            self.text(Kind::Setpoint, MAV_SEVERITY_NOTICE, "setpoint timed out: holding");
         }
         for event in events {
-            self.report(event, out);
+            self.report(event);
         }
-        self.advance(out);
+        self.advance();
     }
 
-    fn report(&mut self, event: &Event, out: &mut Out) {
+    fn report(&mut self, event: &Event) {
         use MAV_SEVERITY_WARNING as WARNING;
         let (kind, severity, text) = match *event {
             Event::ModeChanged { to: Mode::Fault, .. } => (Kind::News, MAV_SEVERITY_ERROR, "fault: standing".into()),
@@ -169,11 +173,15 @@ impl Vehicle {
             Event::NoRoute => (Kind::Route, WARNING, "no open route to the goal".into()),
             _ => return,
         };
-        self.text(out, kind, severity, &text);
+        self.text(kind, severity, &text);
+    }
+
+    pub(super) fn wish(&mut self, wish: Wish<f32>) {
+        self.out.actions.push(Action::Wish(wish));
     }
 
     /// All kinds but `News` are limited in rate.
-    pub(super) fn text(&mut self, out: &mut Out, kind: Kind, severity: u8, text: &str) {
+    pub(super) fn text(&mut self, kind: Kind, severity: u8, text: &str) {
         if !matches!(kind, Kind::News) {
             let last = &mut self.texts[kind as usize];
             let is_early = |last: u64| self.now_us.saturating_sub(last) < TEXT_EVERY_US;
@@ -182,7 +190,7 @@ impl Vehicle {
             }
             *last = Some(self.now_us);
         }
-        out.messages.push(MavMessage::STATUSTEXT(STATUSTEXT_DATA {
+        self.out.messages.push(MavMessage::STATUSTEXT(STATUSTEXT_DATA {
             severity,
             text: text.into(),
             ..STATUSTEXT_DATA::DEFAULT
@@ -190,34 +198,34 @@ impl Vehicle {
     }
 
     /// Sends due telemetry, and requests overdue mission items.
-    pub fn poll(&mut self, now_us: u64, out: &mut Out) {
+    pub fn poll(&mut self, now_us: u64) {
         self.now_us = now_us;
         if !self.seen.is_up {
             return;
         }
         let mut streams = core::mem::take(&mut self.streams);
-        streams.each_due(now_us, |id| out.messages.extend(self.telemetry(id)));
+        streams.each_due(now_us, |id| self.out.messages.extend(self.telemetry(id)));
         self.streams = streams;
-        out.messages.extend(self.mission.poll(now_us));
+        self.out.messages.extend(self.mission.poll(now_us));
     }
 
     /// Handles a message for this vehicle or for all vehicles.
-    pub fn receive(&mut self, from: Sender, message: &MavMessage, now_us: u64, out: &mut Out) {
+    pub fn receive(&mut self, from: Sender, message: &MavMessage, now_us: u64) {
         self.now_us = now_us;
         if !self.seen.is_up || !self.is_for_me(message) {
             return;
         }
         match message {
-            MavMessage::COMMAND_LONG(command) => self.command_long(from, command, out),
-            MavMessage::COMMAND_INT(command) => self.command(from, command, true, out),
+            MavMessage::COMMAND_LONG(command) => self.command_long(from, command),
+            MavMessage::COMMAND_INT(command) => self.command(from, command, true),
             // The protocol defines no answer to this older message.
             MavMessage::SET_MODE(wanted) => {
-                if self.set_mode(wanted.base_mode, wanted.custom_mode, out).is_err() {
-                    self.text(out, Kind::News, MAV_SEVERITY_WARNING, "unknown mode");
+                if self.set_mode(wanted.base_mode, wanted.custom_mode).is_err() {
+                    self.text(Kind::News, MAV_SEVERITY_WARNING, "unknown mode");
                 }
             }
-            MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => self.follow(self.local_setpoint(target), out),
-            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => self.follow(self.global_setpoint(target), out),
+            MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => self.follow(self.local_setpoint(target)),
+            MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => self.follow(self.global_setpoint(target)),
             MavMessage::PARAM_REQUEST_LIST(_) => self.parameters.list(),
             MavMessage::PARAM_REQUEST_READ(wanted) => {
                 let index = match usize::try_from(wanted.param_index) {
@@ -225,17 +233,17 @@ impl Vehicle {
                     Err(_) => self.parameters.find(&wanted.param_id),
                 };
                 match index.and_then(|index| self.parameters.message(index)) {
-                    Some(told) => out.messages.push(MavMessage::PARAM_VALUE(told)),
-                    None => self.unknown_parameter(out),
+                    Some(told) => self.out.messages.push(MavMessage::PARAM_VALUE(told)),
+                    None => self.unknown_parameter(),
                 }
             }
-            MavMessage::PARAM_SET(wanted) => self.set_parameter(wanted, out),
+            MavMessage::PARAM_SET(wanted) => self.set_parameter(wanted),
             MavMessage::REQUEST_DATA_STREAM(wanted) => {
                 let rate = if wanted.start_stop == 0 { 0 } else { wanted.req_message_rate };
                 self.streams.set_group(wanted.req_stream_id, rate, now_us);
             }
             MavMessage::PING(ping) if ping.target_system == 0 => {
-                out.messages.push(MavMessage::PING(PING_DATA {
+                self.out.messages.push(MavMessage::PING(PING_DATA {
                     target_system: from.system,
                     target_component: from.component,
                     ..ping.clone()
@@ -243,49 +251,49 @@ impl Vehicle {
             }
             // A TIMESYNC with a time is an answer.
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => {
-                out.messages.push(MavMessage::TIMESYNC(TIMESYNC_DATA {
+                self.out.messages.push(MavMessage::TIMESYNC(TIMESYNC_DATA {
                     tc1: i64::try_from(self.time_us).map_or(i64::MAX, |us| us * 1000),
                     ts1: sync.ts1,
                 }));
             }
-            MavMessage::FILE_TRANSFER_PROTOCOL(asked) => out.messages.extend(files::none(from, asked)),
-            _ => self.receive_goals(from, message, out),
+            MavMessage::FILE_TRANSFER_PROTOCOL(asked) => self.out.messages.extend(files::none(from, asked)),
+            _ => self.receive_goals(from, message),
         }
     }
 
-    fn receive_goals(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
+    fn receive_goals(&mut self, from: Sender, message: &MavMessage) {
         let now_us = self.now_us;
         let answer = match message {
             MavMessage::MISSION_COUNT(told) => {
                 // An upload would replace the items of the active mission.
                 if told.mission_type == MAV_MISSION_TYPE_MISSION {
-                    self.stop_mission(out);
+                    self.stop_mission();
                 }
                 self.mission.count(from, told, now_us)
             }
-            MavMessage::MISSION_ITEM_INT(item) => self.take_item(from, item.clone(), out),
-            MavMessage::MISSION_ITEM(item) => self.take_item(from, from_float(item), out),
+            MavMessage::MISSION_ITEM_INT(item) => self.take_item(from, item.clone()),
+            MavMessage::MISSION_ITEM(item) => self.take_item(from, from_float(item)),
             MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
             MavMessage::MISSION_REQUEST_INT(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, true),
             MavMessage::MISSION_REQUEST(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, false),
             MavMessage::MISSION_CLEAR_ALL(wanted) => {
-                self.stop_mission(out);
+                self.stop_mission();
                 self.mission.clear(from, wanted.mission_type)
             }
             MavMessage::MISSION_SET_CURRENT(wanted) => {
-                if self.set_current_item(wanted.seq, out).is_err() {
-                    self.text(out, Kind::News, MAV_SEVERITY_WARNING, "unknown mission item");
+                if self.set_current_item(wanted.seq).is_err() {
+                    self.text(Kind::News, MAV_SEVERITY_WARNING, "unknown mission item");
                 }
-                return out.messages.extend(self.telemetry(MISSION_CURRENT_DATA::ID));
+                return self.out.messages.extend(self.telemetry(MISSION_CURRENT_DATA::ID));
             }
-            _ => return self.receive_orders(from, message, out),
+            _ => return self.receive_orders(from, message),
         };
-        out.messages.push(answer);
+        self.out.messages.push(answer);
     }
 
     fn is_for_me(&self, message: &MavMessage) -> bool {
         let (system, component) = (message.target_system_id(), message.target_component_id());
-        let is_mine = system.is_none_or(|system| system == 0 || system == self.system);
+        let is_mine = system.is_none_or(|system| system == 0 || system == self.sender.system);
         // Broadcasts must not configure all vehicles alike.
         let is_private = matches!(
             message,
@@ -295,7 +303,7 @@ impl Vehicle {
                 | MavMessage::MISSION_ITEM_INT(_)
                 | MavMessage::FILE_TRANSFER_PROTOCOL(_)
         );
-        let is_addressed = !is_private || system == Some(self.system);
+        let is_addressed = !is_private || system == Some(self.sender.system);
         // 0 addresses all components; this vehicle has one.
         let is_here = component.is_none_or(|to| to == 0 || to == MAV_COMP_ID_AUTOPILOT1);
         is_mine && is_addressed && is_here
@@ -314,21 +322,21 @@ impl Vehicle {
         self.parameters.get(TOLERANCE.name).unwrap_or(0.0)
     }
 
-    pub(super) fn enter(&mut self, mode: FlightMode, out: &mut Out) {
+    pub(super) fn enter(&mut self, mode: FlightMode) {
         let flies = self.model.flies;
         if mode.number(flies) != self.mode.number(flies) {
             let text = format!("mode {}", mode.name(flies));
-            self.text(out, Kind::News, MAV_SEVERITY_INFO, &text);
+            self.text(Kind::News, MAV_SEVERITY_INFO, &text);
         }
         self.mode = mode;
-        self.begin(out);
+        self.begin();
     }
 
-    pub(super) fn begin(&mut self, out: &mut Out) {
+    pub(super) fn begin(&mut self) {
         let [x, y, z] = self.seen.motion.position_m;
         let wish = match self.mode {
             _ if !self.is_armed => Wish::Off,
-            FlightMode::Mission { .. } => return self.begin_item(out),
+            FlightMode::Mission { .. } => return self.begin_item(),
             FlightMode::Auto => Wish::Own,
             FlightMode::Guided | FlightMode::Hold => Wish::Hold,
             FlightMode::Return => {
@@ -337,18 +345,18 @@ impl Vehicle {
             }
             FlightMode::Land { .. } => self.goal([x, y, 0.0]).unwrap_or(Wish::Hold),
         };
-        out.actions.push(Action::Wish(wish));
+        self.wish(wish);
     }
 
     /// `None` if the position is not finite, too far, or inside an obstacle.
     pub(super) fn goal(&self, [x, y, z]: [f64; 3]) -> Option<Wish<f32>> {
         let place_m = [x, y, if self.model.flies { z } else { self.seen.motion.position_m[2] }];
         let is_near = place_m.iter().all(|m| m.abs() <= FAR_M);
+        if self.model.grid.is_some() {
+            return self.model.cell(place_m).map(Wish::Cell);
+        }
         if !is_near || !self.model.has_room(place_m) {
             return None;
-        }
-        if self.model.grid.is_some() {
-            return Some(Wish::Cell(self.model.cell(place_m)?));
         }
         Some(Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_metres(place_m)?), valid: None })
     }
@@ -364,7 +372,7 @@ impl Vehicle {
         all <= near_m * near_m
     }
 
-    fn advance(&mut self, out: &mut Out) {
+    fn advance(&mut self) {
         if !self.is_armed {
             return;
         }
@@ -372,19 +380,19 @@ impl Vehicle {
         match self.mode {
             FlightMode::Land { is_item } if self.is_at([x, y, 0.0], 0.0) => {
                 self.is_armed = false;
-                self.begin(out);
+                self.begin();
                 if is_item {
-                    self.finish_landing(out);
+                    self.finish_landing();
                 }
-                self.text(out, Kind::News, MAV_SEVERITY_INFO, "landed, disarmed");
+                self.text(Kind::News, MAV_SEVERITY_INFO, "landed, disarmed");
             }
             FlightMode::Return if self.model.flies => {
                 let [home_x, home_y, _] = self.home_m;
                 if self.is_at([home_x, home_y, z], 0.0) {
-                    self.enter(FlightMode::LAND, out);
+                    self.enter(FlightMode::LAND);
                 }
             }
-            FlightMode::Mission { .. } => self.advance_mission(out),
+            FlightMode::Mission { .. } => self.advance_mission(),
             _ => {}
         }
     }

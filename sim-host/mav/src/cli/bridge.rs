@@ -1,6 +1,5 @@
 use super::signing;
 use crate::bridge::{BridgeReport, LineReport, Options, Refused, Swarm};
-use crate::geo::{Global as Place, Origin};
 use crate::terminal::{number, say};
 use crate::{Counts, Endpoint};
 use anyhow::Result;
@@ -18,32 +17,13 @@ use std::path::PathBuf;
 pub struct BridgeArgs {
     /// Scenario, a .toml file with at most 254 robots.
     scenario: PathBuf,
-    /// Link to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or
-    /// serial:PORT,baud=N; may be repeated.
-    #[arg(long, value_name = "LINE", default_value = "udpout:127.0.0.1:14550")]
-    mavlink: Vec<Endpoint>,
+    #[command(flatten)]
+    options: Options,
     #[command(flatten)]
     page: staya_console::WatchArgs,
-    /// Simulated seconds per second of real time.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = number(0.01, 1000.0))]
-    speed: f64,
-    /// Stop after this many simulated seconds [default: run until Ctrl-C].
-    #[arg(long, value_name = "S", value_parser = number(0.001, 1e6))]
+    /// Stop after this many simulated seconds, instead of ticks.
+    #[arg(long, value_name = "S", conflicts_with = "ticks", value_parser = number(0.001, 1e6))]
     seconds: Option<f64>,
-    /// Stop after this many ticks instead.
-    #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = clap::value_parser!(u32).range(1..))]
-    ticks: Option<u32>,
-    /// Position messages per second and vehicle, until a client requests another rate.
-    #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = number(0.1, 1000.0))]
-    rate: f64,
-    /// Start disarmed and wait for the operator, instead of following the scenario until a command
-    /// arrives.
-    #[arg(long)]
-    disarmed: bool,
-    /// Geographic position of the scenario's origin: degrees north, degrees east, metres above sea
-    /// level.
-    #[arg(long, value_name = "LAT,LON,ALT", default_value = "47.397742,8.545594,488", value_parser = origin)]
-    origin: Origin,
     /// Sign sent messages and reject those without a valid signature; a file with 64 hex digits, or
     /// "passphrase: WORDS".
     #[arg(long, value_name = "FILE")]
@@ -52,10 +32,6 @@ pub struct BridgeArgs {
     /// clock.
     #[arg(long, value_name = "S", default_value_t = 60.0, requires = "key", value_parser = number(0.1, 1e8))]
     lead: f64,
-    /// Write sent and accepted messages to a log for MAVExplorer and mavlogdump; an older file, and
-    /// each file at 256 MiB, is renamed to FILE.1.
-    #[arg(long, value_name = "FILE")]
-    tlog: Option<PathBuf>,
     /// Seed of all random numbers, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -63,15 +39,6 @@ pub struct BridgeArgs {
     /// repeated.
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     settings: Vec<Setting>,
-}
-
-fn origin(text: &str) -> Result<Origin, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let place = match numbers.as_deref() {
-        Ok(&[latitude_deg, longitude_deg, altitude_m]) => Some(Place { latitude_deg, longitude_deg, altitude_m }),
-        _ => None,
-    };
-    place.and_then(Origin::new).ok_or_else(|| "give LAT,LON,ALT: -90 to 90 degrees, -180 to 180 degrees, metres".into())
 }
 
 fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
@@ -94,26 +61,14 @@ impl BridgeArgs {
         for remark in scenario.remarks() {
             say(&remark);
         }
-        let ticks = match (self.ticks, self.seconds) {
-            (Some(ticks), _) => Some(ticks),
-            (None, Some(seconds)) => Some(libm::ceil(seconds / scenario.tick_s()) as u32),
-            (None, None) => None,
-        };
+        let ticks_in = |seconds: f64| libm::ceil(seconds / scenario.tick_s()) as u32;
+        let ticks = self.options.ticks.or(self.seconds.map(ticks_in));
         let signing = signing(self.key.as_deref(), 0)?.map(|signing| signing.with_lead((self.lead * 1e5) as u64));
-        let options = Options {
-            endpoints: self.mavlink.clone(),
-            speed: self.speed,
-            ticks,
-            position_hz: self.rate,
-            starts_armed: !self.disarmed,
-            origin: self.origin,
-            signing,
-            tlog: self.tlog.clone(),
-        };
+        let options = Options { ticks, signing, ..self.options.clone() };
         let stop = Stop::on_ctrl_c()?;
         let swarm = Swarm::new(&scenario, options)?;
         let count = scenario.robots.len();
-        let lines = lines(&swarm, &self.mavlink);
+        let lines = lines(&swarm, &self.options.mavlink);
         let mut progress = ticks.map(|ticks| Progress::new(&scenario.name, ticks.into(), global));
         if progress.is_none() && !global.quiet {
             say(&format!("{count} vehicles at {lines}; press Ctrl-C to stop"));
@@ -186,18 +141,4 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
         )?;
     }
     Ok(text)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn origins_are_places_on_the_earth() {
-        let zurich = origin("47.4, 8.5,488").expect("a place").place();
-        assert_eq!((zurich.latitude_deg, zurich.altitude_m), (47.4, 488.0));
-        for bad in ["", "1,2", "1,2,3,4", "91,0,0", "0,181,0", "a,b,c", "nan,0,0"] {
-            assert!(origin(bad).is_err(), "{bad}");
-        }
-    }
 }

@@ -1,9 +1,9 @@
 use super::{number, signing};
 use crate::Endpoint;
 use crate::formation::station::{Given, Members, Places, give, numbers};
-use crate::formation::{Graph, GraphError, Order, Shape};
+use crate::formation::{Graph, Order, Shape};
 use crate::tlog::micros_since_1970;
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, print, print_json};
 use staya_controller::grid::{Cell, Dir};
@@ -34,9 +34,8 @@ pub struct FormationArgs {
     /// Robots to command: numbers and ranges, as in 3,5,8-12 [default: all that answer].
     #[arg(long, value_name = "NUMBERS", value_parser = robots)]
     robots: Option<Numbers>,
-    /// Assignment of places: nearest (smallest sum of squared distances), or number (in order of
-    /// robot numbers, first in front).
-    #[arg(long, value_name = "BY", default_value = "nearest", value_parser = places)]
+    /// Assignment of places.
+    #[arg(long, value_name = "BY", value_enum, default_value_t = Places::Nearest)]
     places: Places,
     /// Goal of the front of the formation, a grid cell: east, north [default: the robots' present
     /// goal].
@@ -54,11 +53,6 @@ pub struct FormationArgs {
     /// Sign the orders with the bridge's key in this file.
     #[arg(long, value_name = "FILE")]
     key: Option<std::path::PathBuf>,
-}
-
-enum Wanted {
-    Shape(Shape),
-    Graph(Graph),
 }
 
 fn cell(text: &str) -> Result<Cell, String> {
@@ -88,27 +82,10 @@ fn robots(text: &str) -> Result<Numbers, String> {
     Ok(robots)
 }
 
-fn places(text: &str) -> Result<Places, String> {
-    match text {
-        "nearest" => Ok(Places::Nearest),
-        "number" => Ok(Places::Number),
-        _ => Err(String::from("give nearest or number")),
-    }
-}
-
 fn heading(text: &str) -> Result<Dir, String> {
-    let names = [
-        ("E", Dir::East),
-        ("NE", Dir::NorthEast),
-        ("N", Dir::North),
-        ("NW", Dir::NorthWest),
-        ("W", Dir::West),
-        ("SW", Dir::SouthWest),
-        ("S", Dir::South),
-        ("SE", Dir::SouthEast),
-    ];
-    let found = names.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
-    found.map(|(_, heading)| heading).ok_or_else(|| String::from("give one of E, NE, N, NW, W, SW, S, SE"))
+    const NAMES: [&str; 8] = ["E", "NE", "N", "NW", "W", "SW", "S", "SE"];
+    let found = NAMES.iter().zip(Dir::MOVES).find(|(name, _)| name.eq_ignore_ascii_case(text));
+    found.map(|(_, heading)| heading).ok_or_else(|| format!("give one of {}", NAMES.join(", ")))
 }
 
 impl FormationArgs {
@@ -117,13 +94,9 @@ impl FormationArgs {
     /// # Errors
     /// The shape is unknown or invalid, a link cannot be opened, no robot is found, or one refuses.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        let wanted = match Shape::from_name(&self.shape) {
-            Some(shape) => Wanted::Shape(shape),
-            None => Wanted::Graph(self.read(Path::new(&self.shape))?),
-        };
-        let graph = |robots| match wanted {
-            Wanted::Shape(shape) => shape.graph(robots, self.spacing),
-            Wanted::Graph(graph) => Ok(graph),
+        let graph: Box<dyn FnOnce(usize) -> Result<Graph>> = match Shape::from_name(&self.shape) {
+            Some(shape) => Box::new(move |robots| shape.graph(robots, self.spacing)),
+            None => self.read(Path::new(&self.shape)).map(|graph| Box::new(|_| Ok(graph)))?,
         };
         let mut signing = signing(self.key.as_deref(), 2)?;
         // Every call gets a new boot counter, so robots accept its version 1.
@@ -153,10 +126,7 @@ impl FormationArgs {
             bail!("`{}` is not a shape; give {names}, or a .toml file", self.shape);
         }
         let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-        Graph::parse(&text, path).map_err(|error| match error {
-            GraphError::File(text) => anyhow!(text),
-            other => anyhow!("{}: {other}", path.display()),
-        })
+        Graph::parse(&text, path)
     }
 
     fn table(&self, given: &Given) -> String {
@@ -191,6 +161,5 @@ mod tests {
             let error = robots(bad).expect_err(bad);
             assert!(error.contains("as in 3,5,8-12"), "{error}");
         }
-        assert!(places("near").is_err());
     }
 }

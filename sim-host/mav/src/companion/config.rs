@@ -4,6 +4,7 @@ use super::kind::Kind;
 use super::medium::MediumSetup;
 use super::offboard::{Entry, Rules};
 use crate::Endpoint;
+use crate::endpoint::EndpointError;
 use crate::geo::{Global, Origin};
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use staya_controller::robot::RobotId;
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 const LIST: &str = "docs/autopilots.md";
-const SYSTEMS: u32 = 254;
+const SYSTEMS: u8 = 254;
 const RADIUS: u8 = 16;
 
 table! {
@@ -266,29 +267,24 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioErr
         (None, None, false) => Ok(MediumSetup::Here),
         (None, None, true) => Ok(MediumSetup::Tunnel),
         (Some(group), None, false) => {
-            let given = address(source, "air.multicast", group)?;
-            match given {
-                SocketAddr::V4(group) if group.ip().is_multicast() && group.port() > 0 => {
-                    let interface = table.interface.as_deref().unwrap_or("0.0.0.0");
-                    let interface = interface.parse().map_err(|_| {
-                        let what = format!("`{interface}` is not an IPv4 address");
-                        source.error("air.interface", what, "give that of an own interface, as in 192.168.1.7")
-                    })?;
-                    Ok(MediumSetup::Multicast { group, interface })
-                }
+            let group = match address(source, "air.multicast", group)? {
+                SocketAddr::V4(group) if group.ip().is_multicast() && group.port() > 0 => group,
                 _ => {
                     let what = format!("`{group}` is not an IPv4 multicast group");
-                    let remedy = "give one such as 239.255.77.1:14999";
-                    Err(source.error("air.multicast", what, remedy))
+                    return Err(source.error("air.multicast", what, "give one such as 239.255.77.1:14999"));
                 }
-            }
+            };
+            let interface = table.interface.as_deref().unwrap_or("0.0.0.0");
+            let interface = interface.parse().map_err(|_| {
+                let what = format!("`{interface}` is not an IPv4 address");
+                source.error("air.interface", what, "give that of an own interface, as in 192.168.1.7")
+            })?;
+            Ok(MediumSetup::Multicast { group, interface })
         }
         (None, Some(bind), false) => {
             let bind = address(source, "air.bind", bind)?;
-            let peers = table.peers.iter().enumerate();
-            let peers = peers.map(|(i, peer)| address(source, &format!("air.peers[{i}]"), peer));
-            let peers = peers.collect::<Result<Vec<_>, _>>()?;
-            Ok(MediumSetup::Peers { bind, peers })
+            let peers = (0..).zip(&table.peers).map(|(i, peer)| address(source, &format!("air.peers[{i}]"), peer));
+            Ok(MediumSetup::Peers { bind, peers: peers.collect::<Result<_, _>>()? })
         }
         _ => clash("air", "give only one of multicast, peers and tunnel"),
     }
@@ -318,16 +314,16 @@ fn vehicles(
 ) -> Result<(Vec<Endpoint>, Vec<VehicleSetup>), ScenarioError> {
     let (mut lines, mut vehicles) = (Vec::new(), Vec::<VehicleSetup>::new());
     for (number, table) in file.vehicle.iter().enumerate() {
-        let field = |name: &str| format!("vehicle[{number}].{name}");
-        let found = scenario.robots.binary_search_by_key(&RobotId(table.robot), |r| r.id);
-        let Ok(index) = found else {
-            let what = format!("the scenario has no robot {}", table.robot);
+        let fail =
+            |name: &str, what: String, remedy: &str| source.error(&format!("vehicle[{number}].{name}"), what, remedy);
+        let robot = RobotId(table.robot);
+        let index = scenario.robots.binary_search_by_key(&robot, |robot| robot.id).map_err(|_| {
             let remedy = format!("give the number of one of its {}", scenario.robots.len());
-            return Err(source.error(&field("robot"), what, remedy));
-        };
-        let endpoint = table.link.parse::<Endpoint>().map_err(|error| {
+            fail("robot", format!("the scenario has no robot {robot}"), &remedy)
+        })?;
+        let endpoint = table.link.parse::<Endpoint>().map_err(|EndpointError { text, what }| {
             let remedy = "give a link, for example udpin:127.0.0.1:14550, tcpout:127.0.0.1:5760 or serial:/dev/ttyACM0,baud=57600";
-            source.error(&field("link"), format!("`{}`: {}", error.text, error.what), remedy)
+            fail("link", format!("`{text}`: {what}"), remedy)
         })?;
         let line = lines.iter().position(|known| *known == endpoint);
         let line = line.unwrap_or_else(|| {
@@ -335,21 +331,15 @@ fn vehicles(
             lines.len() - 1
         });
         let system = table.system.unwrap_or(table.robot);
-        if system == 0 || system > SYSTEMS {
-            let what = format!("{system} is not a MAVLink system id of a vehicle");
-            return Err(source.error(&field("system"), what, "give 1 to 254"));
+        let Some(system) = u8::try_from(system).ok().filter(|system| (1..=SYSTEMS).contains(system)) else {
+            return Err(fail("system", format!("{system} is not a MAVLink system id of a vehicle"), "give 1 to 254"));
+        };
+        if vehicles.iter().any(|known| known.index == index) {
+            return Err(fail("robot", format!("robot {robot} is listed twice"), "give each vehicle its own number"));
         }
-        let system = system as u8;
-        for known in &vehicles {
-            if known.index == index {
-                let what = format!("robot {} is listed twice", table.robot);
-                return Err(source.error(&field("robot"), what, "give each vehicle its own number"));
-            }
-            if (known.line, known.system) == (line, system) {
-                let what = format!("system {system} is used twice on this link");
-                let remedy = "give each vehicle its own id (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
-                return Err(source.error(&field("system"), what, remedy));
-            }
+        if vehicles.iter().any(|known| (known.line, known.system) == (line, system)) {
+            let remedy = "give each vehicle its own id (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
+            return Err(fail("system", format!("system {system} is used twice on this link"), remedy));
         }
         let rules = rules(&file.rules, table, scenario.safety(index).kind());
         if file.rules.takeoff && table.autopilot.flies() && rules.altitude_m.is_none() {
@@ -357,9 +347,10 @@ fn vehicles(
             return Err(source.error("rules.takeoff", what, "give altitude_m"));
         }
         if let Some(goal) = table.goal_deg {
-            assign_goal(source, &field("goal_deg"), goal, origin, scenario, index)?;
+            assign_goal(goal, origin, scenario, index)
+                .map_err(|[what, remedy]| fail("goal_deg", what.into(), remedy))?;
         }
-        vehicles.push(VehicleSetup { robot: RobotId(table.robot), index, system, line, kind: table.autopilot, rules });
+        vehicles.push(VehicleSetup { robot, index, system, line, kind: table.autopilot, rules });
     }
     if vehicles.is_empty() {
         let remedy = "add [[vehicle]] with robot, link and autopilot";
@@ -369,32 +360,24 @@ fn vehicles(
     Ok((lines, vehicles))
 }
 
+/// The error is the problem and the remedy.
 fn assign_goal(
-    source: &Source<'_>,
-    field: &str,
     [latitude_deg, longitude_deg]: [f64; 2],
     origin: &Origin,
     scenario: &mut Scenario,
     index: usize,
-) -> Result<(), ScenarioError> {
+) -> Result<(), [&'static str; 2]> {
     let place = origin.to_enu_m(&Global { latitude_deg, longitude_deg, altitude_m: origin.place().altitude_m });
+    let [x, y, _] = place.ok_or(["not a position near the origin", "give [latitude, longitude] in degrees"])?;
     let plane = scenario.plane.as_mut();
     let target = plane.filter(|plane| plane.group(index).guidance.kind() == GuidanceKind::Waypoint);
     let target = target.and_then(|plane| plane.starts.get_mut(index)?.places.last_mut());
-    match (place, target) {
-        (Some(place), Some(target)) => {
-            target.position_m = [place[0], place[1], target.position_m[2]];
-            Ok(())
-        }
-        (None, _) => {
-            let what = "not a position near the origin";
-            Err(source.error(field, what, "give [latitude, longitude] in degrees"))
-        }
-        (_, None) => {
-            let what = "this robot's guidance in the scenario has no goal to replace";
-            Err(source.error(field, what, "remove it, or use guidance \"waypoint\""))
-        }
-    }
+    let target = target.ok_or([
+        "this robot's guidance in the scenario has no goal to replace",
+        "remove it, or use guidance \"waypoint\"",
+    ])?;
+    target.position_m = [x, y, target.position_m[2]];
+    Ok(())
 }
 
 #[cfg(test)]

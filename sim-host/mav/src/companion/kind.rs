@@ -43,13 +43,8 @@ impl Kind {
         matches!(self, Self::ArduCopter | Self::Px4Copter)
     }
 
-    /// Whether the autopilot accepts and keeps external control only while setpoints arrive.
-    #[must_use]
-    pub const fn needs_stream(self) -> bool {
-        self.is_px4()
-    }
-
-    /// Whether this is PX4 rather than ArduPilot.
+    /// Whether this is PX4, which keeps external control only while setpoints arrive, rather than
+    /// ArduPilot.
     #[must_use]
     pub const fn is_px4(self) -> bool {
         matches!(self, Self::Px4Copter | Self::Px4Rover)
@@ -68,7 +63,7 @@ impl Kind {
     /// Whether a custom mode is the external control mode.
     #[must_use]
     pub const fn is_outside_control(self, custom_mode: u32) -> bool {
-        let mode = if self.needs_stream() { (custom_mode >> 16) & 0xFF } else { custom_mode };
+        let mode = if self.is_px4() { (custom_mode >> 16) & 0xFF } else { custom_mode };
         mode == self.outside_control()
     }
 }

@@ -76,17 +76,15 @@ impl KeyWatch {
         let watch = move || {
             loop {
                 thread::sleep(LOOK);
-                let news = match KeyFile::read(&path) {
-                    Ok(file) if file.key == key => {
-                        is_told = false;
-                        None
-                    }
+                let read = KeyFile::read(&path);
+                let was_told = core::mem::replace(&mut is_told, read.is_err());
+                let news = match read {
+                    Ok(file) if file.key == key => None,
                     Ok(file) => {
-                        is_told = false;
                         key = file.key.clone();
                         Some(Ok(file.key))
                     }
-                    Err(error) => (!core::mem::replace(&mut is_told, true)).then(|| Err(error.to_string())),
+                    Err(error) => (!was_told).then(|| Err(error.to_string())),
                 };
                 if news.is_some_and(|news| sender.send(news).is_err()) {
                     break;

@@ -11,21 +11,22 @@ pub(crate) use vehicle::Vehicle;
 use super::config::{Config, VehicleSetup};
 use super::controller::Controller;
 use super::medium::{Medium, MediumSetup, tunnel, tunnelled};
-use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules, State, status_text};
+use super::offboard::{Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
 use crate::framed::framed;
-use crate::geo::{Origin, ned};
+use crate::geo::ned;
 use crate::terminal::{number, say};
 use crate::tlog::micros_since_1970;
-use crate::{Endpoint, Lines, Received, Tlog};
+use crate::{Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use demo::Demo;
 use machine::{Host, Machine};
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
+use staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{RawFrame, Sender};
 use staya_mavlink::signing::Signing;
@@ -81,13 +82,12 @@ pub struct Options {
 #[derive(Clone, Copy)]
 pub struct Sight<'a> {
     pub(crate) vehicles: &'a [Vehicle],
-    pub(crate) origin: &'a Origin,
+    pub(crate) config: &'a Config,
     /// Time since the start.
     pub(crate) now: Duration,
 }
 
 struct Link {
-    name: String,
     trouble: Option<String>,
     signing: Option<Signing>,
     is_end_told: bool,
@@ -99,7 +99,6 @@ struct Companions<'a> {
     links: Vec<Link>,
     next_look: Duration,
     vehicles: Vec<Vehicle>,
-    wire: AnyWire,
     roll: Roll,
     options: &'a Options,
     log_error: Option<record::Error>,
@@ -171,16 +170,13 @@ impl<'a> Companions<'a> {
         let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
         let boot = (micros_since_1970() >> 20) as u8;
         let format = config.scenario.radio.format;
-        let link = |(number, endpoint): (usize, &Endpoint)| Link {
-            name: endpoint.to_string(),
+        let link = |number: usize| Link {
             trouble: None,
             signing: link_key.as_ref().map(|file| Signing::new(file.key.clone(), number as u8, key::timestamp())),
             is_end_told: false,
         };
         let vehicle = |setup: &VehicleSetup| Vehicle {
             setup: setup.clone(),
-            max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
-            error_m: config.error_m,
             offboard: OffboardStateMachine::new(setup.system, setup.kind, rules(setup, options)),
             controller: Controller::new(
                 &config.scenario,
@@ -204,10 +200,9 @@ impl<'a> Companions<'a> {
         Companions {
             config,
             machine,
-            links: config.lines.iter().enumerate().map(link).collect(),
+            links: (0..config.lines.len()).map(link).collect(),
             next_look: Duration::ZERO,
             vehicles: config.vehicles.iter().map(vehicle).collect(),
-            wire: AnyWire::new(format),
             roll: Roll::new(config.overlap, seal.is_some_and(Seal::has_old)),
             options,
             log_error: None,
@@ -230,7 +225,7 @@ impl<'a> Companions<'a> {
                 break;
             }
             self.turn();
-            look(&Sight { vehicles: &self.vehicles, origin: &self.config.origin, now: self.now() });
+            look(&Sight { vehicles: &self.vehicles, config: self.config, now: self.now() });
         }
         (self.now().as_secs_f64(), interrupted)
     }
@@ -239,9 +234,9 @@ impl<'a> Companions<'a> {
     fn no_autopilot(&self) -> Option<anyhow::Error> {
         let wait = Some(self.options.wait).filter(|&wait| wait > 0.0 && self.now().as_secs_f64() >= wait)?;
         let is_silent = self.vehicles.iter().all(|vehicle| vehicle.offboard.tally().heartbeats == 0);
-        let links = self.links.iter().map(|link| match &link.trouble {
-            Some(why) => format!("{} ({why})", link.name),
-            None => link.name.clone(),
+        let links = self.links.iter().zip(&self.config.lines).map(|(link, endpoint)| match &link.trouble {
+            Some(why) => format!("{endpoint} ({why})"),
+            None => endpoint.to_string(),
         });
         is_silent.then(|| {
             anyhow!(
@@ -364,7 +359,7 @@ impl<'a> Companions<'a> {
             .vehicles
             .iter_mut()
             .find(|vehicle| (vehicle.setup.line, vehicle.setup.system) == (received.line, sender.system));
-        if let Some(vehicle) = found.filter(|_| sender.component == AUTOPILOT) {
+        if let Some(vehicle) = found.filter(|_| sender.component == MAV_COMP_ID_AUTOPILOT1) {
             vehicle.peer = Some(received.peer);
             vehicle.offboard.hear(&message, now);
         }
@@ -380,7 +375,7 @@ impl<'a> Companions<'a> {
         let missed = now.saturating_sub(vehicle.next_step).as_micros() / tick.as_micros().max(1);
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
-        let body = vehicle.body(&self.config.origin, now);
+        let body = vehicle.body(self.config, now);
         let is_far =
             vehicle.offboard.fix().is_some() && !body.is_some_and(|body| is_within(&body, self.config.reach_m));
         let is_news = is_far && !vehicle.is_far;
@@ -432,9 +427,8 @@ impl<'a> Companions<'a> {
             self.machine.tell_others(said);
         }
         if self.config.air == MediumSetup::Tunnel {
-            for message in tunnel(&self.wire, said) {
-                self.send(index, &message);
-            }
+            let messages = tunnel(self.vehicles[index].controller.wire_mut(), said);
+            messages.iter().for_each(|message| self.send(index, message));
         }
     }
 
@@ -444,7 +438,7 @@ impl<'a> Companions<'a> {
         self.vehicles[index].offboard.poll(now, &mut messages);
         while let Some(event) = self.vehicles[index].offboard.event() {
             self.tell(index, &event.to_string());
-            if let Event::State { to, .. } = event {
+            if let Event::State(to) = event {
                 let text = format!("staya: {}", to.words());
                 messages.push(status_text(&text, to.is_worrying()));
             }

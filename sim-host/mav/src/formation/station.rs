@@ -1,9 +1,11 @@
 //! A ground station that sends orders to a formation and collects the confirmations.
 
-use super::{Graph, GraphError, Order, STATION, orders};
+use super::{Graph, Order, STATION, orders};
 use crate::framed::{framed, signed};
+use crate::geo::{Global, Origin};
 use crate::{Endpoint, Lines};
 use anyhow::{Result, bail};
+use clap::ValueEnum;
 use serde::Serialize;
 use staya_controller::grid::Dir;
 use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_WARNING, MAV_TYPE_GCS};
@@ -45,17 +47,16 @@ impl Given {
 }
 
 /// Assignment of places to robots.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Places {
+    /// Smallest sum of squared distances, so that paths do not cross.
+    Nearest,
     /// In the order of robot numbers, the first in front.
     Number,
-    /// Short paths that do not cross, see [`Graph::nearest`].
-    #[default]
-    Nearest,
 }
 
 /// Selection of robots and their places.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Members {
     /// Selected robots; `None` for all that are found.
     pub robots: Option<BTreeSet<u8>>,
@@ -69,8 +70,7 @@ struct Station<'a> {
     lines: Lines,
     signing: Option<&'a mut Signing>,
     heard: BTreeSet<u8>,
-    /// Longitude and latitude, 1e-7 degrees.
-    at: BTreeMap<u8, [i32; 2]>,
+    at: BTreeMap<u8, Global>,
     greeted: Option<Instant>,
     sender: Sender,
     given: Given,
@@ -106,7 +106,9 @@ impl Station<'_> {
             self.lines.believe(received.line, received.peer);
             match frame.message() {
                 Some(MavMessage::HEARTBEAT(_)) => drop(self.heard.insert(system)),
-                Some(MavMessage::GLOBAL_POSITION_INT(fix)) => drop(self.at.insert(system, [fix.lon, fix.lat])),
+                Some(MavMessage::GLOBAL_POSITION_INT(fix)) => {
+                    self.at.insert(system, Global::from_e7(fix.lat, fix.lon, 0));
+                }
                 Some(MavMessage::STATUSTEXT(said)) => {
                     self.note(system, said.severity, said.text.to_str().unwrap_or(""))
                 }
@@ -164,19 +166,12 @@ impl Station<'_> {
         }
     }
 
-    /// Positions relative to one robot, in a common unit.
+    /// Positions in metres east and north of the first robot.
     fn positions(&self, robots: &BTreeSet<u8>) -> Vec<[f64; 2]> {
-        let at: Vec<_> = robots.iter().filter_map(|robot| self.at.get(robot)).collect();
-        let Some(&&[lon, lat]) = at.first() else {
-            return Vec::new();
-        };
-        let east = libm::cos((f64::from(lat) * 1e-7).to_radians());
-        let half_turn = 1_800_000_000_i64;
-        let position = |[x, y]: [i32; 2]| {
-            let off = (i64::from(x) - i64::from(lon) + half_turn).rem_euclid(2 * half_turn) - half_turn;
-            [off as f64 * east, (i64::from(y) - i64::from(lat)) as f64]
-        };
-        at.into_iter().map(|&at| position(at)).collect()
+        let places: Vec<_> = robots.iter().filter_map(|robot| self.at.get(robot)).collect();
+        let origin = places.first().and_then(|&&first| Origin::new(first));
+        let position = |place: &Global| origin?.to_enu_m(place).map(|[east, north, _]| [east, north]);
+        places.into_iter().filter_map(position).collect()
     }
 }
 
@@ -205,7 +200,7 @@ pub fn numbers(robots: &BTreeSet<u8>) -> String {
 pub fn give(
     endpoint: &Endpoint,
     signing: Option<&mut Signing>,
-    graph: impl FnOnce(usize) -> Result<Graph, GraphError>,
+    graph: impl FnOnce(usize) -> Result<Graph>,
     members: &Members,
     order: &Order,
     wait: Duration,

@@ -87,8 +87,8 @@ fn a_file_parses_and_its_errors_are_reported() {
         ("places = [[0, 0], [40000, 0]]\nedges = [[1, 2]]", "robot 2 would be off any map"),
         ("places = [[0, 0]]\nedge = []", "v.toml:2:1: edge: unknown field `edge`"),
     ] {
-        let error = Graph::parse(text, Path::new("v.toml")).expect_err(text).to_string();
-        assert!(error.contains(piece), "{text}: {error}");
+        let error = format!("{:#}", Graph::parse(text, Path::new("v.toml")).expect_err(text));
+        assert!(error.starts_with("v.toml:") && error.contains(piece), "{text}: {error}");
     }
     let star: Vec<_> = (2..=10).map(|other| format!("[1, {other}]")).collect();
     let places: Vec<_> = (0..10).map(|x| format!("[{x}, 0]")).collect();
@@ -96,13 +96,17 @@ fn a_file_parses_and_its_errors_are_reported() {
         Graph::parse(&format!("places = [{}]\nedges = [{}]", places.join(","), star.join(",")), Path::new("v.toml"));
     let order = Order { goal: None, to_all: true, boot: 0, version: 0 };
     let ten: Vec<u8> = (1..=10).collect();
-    assert_eq!(orders(&graph.expect("a formation"), &ten, &order), Err(GraphError::Neighbors(1)));
-    assert_eq!(Shape::Line.graph(255, 3), Err(GraphError::Count(255)));
-    assert_eq!(Shape::Line.graph(0, 3), Err(GraphError::Count(0)));
-    assert_eq!(Shape::Column.graph(254, 100), Err(GraphError::Far(101)));
     // A turn by 45 degrees moves touching cells together.
-    let graph = Shape::Grid.graph(9, 1).expect("room");
-    assert!(matches!(graph.turned(Dir::NorthEast), Err(GraphError::Shared(..))));
+    let turned = Shape::Grid.graph(9, 1).and_then(|graph| graph.turned(Dir::NorthEast));
+    for (error, piece) in [
+        (orders(&graph.expect("a formation"), &ten, &order).expect_err("nine neighbours"), "robot 1 has more than 8"),
+        (Shape::Line.graph(255, 3).expect_err("too many"), "255 robots is not possible; give 1 to 254"),
+        (Shape::Line.graph(0, 3).expect_err("none"), "0 robots is not possible"),
+        (Shape::Column.graph(254, 100).expect_err("far"), "robot 101 would be off any map"),
+        (turned.expect_err("one cell"), "would share a cell; give a larger spacing, or another heading"),
+    ] {
+        assert!(error.to_string().contains(piece), "{piece}: {error}");
+    }
 }
 
 #[test]

@@ -79,3 +79,12 @@ fn ned_and_enu_are_inverse() {
     assert_eq!(ned([1.0, 2.0, 3.0]), [2.0, 1.0, -3.0]);
     assert_eq!(enu(ned([1.0, 2.0, 3.0])), [1.0, 2.0, 3.0]);
 }
+
+#[test]
+fn texts_are_places_on_the_earth() {
+    let zurich = "47.4, 8.5,488".parse::<Origin>().unwrap().place();
+    assert_eq!((zurich.latitude_deg, zurich.altitude_m), (47.4, 488.0));
+    for bad in ["", "1,2", "1,2,3,4", "91,0,0", "0,181,0", "a,b,c", "nan,0,0"] {
+        assert!(bad.parse::<Origin>().is_err(), "{bad}");
+    }
+}

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 
 fn full() -> Chart {
     let xs = || (1..=6).map(f64::from);
-    Chart::new("Loss & <gain>", "obstacles", "ΔT (%)")
-        .note("mean and 95 % interval")
+    let chart = Chart::new("Loss & <gain>", "obstacles", "ΔT (%)");
+    Chart { note: "mean and 95 % interval".into(), ..chart }
         .with(Series::bars("counts", xs().map(|x| [x, x + 1.0, x * 2.0])))
         .with(Series::intervals("natural", xs().map(|x| [x, x, x - 0.5, x + 0.5])).joined())
         .with(Series::line("fit", xs().map(|x| [x, x * 1.1])).dashed())
@@ -115,8 +115,8 @@ fn charts_without_data_show_a_note() {
         Chart::new("", "", ""),
         Chart::new("t", "x", "y").with(Series::line("a", none)),
         Chart::new("t", "x", "y").with(Series::points("a", [[f64::NAN, 1.0], [1.0, f64::INFINITY]])),
-        Chart::new("t", "x", "y").log_x().with(Series::points("a", [[0.0, 1.0], [-3.0, 1.0]])),
-        Chart::new("t", "x", "y").log_y().with(Series::points("a", [[1.0, 0.0], [1.0, -3.0]])),
+        Chart { log_x: true, ..Chart::new("t", "x", "y") }.with(Series::points("a", [[0.0, 1.0], [-3.0, 1.0]])),
+        Chart { log_y: true, ..Chart::new("t", "x", "y") }.with(Series::points("a", [[1.0, 0.0], [1.0, -3.0]])),
     ] {
         assert!(svg_of(&chart).contains(">no data<"));
         assert_texts_apart(&chart.draw());
@@ -128,7 +128,7 @@ fn charts_without_data_show_a_note() {
 fn decades_have_equal_lengths_on_a_logarithmic_axis() {
     let decades = [[1.0, 0.1], [10.0, 10.0], [100.0, 1000.0], [1000.0, 0.0]];
     let chart = Chart::new("t", "x", "y").with(Series::line("a", decades));
-    let both = chart.clone().log_x().log_y();
+    let both = Chart { log_x: true, log_y: true, ..chart.clone() };
     let line = |chart: &Chart| -> Vec<[f64; 2]> {
         let shapes = chart.draw().shapes;
         let line = shapes.iter().rev().find_map(|shape| match shape {
@@ -175,10 +175,11 @@ fn a_single_value_is_in_the_middle_and_zero_at_the_bottom() {
 
 #[test]
 fn valid_ranges_apply_and_invalid_ones_are_ignored() {
-    let chart = || Chart::new("", "", "").with(Series::line("", [[0.0, 0.0], [10.0, 100.0]]));
-    assert!(!svg_of(&chart().x_range(0.0, 5.0).with(Series::points("", [[1.0, 3.0]]))).contains(">100<"));
+    let all = Chart::new("", "", "").with(Series::line("", [[0.0, 0.0], [10.0, 100.0]]));
+    let part = |low, high| Chart { x_range: Some([low, high]), ..all.clone() };
+    assert!(!svg_of(&part(0.0, 5.0).with(Series::points("", [[1.0, 3.0]]))).contains(">100<"));
     for (low, high) in [(5.0, 5.0), (7.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
-        assert_eq!(svg_of(&chart().x_range(low, high)), svg_of(&chart()), "{low} {high}");
+        assert_eq!(svg_of(&part(low, high)), svg_of(&all), "{low} {high}");
     }
 }
 
@@ -248,7 +249,8 @@ fn panels_align_their_axes_and_keep_texts_apart() {
 #[test]
 fn strange_text_keeps_the_file_well_formed() {
     let name = "a<b>&\"c\"\u{0}\u{8}\n\u{ffff}∑日";
-    let chart = Chart::new(name, name, name).note(name).with(Series::points(name, [[0.0, 0.0]]));
+    let chart = Chart { note: name.into(), ..Chart::new(name, name, name) };
+    let chart = chart.with(Series::points(name, [[0.0, 0.0]]));
     assert_well_formed(&svg_of(&chart));
     assert!(crate::raster::png(&chart.draw()).is_ok());
 }
@@ -315,12 +317,7 @@ proptest! {
         for name in names {
             chart = chart.with(Series::line(name, [[low, -tall], [low + span, tall]]));
         }
-        if log[0] {
-            chart = chart.log_x();
-        }
-        if log[1] {
-            chart = chart.log_y();
-        }
+        [chart.log_x, chart.log_y] = log;
         let canvas = chart.draw();
         assert_texts_apart(&canvas);
         assert_well_formed(&svg::text(&canvas).unwrap());
@@ -339,12 +336,7 @@ proptest! {
             .with(Series::line("line", points.iter().map(|p| [p[0], p[1]])))
             .with(Series::intervals("intervals", points.clone()).joined())
             .with(Series::bars("bars", points.iter().map(|p| [p[0], p[1], p[2]])));
-        if log[0] {
-            chart = chart.log_x();
-        }
-        if log[1] {
-            chart = chart.log_y();
-        }
+        [chart.log_x, chart.log_y] = log;
         assert_well_formed(&svg_of(&chart));
         prop_assert!(crate::raster::png(&chart.draw()).is_ok());
     }

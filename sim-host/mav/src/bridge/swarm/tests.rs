@@ -1,8 +1,8 @@
-use super::super::report::Refused;
 use super::*;
 use crate::geo::{Global, Origin};
 use staya_controller::auth::Key;
 use staya_mavlink::dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA};
+use staya_mavlink::frame::Sender;
 use staya_sim::scenario::Overrides;
 use std::net::{SocketAddr, UdpSocket};
 use std::path::Path;
@@ -20,11 +20,11 @@ fn ten(signing: Option<Signing>) -> (Swarm, SocketAddr) {
     let scenario = Scenario::load(&path, &Overrides::default()).expect("a scenario");
     let place = Global { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
     let options = Options {
-        endpoints: vec!["udpin:127.0.0.1:0".parse().expect("a line")],
+        mavlink: vec!["udpin:127.0.0.1:0".parse().expect("a line")],
         speed: 1.0,
         ticks: None,
-        position_hz: 1.0,
-        starts_armed: false,
+        rate: 1.0,
+        disarmed: true,
         origin: Origin::new(place).expect("a place"),
         signing,
         tlog: None,

@@ -97,7 +97,7 @@ fn load(bench: &mut Bench, items: &[MISSION_ITEM_INT_DATA]) -> u8 {
     }));
     for item in items {
         bench.give(MavMessage::MISSION_ITEM_INT(item.clone()));
-        if let Some(MavMessage::MISSION_ACK(ack)) = bench.out.messages.last() {
+        if let Some(MavMessage::MISSION_ACK(ack)) = bench.vehicle.out.messages.last() {
             return ack.mavtype;
         }
     }

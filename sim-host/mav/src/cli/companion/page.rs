@@ -46,7 +46,7 @@ impl Seen {
             wait: controller.wait(),
             ..unseen[index]
         };
-        if let Some(body) = vehicle.body(sight.origin, sight.now) {
+        if let Some(body) = vehicle.body(sight.config, sight.now) {
             (row.motion.position_m, row.motion.velocity_mps) = (body.position_m, body.velocity_mps);
         }
         let age_s = vehicle.offboard.fix().map(|fix| sight.now.saturating_sub(fix.at).as_secs_f64());

@@ -1,4 +1,5 @@
 use super::{Doubt, State};
+use crate::terminal::result_words;
 use staya_mavlink::constants::{MAV_CMD_COMPONENT_ARM_DISARM, MAV_CMD_DO_SET_MODE, MAV_CMD_NAV_TAKEOFF};
 use std::fmt;
 use std::time::Duration;
@@ -6,13 +7,8 @@ use std::time::Duration;
 /// An event of one vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The state changed.
-    State {
-        /// Previous state.
-        from: State,
-        /// New state.
-        to: State,
-    },
+    /// The state changed to this one.
+    State(State),
     /// The pilot left the external control mode for this custom mode.
     HandedOver(u32),
     /// The autopilot restarted.
@@ -73,21 +69,10 @@ const fn command_words(command: u16) -> &'static str {
     }
 }
 
-const fn result_words(result: u8) -> &'static str {
-    match result {
-        1 => "temporarily rejected",
-        2 => "denied",
-        3 => "unsupported",
-        4 => "failed",
-        6 => "cancelled",
-        _ => "refused",
-    }
-}
-
 impl fmt::Display for Event {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::State { to, .. } => f.write_str(to.words()),
+            Self::State(to) => f.write_str(to.words()),
             Self::HandedOver(mode) => write!(f, "handed over to the pilot (mode {mode})"),
             Self::Restarted => f.write_str("the autopilot has restarted"),
             Self::Doubts(doubt) => write!(f, "position not trusted: {}", doubt.words()),

@@ -27,9 +27,6 @@ use staya_sim::choice;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Component id of the autopilot.
-pub const AUTOPILOT: u8 = MAV_COMP_ID_AUTOPILOT1;
-
 const HEARTBEAT: Duration = Duration::from_secs(1);
 const QUIET: Duration = Duration::from_secs(5);
 /// A larger step back in the time since boot is a restart, a smaller one a reordered message.
@@ -354,15 +351,14 @@ impl OffboardStateMachine {
     }
 
     fn heartbeat(&mut self, custom_mode: u32, base_mode: u8, now: Duration) {
-        const CUSTOM: u8 = 1;
-        const ARMED: u8 = 128;
         let is_withdrawn = self.beat.is_some_and(|last| last.control == Control::Withdrawn);
-        let control = match base_mode & CUSTOM != 0 && self.kind.is_outside_control(custom_mode) {
-            false => Control::Pilot,
-            true if is_withdrawn => Control::Withdrawn,
-            true => Control::Companion,
-        };
-        let beat = Beat { at: now, custom_mode, control, is_armed: base_mode & ARMED != 0 };
+        let control =
+            match base_mode & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED != 0 && self.kind.is_outside_control(custom_mode) {
+                false => Control::Pilot,
+                true if is_withdrawn => Control::Withdrawn,
+                true => Control::Companion,
+            };
+        let beat = Beat { at: now, custom_mode, control, is_armed: base_mode & MAV_MODE_FLAG_SAFETY_ARMED != 0 };
         self.tally.heartbeats += 1;
         if let Some(last) = self.beat {
             if now.saturating_sub(last.at) > self.rules.link_lost {
@@ -464,8 +460,8 @@ impl OffboardStateMachine {
     }
 
     fn settle(&mut self, now: Duration) {
-        let (from, to) = (self.state, self.next_state(now));
-        if from == to {
+        let to = self.next_state(now);
+        if to == self.state {
             return;
         }
         if to == State::Steering && !self.rules.rehearses {
@@ -479,7 +475,7 @@ impl OffboardStateMachine {
         }
         self.command = None;
         self.state = to;
-        self.events.push_back(Event::State { from, to });
+        self.events.push_back(Event::State(to));
     }
 }
 

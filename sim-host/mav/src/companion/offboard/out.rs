@@ -1,4 +1,4 @@
-use super::{AUTOPILOT, Ask, Kind};
+use super::{Ask, Kind};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
@@ -25,7 +25,7 @@ fn command(system: u8, command: u16, params: [f64; 2], height_m: f64) -> MavMess
         param7: height_m as f32,
         command,
         target_system: system,
-        target_component: AUTOPILOT,
+        target_component: MAV_COMP_ID_AUTOPILOT1,
         ..COMMAND_LONG_DATA::DEFAULT
     })
 }
@@ -35,7 +35,7 @@ pub fn request(system: u8, kind: Kind, ask: Ask, altitude_m: f64) -> Option<MavM
     match ask {
         Ask::Mode => Some(command(system, MAV_CMD_DO_SET_MODE, [1.0, f64::from(kind.outside_control())], 0.0)),
         Ask::Arm => Some(command(system, MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0], 0.0)),
-        Ask::Takeoff => (!kind.needs_stream()).then(|| command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)),
+        Ask::Takeoff => (!kind.is_px4()).then(|| command(system, MAV_CMD_NAV_TAKEOFF, [0.0; 2], altitude_m)),
     }
 }
 
@@ -71,7 +71,7 @@ pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duratio
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
         time_boot_ms: now.as_millis() as u32,
         target_system: system,
-        target_component: AUTOPILOT,
+        target_component: MAV_COMP_ID_AUTOPILOT1,
         coordinate_frame: MAV_FRAME_LOCAL_NED,
         type_mask,
         vx,

@@ -60,10 +60,10 @@ impl OffboardStateMachine {
                 Some(self.at_altitude(command.map_or(STAND, |(_, velocity)| velocity)))
             }
             State::Stopped | State::Distrusted => Some(STAND),
-            State::Entering if self.kind.needs_stream() => Some(self.at_altitude(STAND)),
+            State::Entering if self.kind.is_px4() => Some(self.at_altitude(STAND)),
             // PX4 accepts the mode only while setpoints arrive. It ignores them in other modes.
             State::Pilot | State::Disarmed | State::Grounded
-                if self.kind.needs_stream() && now >= self.quiet_until && self.fresh_fix(now).is_some() =>
+                if self.kind.is_px4() && now >= self.quiet_until && self.fresh_fix(now).is_some() =>
             {
                 Some(STAND)
             }
@@ -114,7 +114,7 @@ impl OffboardStateMachine {
             return;
         }
         let is_streaming = |since: Duration| now.saturating_sub(since) >= STREAM;
-        if ask == Ask::Mode && self.kind.needs_stream() && !self.streaming_since.is_some_and(is_streaming) {
+        if ask == Ask::Mode && self.kind.is_px4() && !self.streaming_since.is_some_and(is_streaming) {
             return;
         }
         let Some(Entering { request, .. }) = &mut self.entering else { return };

@@ -2,7 +2,7 @@
 
 use super::machine::Machine;
 use crate::companion::config::{Config, VehicleSetup};
-use crate::companion::offboard::{AUTOPILOT, Entry};
+use crate::companion::offboard::Entry;
 use crate::framed::framed;
 use crate::geo::{Origin, enu, ned};
 use crate::{Peer, Received, Tlog};
@@ -66,7 +66,7 @@ impl Demo {
                 is_armed: false,
                 climb_to_m: None,
                 position_every: Duration::from_millis(250),
-                sender: Sender { system: setup.system, component: AUTOPILOT, sequence: 0 },
+                sender: Sender { system: setup.system, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 },
             }
         };
         Self {

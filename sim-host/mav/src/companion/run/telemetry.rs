@@ -1,8 +1,9 @@
 use super::{Companions, FEW_TIMESTAMPS, LOOK, Link, Vehicle, shown, status_text};
-use crate::companion::offboard::{AUTOPILOT, State};
+use crate::companion::offboard::State;
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
 use staya_controller::agent::Event as AgentEvent;
 use staya_controller::robot::Mode;
+use staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::Sender;
 use std::time::Duration;
@@ -49,9 +50,10 @@ impl Companions<'_> {
             let trouble = self.trouble(index);
             let link = &mut self.links[index];
             if trouble != link.trouble {
+                let endpoint = &self.config.lines[index];
                 let line = match &trouble {
-                    Some(error) => format!("staya: {}: no connection: {error}; retrying every second", link.name),
-                    None => format!("staya: {}: connected", link.name),
+                    Some(error) => format!("staya: {endpoint}: no connection: {error}; retrying every second"),
+                    None => format!("staya: {endpoint}: connected"),
                 };
                 link.trouble = trouble;
                 self.say(&line);
@@ -67,7 +69,7 @@ impl Companions<'_> {
             }
             self.say(&format!(
                 "staya: {}: signing timestamps are nearly used up; give a new link key",
-                self.links[line].name
+                self.config.lines[line]
             ));
             for index in 0..self.vehicles.len() {
                 if self.vehicles[index].setup.line == line {
@@ -80,7 +82,7 @@ impl Companions<'_> {
     /// Explains once why messages of a vehicle are not accepted, or not signed here (`is_open`).
     pub(super) fn tell_of_signing(&mut self, line: usize, sender: Sender, is_open: bool) {
         let is_it = |vehicle: &Vehicle| {
-            let at = (vehicle.setup.line, vehicle.setup.system, AUTOPILOT);
+            let at = (vehicle.setup.line, vehicle.setup.system, MAV_COMP_ID_AUTOPILOT1);
             !vehicle.is_signing_told && at == (line, sender.system, sender.component)
         };
         let Some(index) = self.vehicles.iter().position(is_it) else { return };
@@ -132,8 +134,8 @@ impl Companions<'_> {
             neighbors: vehicle.controller.agent().neighbors().len(),
         });
         let links = self.links.iter().enumerate().filter(|_| !self.options.demo);
-        let links = links.map(|(line, Link { name, signing, .. })| LineReport {
-            link: name.clone(),
+        let links = links.map(|(line, Link { signing, .. })| LineReport {
+            link: self.config.lines[line].to_string(),
             counts: self.machine.lines().map(|lines| lines.counts(line)).unwrap_or_default(),
             trouble: self.trouble(line),
             refused: signing.as_ref().map_or(0, |signing| signing.counts().refused()),

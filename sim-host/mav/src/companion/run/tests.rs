@@ -2,7 +2,7 @@ mod replayed;
 
 use super::*;
 use crate::Peer;
-use crate::geo::Global;
+use crate::geo::{Global, Origin};
 use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
 use staya_mavlink::frame::{MAX_FRAME_LEN, encode_message};
 use staya_sim::record;
@@ -100,7 +100,7 @@ impl World {
                 let [lat, lon, _] = origin.to_global([east, north, 0.0]).unwrap().to_e7();
                 let [vx, vy] = rover.velocity_mps.map(|v| (v * 100.0) as i16);
                 let mut say = |message: MavMessage| {
-                    let sender = Sender { system: rover.system, component: AUTOPILOT, sequence: 0 };
+                    let sender = Sender { system: rover.system, component: MAV_COMP_ID_AUTOPILOT1, sequence: 0 };
                     let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
                     encode_message(sender, &message, &mut frame).unwrap();
                     self.frames.push_back(Received { line: 0, peer: Peer::Wire, frame: frame.to_vec() });

@@ -1,8 +1,8 @@
 use crate::Peer;
-use crate::companion::config::VehicleSetup;
+use crate::companion::config::{Config, VehicleSetup};
 use crate::companion::controller::{Body, Controller};
 use crate::companion::offboard::OffboardStateMachine;
-use crate::geo::{Origin, enu};
+use crate::geo::enu;
 use staya_mavlink::frame::Sender;
 use staya_sim::radio::HostWire;
 use std::time::Duration;
@@ -12,8 +12,6 @@ const INBOX: usize = 16 * 1024;
 
 pub struct Vehicle {
     pub setup: VehicleSetup,
-    pub max_speed_mps: f64,
-    pub error_m: f64,
     pub offboard: OffboardStateMachine,
     pub controller: Controller<HostWire>,
     pub peer: Option<Peer>,
@@ -36,13 +34,14 @@ impl Vehicle {
     }
 
     /// Extrapolated to `now`. With stale or untrusted telemetry the error grows with its age up to
-    /// `error_m`, since the vehicle may still roll or be driven by a pilot.
-    pub fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
+    /// [`Config::error_m`], since the vehicle may still roll or be driven by a pilot.
+    pub fn body(&self, config: &Config, now: Duration) -> Option<Body> {
         let last = self.offboard.fix()?;
-        let at = origin.to_enu_m(&last.place)?;
+        let at = config.origin.to_enu_m(&last.place)?;
         let age_s = now.saturating_sub(last.at).as_secs_f64();
         if self.offboard.fresh_fix(now).is_none() {
-            let error_m = (self.max_speed_mps * age_s).min(self.error_m);
+            let max_speed_mps = config.plane.group(self.setup.index).abilities.max_speed_mps;
+            let error_m = (max_speed_mps * age_s).min(config.error_m);
             return Some(Body { position_m: at, velocity_mps: [0.0; 3], error_m });
         }
         let velocity_mps = enu(last.velocity_ned_mps);

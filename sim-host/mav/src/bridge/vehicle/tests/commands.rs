@@ -148,9 +148,9 @@ fn a_parameter_is_set_within_limits_and_always_reported() {
     let list = MavMessage::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA { target_system: 7, target_component: 1 });
     assert!(bench.give(list).messages.is_empty(), "the listing is sent one by one");
     while let Some(told) = bench.vehicle.parameters.next_listed() {
-        bench.out.messages.push(MavMessage::PARAM_VALUE(told));
+        bench.vehicle.out.messages.push(MavMessage::PARAM_VALUE(told));
     }
-    assert_eq!(bench.out.messages.len(), count);
+    assert_eq!(bench.vehicle.out.messages.len(), count);
     let read = |index| {
         MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
             param_index: index,

@@ -71,8 +71,8 @@ fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     ];
     assert_eq!(load(&mut bench, &items), MAV_MISSION_ACCEPTED);
     assert_eq!(bench.command(MAV_CMD_MISSION_START, [NAN; 7]), MAV_RESULT_ACCEPTED);
-    assert_eq!(reached(&bench.out), [1]);
-    assert!(bench.out.actions.contains(&Action::Set("speed_mps", 0.5)));
+    assert_eq!(reached(&bench.vehicle.out), [1]);
+    assert!(bench.vehicle.out.actions.contains(&Action::Set("speed_mps", 0.5)));
     assert!((place_mm(bench.wish())[0] - 10_000).abs() < 10);
     let out = bench.tick(|sample| sample.motion.position_m = [10.0, 0.0, 0.0]);
     assert_eq!(reached(out), [2, 3]);

@@ -1,12 +1,12 @@
 use super::*;
 
 fn second(bench: &mut Bench, from_us: u64) -> Vec<MavMessage> {
-    bench.out = Out::default();
+    bench.vehicle.out = Out::default();
     for step in 1..500 {
         let now_us = from_us + step * 2000;
-        bench.vehicle.poll(now_us, &mut bench.out);
+        bench.vehicle.poll(now_us);
     }
-    core::mem::take(&mut bench.out.messages)
+    core::mem::take(&mut bench.vehicle.out.messages)
 }
 
 fn count<D: MessageData>(messages: &[MavMessage]) -> usize {
@@ -32,7 +32,7 @@ fn streams_have_the_requested_rates() {
     assert_eq!(bench.command(set, two(attitude, 0.0)), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.command(MAV_CMD_GET_MESSAGE_INTERVAL, first(attitude)), MAV_RESULT_ACCEPTED);
     let told = MESSAGE_INTERVAL_DATA { interval_us: 200_000, message_id: 30 };
-    assert_eq!(bench.out.messages[1], MavMessage::MESSAGE_INTERVAL(told));
+    assert_eq!(bench.vehicle.out.messages[1], MavMessage::MESSAGE_INTERVAL(told));
     for (bad, result) in [
         (two(position, 10.0), MAV_RESULT_DENIED),
         (two(position, -2.0), MAV_RESULT_DENIED),
@@ -61,12 +61,12 @@ fn every_streamed_message_can_be_requested_once() {
     let request = MAV_CMD_REQUEST_MESSAGE;
     for id in [0, 1, 2, 24, 30, 32, 33, 42, 49, 74, 147, 148, 242, 245_u32] {
         assert_eq!(bench.command(request, first(id as f32)), MAV_RESULT_ACCEPTED, "{id}");
-        assert_eq!(bench.out.messages.len(), 2, "{id}");
+        assert_eq!(bench.vehicle.out.messages.len(), 2, "{id}");
     }
     assert_eq!(bench.command(request, first(11.0)), MAV_RESULT_UNSUPPORTED);
     let version = MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES;
     assert_eq!(bench.command(version, first(1.0)), MAV_RESULT_ACCEPTED);
-    assert!(matches!(bench.out.messages[1], MavMessage::AUTOPILOT_VERSION(_)));
+    assert!(matches!(bench.vehicle.out.messages[1], MavMessage::AUTOPILOT_VERSION(_)));
 }
 
 #[test]
@@ -138,10 +138,10 @@ fn a_robot_that_is_down_is_silent_and_loses_its_mode() {
     bench.tick(|sample| sample.is_up = false);
     assert!(second(&mut bench, 0).is_empty());
     bench.give(MavMessage::PING(PING_DATA::DEFAULT));
-    assert!(bench.out.messages.is_empty());
+    assert!(bench.vehicle.out.messages.is_empty());
     bench.sample.is_up = true;
     let parameters = bench.vehicle.parameters.clone();
-    bench.vehicle.restart(parameters, (bench.time_us, bench.sample), &mut bench.out);
+    bench.vehicle.restart(parameters, (bench.time_us, bench.sample));
     assert_eq!(bench.texts(), ["restarted"]);
     assert_eq!((bench.vehicle.mode, bench.vehicle.mission.len()), (FlightMode::Auto, 2));
     assert_eq!(bench.vehicle.uptime_us(), 0);
@@ -157,9 +157,8 @@ fn events_and_setpoint_timeouts_are_reported_as_texts() {
     assert_eq!(bench.texts(), ["setpoint timed out: holding"]);
     let arrived = Event::ModeChanged { from: Mode::Cruise, to: Mode::Arrived };
     let lost = [2, 3].map(|id| Event::NeighborLost(staya_controller::robot::RobotId(id)));
-    let (sample, mut out) = (bench.sample, Out::default());
     let events = [arrived, lost[0], lost[1]];
-    bench.vehicle.observe((bench.time_us, sample), &events, 9_000_000, &mut out);
-    bench.out = out;
+    bench.vehicle.out = Out::default();
+    bench.vehicle.observe((bench.time_us, bench.sample), &events, 9_000_000);
     assert_eq!(bench.texts(), ["arrived", "robot 2 is lost"]);
 }

@@ -232,7 +232,7 @@ fn a_dry_run_shows_its_requests_and_then_velocities() {
     {
         assert_eq!(commands(&sent, command), times, "{command}");
     }
-    let states = bench.events().iter().filter(|event| matches!(event, Event::State { .. })).count();
+    let states = bench.events().iter().filter(|event| matches!(event, Event::State(_))).count();
     assert_eq!(states, 1, "the state does not oscillate");
     assert!(setpoints(&sent).len() > 190 && setpoints(&sent).iter().any(|setpoint| setpoint.vx == 1.0));
 }

@@ -40,7 +40,7 @@ impl Recording {
             let at = Duration::from_micros(micros - *first.get_or_insert(micros));
             let (frame, behind) = frames.split_at(frame_len(frames));
             rest = behind;
-            if RawFrame::new(frame).is_some_and(|frame| frame.sender().component == AUTOPILOT) {
+            if RawFrame::new(frame).is_some_and(|frame| frame.sender().component == MAV_COMP_ID_AUTOPILOT1) {
                 all.push((at, frame.to_vec()));
             }
         }
