@@ -1,6 +1,7 @@
 use super::*;
 use proptest::prelude::*;
 use staya_sim::scenario::Line;
+use staya_sim::scenario::Read as _;
 use std::fs;
 use tempfile::TempDir;
 
@@ -287,7 +288,7 @@ fn names(lines: Vec<Line>) -> Vec<&'static str> {
 
 #[test]
 fn every_field_of_a_plan_is_documented() {
-    let tables = [PlanFile::lines(), SeedRange::lines(), table::RangeTable::lines()];
+    let tables = [table::PlanFile::lines(), table::SeedRange::lines(), table::RangeTable::lines()];
     let fields: Vec<&str> = tables.into_iter().flat_map(names).collect();
     assert!(fields.len() > 30, "{fields:?}");
     let page = include_str!("../../../../../docs/sweeps.md");
