@@ -118,7 +118,8 @@ pub use crate::law::{
     Law, MessageOf, OfAnotherLaw, OnGrid, OrderOf, Outgoing, PayloadOf, Protocol, Radio, Report, Scene, Status,
     Surroundings, Tools, View, Wait, WrongTask,
 };
-pub use crate::laws::any::{AnyLaw, AnyMessage, AnyOrder, AnyPayload, AnyProtocol, Large, OtherPayload, Raw, dispatch};
+pub use crate::laws::any::{AnyLaw, Large, dispatch};
+pub use crate::laws::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, OtherPayload, Raw};
 pub use crate::laws::boids::BoidsGuidance;
 pub use crate::laws::cells::{
     CellFollower, FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace,

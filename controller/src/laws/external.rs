@@ -1,6 +1,6 @@
 //! A law whose decisions come from outside the agent, such as from firmware in another language.
 
-use super::any::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, OtherPayload, Raw};
+use super::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, OtherPayload, Raw};
 use crate::grid::Dir;
 use crate::law::{Action, AnySurroundings, BadInput, Decision, Law, OnGrid, Radio, Tools, View};
 use crate::robot::RobotId;

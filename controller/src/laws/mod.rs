@@ -28,6 +28,8 @@ pub mod route;
 #[cfg(feature = "agent")]
 pub(crate) mod any;
 #[cfg(feature = "agent")]
+pub(crate) mod any_protocol;
+#[cfg(feature = "agent")]
 pub(crate) mod cells;
 #[cfg(feature = "agent")]
 pub(crate) mod external;
