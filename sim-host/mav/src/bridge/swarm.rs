@@ -114,7 +114,7 @@ impl Swarm {
             vehicles.push(vehicle);
         }
         let lines = Lines::open(&options.endpoints)?;
-        let create = |path: &PathBuf| Tlog::create(path, &mut Files::reading(&scenario.files));
+        let create = |path: &PathBuf| Tlog::create(path, &mut Files::reading(&scenario.origin.files));
         let log = options.tlog.as_ref().map(create).transpose()?;
         let listing = Budget::per_second(parameters_per_s(&options.endpoints));
         Ok(Self {

@@ -4,6 +4,7 @@ mod remarks;
 mod sensing;
 
 use super::super::Overrides;
+use super::super::ScenarioError;
 use super::*;
 use proptest::prelude::*;
 use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceSetup, SafetyKind, SafetySetup};
@@ -23,7 +24,7 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
 
 fn setup(text: &str) -> PlaneSetup {
     let scenario = parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scenario.plane.expect("robots in the plane")
+    scenario.plane().expect("robots in the plane").clone()
 }
 
 #[test]
@@ -56,7 +57,7 @@ fn a_raised_lag_is_as_one_in_the_file() {
 fn the_smallest_plane_has_the_documented_defaults() {
     let scenario = parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good");
     assert_eq!(scenario.robots.len(), 2);
-    let plane = scenario.plane.expect("robots in the plane");
+    let plane = scenario.plane().expect("robots in the plane").clone();
     let group = &plane.general;
     assert_eq!(group.abilities.max_acceleration_mps2, f64::INFINITY);
     assert_eq!((group.cruise_mps, group.sight_m), (1.0, 10.0));
@@ -160,7 +161,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             format!("{HEAD}{PLANE}"),
             "s.toml:3:1: plane.robots: the robots are not defined exactly once; give either plane.robots",
         ),
-        (robots(""), "s.toml:6:1: plane.robots: the robots are not defined exactly once; give exactly one of"),
+        (robots(""), "s.toml:6:1: plane.robots: a field is missing; give exactly one of `list`"),
         (robots("list = []"), "s.toml:7:8: plane.robots.list: there are no robots"),
         (robots("circle = { count = 0, radius_m = 3 }"), "s.toml:7:20: plane.robots.circle.count: 0 is out of range"),
         (
@@ -173,7 +174,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             robots("circle = { count = 3, radius_m = 3 }\nlist = []"),
-            "s.toml:6:1: plane.robots: the robots are not defined exactly once",
+            "s.toml:8:1: plane.robots.list: `circle` is given, too; give exactly one of `list`",
         ),
         (
             robots("cloud = { count = 100, from_m = [0, 0], to_m = [1, 1] }"),
@@ -310,7 +311,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (after("[plane.orca]\ninflation_m = -1\n"), "s.toml:9:15: plane.orca.inflation_m: -1 is out of range"),
         (
             flock("lattice", "spacing_m = 1\nalgorithm = 4", ""),
-            "s.toml:11:13: plane.lattice.algorithm: there is no algorithm 4; give 1, 2 or 3",
+            "s.toml:11:13: plane.lattice.algorithm: 4 is out of range; give 1 to 3",
         ),
         (flock("lattice", "spacing_m = nan", ""), "s.toml:10:13: plane.lattice.spacing_m: NaN is out of range"),
         (
@@ -462,7 +463,7 @@ proptest! {
              radius_m = 2\n[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 1]\n[plane.orca]\nhorizon_s = 3\nmargin_m = 0.01\n\
              [[plane.order]]\nat_s = 2\nplace_m = [3, 4]\nvelocity_mps = [0.1, 0.1]\n"
         );
-        prop_assert!(parse(&text).is_ok_and(|scenario| scenario.plane.is_some()), "{text}");
+        prop_assert!(parse(&text).is_ok_and(|scenario| scenario.plane().is_some()), "{text}");
         let mut text: Vec<char> = text.chars().collect();
         for (at, change) in changes {
             let at = at % text.len();
@@ -480,7 +481,7 @@ fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
     );
     let scenario = Scenario::parse(&text, Path::new("s.toml"), &Overrides::default()).unwrap();
     let remarks = scenario.remarks();
-    match scenario.plane.unwrap().general.guidance {
+    match &scenario.plane().unwrap().general.guidance {
         GuidanceSetup::Lattice { params, .. } => (params.alpha.position, params.gamma.position, remarks),
         other => panic!("{other:?}"),
     }
