@@ -93,7 +93,8 @@ fn attack(draft: &Draft<'_>, robots: &[Robot], table: &AttackTable, index: usize
     let unless = |holds: bool, what: &str, remedy: &str| if holds { Err(at.unfit(what, remedy)) } else { Ok(()) };
     let (is_insider, is_replay) = (table.kind == AttackKind::Insider, table.kind == AttackKind::Replay);
     let what = "kind = \"insider\" requires lies, and no other kind has them";
-    let remedy = "give lies, one or more of \"orders\", \"radius\", \"speed\", \"jump\", \"ghosts\", or another kind without lies";
+    let remedy = "give lies, one or more of \"orders\", \"radius\", \"speed\", \"jump\", \"ghosts\", or another \
+                  kind without lies";
     unless(is_insider == table.lies.is_empty(), what, remedy)?;
     let has_ghosts = table.lies.contains(&Lie::Ghosts);
     let remedy = "give lies = [\"ghosts\"], or leave it out";

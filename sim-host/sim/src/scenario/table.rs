@@ -182,7 +182,10 @@ macro_rules! one_of {
 macro_rules! table {
     ($(#[$outer:meta])* pub struct $name:ident {
         $(part $part:ident: $part_type:ty;)*
-        $($(#[doc = $doc:literal])* pub $field:ident: $type:ty $(= $default:expr)? $(, $range:expr $(, $unit:literal)?)?;)*
+        $(
+            $(#[doc = $doc:literal])*
+            pub $field:ident: $type:ty $(= $default:expr)? $(, $range:expr $(, $unit:literal)?)?;
+        )*
     }) => {
         $(#[$outer])*
         #[derive(Clone, Debug)]

@@ -4,33 +4,19 @@ use super::super::Draft;
 use super::super::ranges::short;
 use super::super::source::{Checked, Section};
 use super::group::Group;
-use super::table::{CloudEntry, FAR_M, MAX_ROBOTS, Place, PlaneRobotEntry};
+use super::table::{CloudEntry, MAX_ROBOTS, Place, PlaneRobotEntry};
 use super::{PlaneSetup, Start};
 use crate::nearby::{Cells, Query, Search};
 use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
 
-/// Highest speed along each axis, m/s: beacons encode velocities as 16-bit millimetres per second.
-const FAST_MPS: f64 = 32.0;
-
 pub(in super::super) fn norm(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-pub(super) fn place(at: &Section<'_>, name: &str, place: Place) -> Checked {
-    let is_near = place.0.iter().all(|x| x.abs() <= FAR_M);
-    at.require(is_near, name, "this is too far away", "stay within 2000 km of the origin")
-}
-
-pub(super) fn velocity(at: &Section<'_>, name: &str, velocity: Place) -> Checked {
-    let is_slow = velocity.0.iter().all(|v| v.abs() <= FAST_MPS);
-    at.require(is_slow, name, "this is too fast", "give at most 32 m/s along each axis")
-}
-
 /// Checks a velocity at the start of the run against the highest speed.
 fn start_velocity(at: &Section<'_>, name: &str, start: Place, most_mps: f64) -> Checked {
-    velocity(at, name, start)?;
     let speed_mps = norm(start.0);
     if speed_mps <= most_mps * (1.0 + 1e-9) {
         return Ok(());
@@ -88,16 +74,13 @@ pub(super) fn in_cells(group: &Group<'_>, land: &Terrain, starts: &[Start]) -> C
 
 pub(super) fn list(group: &Group<'_>, list: &[PlaneRobotEntry]) -> Checked {
     let what = "robots.list";
-    group.at.require(!list.is_empty(), what, "there are no robots", "give one robot or more")?;
     group.at.within(what, list.len() as f64, 1.0..=MAX_ROBOTS, "robots")?;
     for (index, robot) in list.iter().enumerate() {
         let at = group.at.at(format!("robots.list[{index}]"));
-        place(&at, "start_m", robot.start_m)?;
         let most_mps = robot.max_speed_mps.unwrap_or(group.body.max_speed_mps);
         start_velocity(&at, "velocity_mps", robot.velocity_mps, most_mps)?;
-        if let Some(goal_m) = robot.goal_m {
+        if robot.goal_m.is_some() {
             goal_count(group, &at, "goal_m", 1)?;
-            place(&at, "goal_m", goal_m)?;
         }
         if !robot.via_m.is_empty() {
             via(group.body.guidance, &at, robot)?;
@@ -113,25 +96,16 @@ fn via(guidance: GuidanceKind, at: &Section<'_>, robot: &PlaneRobotEntry) -> Che
     at.require(guidance == GuidanceKind::Waypoint, "via_m", what, remedy)?;
     at.require(robot.goal_m.is_some(), "via_m", "a way needs an end", "give goal_m too")?;
     let what = format!("{count} places on the way are too many");
-    at.require(count <= most, "via_m", what, format!("give at most {most}"))?;
-    let mut places = robot.via_m.iter().enumerate();
-    places.try_for_each(|(index, &via_m)| place(at, &format!("via_m[{index}]"), via_m))
+    at.require(count <= most, "via_m", what, format!("give at most {most}"))
 }
 
 pub(super) fn cloud(group: &Group<'_>, cloud: &CloudEntry) -> Checked {
     let at = group.at.at("robots.cloud");
-    place(&at, "from_m", cloud.from_m)?;
-    place(&at, "to_m", cloud.to_m)?;
     let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
-    velocity(&at, "velocity_from_mps", from)?;
     let fastest = Place(std::array::from_fn(|axis| from.0[axis].abs().max(to.0[axis].abs())));
     let name = if at.has("velocity_to_mps") { "velocity_to_mps" } else { "velocity_from_mps" };
     start_velocity(&at, name, fastest, group.body.max_speed_mps)?;
-    goal_count(group, &at, "goals_m", cloud.goals_m.len())?;
-    for (index, goal) in cloud.goals_m.iter().enumerate() {
-        place(&at, &format!("goals_m[{index}]"), *goal)?;
-    }
-    velocity(&at, "goal_velocity_mps", cloud.goal_velocity_mps)
+    goal_count(group, &at, "goals_m", cloud.goals_m.len())
 }
 
 pub(super) fn starts(draft: &Draft<'_>, setup: &PlaneSetup) -> Checked {

@@ -231,8 +231,6 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
 fn intruders(draft: &Draft<'_>, table: &PlaneTable) -> Checked<Vec<Intruder>> {
     let intruder = |(index, entry): (usize, &IntruderEntry)| {
         let at = draft.at(format!("plane.intruder[{index}]"));
-        checks::place(&at, "start_m", entry.start_m)?;
-        checks::velocity(&at, "velocity_mps", entry.velocity_mps)?;
         let has_key = !entry.heard || !draft.has("authentication");
         let what = "an intruder does not have the key, so robots reject its beacons";
         at.require(has_key, "heard", what, "give heard = false, or leave [authentication] out")?;
@@ -248,8 +246,7 @@ fn intruders(draft: &Draft<'_>, table: &PlaneTable) -> Checked<Vec<Intruder>> {
 
 fn wall(at: &Section<'_>, wall: &WallEntry) -> Checked<Vec<Solid>> {
     let points = &wall.points_m[..];
-    let is_wall = points.len() >= 2 && points.as_flattened().iter().all(|x| x.abs() <= table::FAR_M);
-    at.require(is_wall, "points_m", "this is not a wall", "give two or more points in metres")?;
+    at.require(points.len() >= 2, "points_m", "this is not a wall", "give two or more points in metres")?;
     let Some(door_m) = wall.door_m else {
         let closing = wall.closed.then(|| [points[points.len() - 1], points[0]]);
         return Ok(points.windows(2).map(|pair| [pair[0], pair[1]]).chain(closing).map(Solid::Wall).collect());
@@ -269,14 +266,11 @@ fn solids(draft: &Draft<'_>, table: &PlaneTable) -> Checked<Vec<Solid>> {
     for (index, entry) in table.wall.iter().enumerate() {
         solids.extend(wall(&draft.at(format!("plane.wall[{index}]")), entry)?);
     }
-    for (index, ball) in table.ball.iter().enumerate() {
-        checks::place(&draft.at(format!("plane.ball[{index}]")), "center_m", ball.center_m)?;
-        solids.push(Solid::Ball { center_m: ball.center_m.0, radius_m: ball.radius_m });
-    }
+    let balls = table.ball.iter();
+    solids.extend(balls.map(|ball| Solid::Ball { center_m: ball.center_m.0, radius_m: ball.radius_m }));
     solids.extend(scattered::balls(draft, &table.balls)?);
     for (index, entry) in table.half_space.iter().enumerate() {
         let at = draft.at(format!("plane.half_space[{index}]"));
-        checks::place(&at, "point_m", entry.point_m)?;
         let length = checks::norm(entry.normal.0);
         let is_direction = length > 0.0 && length.is_finite();
         at.require(is_direction, "normal", "this is not a direction", "give a vector that is not zero")?;
@@ -294,8 +288,6 @@ fn orders(draft: &Draft<'_>, table: &PlaneTable, setup: &PlaneSetup) -> Checked<
         let what = format!("robots with guidance {} have no goal {}", names.join(" or "), order.goal);
         let has_goal = guidances.iter().any(|&guidance| order.goal < checks::goals(guidance));
         at.require(has_goal, "goal", what, "give one that they have, from 0, or another guidance")?;
-        checks::place(&at, "place_m", order.place_m)?;
-        checks::velocity(&at, "velocity_mps", order.velocity_mps)?;
         let target = Target { position_m: order.place_m.0, velocity_mps: order.velocity_mps.0 };
         Ok(Order { tick: draft.tick(order.at_s), index: order.goal, target })
     };

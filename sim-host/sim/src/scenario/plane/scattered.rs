@@ -1,8 +1,7 @@
 //! Random placement of robots with goals, and of balls.
 
 use super::super::Draft;
-use super::super::source::{Checked, Section};
-use super::checks;
+use super::super::source::Checked;
 use super::group::Group;
 use super::place::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
@@ -88,7 +87,7 @@ pub(super) fn starts(
     }
     let (least_m, spacing_m) = (2.0 * body.radius_m, entry.spacing_m.unwrap_or(3.0 * body.radius_m));
     at.within("spacing_m", spacing_m, least_m..=1e6, "metres")?;
-    let [low, high] = corners(&at, entry.from_m, entry.to_m)?;
+    let [low, high] = corners(entry.from_m, entry.to_m);
     let solids = Solids::new(solids.to_vec(), least_m);
     let is_outside = |place| solids.near(place, least_m).all(|solid| solid.distance_m(place) >= least_m);
     let downwash = body.orca.as_ref().and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
@@ -119,7 +118,7 @@ pub(super) fn balls(draft: &Draft<'_>, entries: &[BallsEntry]) -> Checked<Vec<So
     let mut balls = Vec::new();
     for (number, entry) in (0..).zip(entries) {
         let at = draft.at(format!("plane.balls[{number}]"));
-        let [low, high] = corners(&at, entry.from_m, entry.to_m)?;
+        let [low, high] = corners(entry.from_m, entry.to_m);
         let mut taken = Taken::new(2.0 * entry.radius_m + entry.gap_m, 1.0);
         for index in 0..entry.count {
             let mut rng = Rng::keyed(draft.file.seed, BALLS, number, index);
@@ -135,9 +134,8 @@ pub(super) fn balls(draft: &Draft<'_>, entries: &[BallsEntry]) -> Checked<Vec<So
     Ok(balls)
 }
 
-fn corners(at: &Section<'_>, from: Place, to: Place) -> Checked<[[f64; 3]; 2]> {
-    checks::place(at, "from_m", from)?;
-    checks::place(at, "to_m", to)?;
+/// The least and the greatest corner of a box.
+fn corners(from: Place, to: Place) -> [[f64; 3]; 2] {
     let axes = |pick: fn(f64, f64) -> f64| std::array::from_fn(|axis| pick(from.0[axis], to.0[axis]));
-    Ok([axes(f64::min), axes(f64::max)])
+    [axes(f64::min), axes(f64::max)]
 }

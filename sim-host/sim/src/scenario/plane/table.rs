@@ -11,9 +11,13 @@ use staya_controller::lattice::LatticeParams;
 use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::{RADIUS, TOLERANCE};
 use staya_controller::push_out::{Model, PushOutParams};
+use std::ops::RangeInclusive;
 
-/// Largest coordinate along each axis, metres: beacons encode positions as 32-bit millimetres.
-pub(super) const FAR_M: f64 = 2_000_000.0;
+/// Coordinates along each axis, metres: beacons encode positions as 32-bit millimetres.
+const FAR: RangeInclusive<f64> = -2e6..=2e6;
+
+/// Velocity along each axis, m/s: beacons encode velocities as 16-bit millimetres per second.
+const FAST: RangeInclusive<f64> = -32.0..=32.0;
 
 pub(super) const MAX_ROBOTS: f64 = 1_000_000.0;
 
@@ -37,7 +41,7 @@ table! {
         /// Distance at which a goal counts as reached, metres. Default: a tenth of the radius.
         pub tolerance_m: Option<f64>, TOLERANCE;
         /// Range of obstacle detection, metres. Default: 10.
-        pub sight_m: f64 = 10.0, 0.0..=FAR_M, "metres";
+        pub sight_m: f64 = 10.0, 0.0..=2e6, "metres";
         /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs a formation too.
         pub guidance: GuidanceKind = GuidanceKind::Waypoint;
         /// Safety layer.
@@ -144,13 +148,13 @@ table! {
     /// One robot of `plane.robots.list`.
     pub struct PlaneRobotEntry {
         /// Start: x, y, z in metres.
-        pub start_m: Place;
+        pub start_m: Place, FAR, "metres";
         /// Goal. Default: none; the robot stays where its law leaves it.
-        pub goal_m: Option<Place>;
+        pub goal_m: Option<Place>, FAR, "metres";
         /// Waypoints on the way to the goal, at most three.
-        pub via_m: Vec<Place> = Vec::new();
+        pub via_m: Vec<Place> = Vec::new(), FAR, "metres";
         /// Initial velocity, m/s. Default: at rest.
-        pub velocity_mps: Place = Default::default();
+        pub velocity_mps: Place = Default::default(), FAST, "m/s";
         /// Radius of the body, metres. Default: that of its group.
         pub radius_m: Option<f64>, RADIUS;
         /// Highest speed on easy land, m/s. Default: that of its group.
@@ -175,9 +179,9 @@ table! {
     #[derive(Copy)]
     pub struct IntruderEntry {
         /// Start, metres.
-        pub start_m: Place;
+        pub start_m: Place, FAR, "metres";
         /// Constant velocity, m/s.
-        pub velocity_mps: Place;
+        pub velocity_mps: Place, FAST, "m/s";
         /// Radius of the body, metres.
         pub radius_m: f64, RADIUS;
         /// Whether it sends beacons; if not, robots detect its place but not its speed. Default:
@@ -221,17 +225,17 @@ table! {
         /// Number of robots.
         pub count: u32, 1.0..=MAX_ROBOTS, "robots";
         /// Corner of the box of uniform random starts, metres; overlapping starts are redrawn.
-        pub from_m: Place;
+        pub from_m: Place, FAR, "metres";
         /// Opposite corner.
-        pub to_m: Place;
+        pub to_m: Place, FAR, "metres";
         /// Corner of the box of uniform random initial velocities, m/s. Default: at rest.
-        pub velocity_from_mps: Place = Default::default();
+        pub velocity_from_mps: Place = Default::default(), FAST, "m/s";
         /// Opposite corner.
-        pub velocity_to_mps: Place = Default::default();
+        pub velocity_to_mps: Place = Default::default(), FAST, "m/s";
         /// Goals of all robots.
-        pub goals_m: Vec<Place> = Vec::new();
+        pub goals_m: Vec<Place> = Vec::new(), FAR, "metres";
         /// Velocity of the goals, m/s. Default: at rest.
-        pub goal_velocity_mps: Place = Default::default();
+        pub goal_velocity_mps: Place = Default::default(), FAST, "m/s";
     }
 }
 
@@ -242,9 +246,9 @@ table! {
         /// Number of robots.
         pub count: u32, 1.0..=MAX_ROBOTS, "robots";
         /// Corner of the box of uniform starts and goals, metres; those too close are redrawn.
-        pub from_m: Place;
+        pub from_m: Place, FAR, "metres";
         /// Opposite corner.
-        pub to_m: Place;
+        pub to_m: Place, FAR, "metres";
         /// Farthest distance of a goal from its start along each axis, metres. Default: the whole
         /// box.
         pub travel_m: f64 = f64::INFINITY, 0.001..=f64::INFINITY, "metres";
@@ -257,7 +261,7 @@ table! {
     /// `[[plane.wall]]`.
     pub struct WallEntry {
         /// Two or more points, each joined to the next.
-        pub points_m: Vec<[f64; 2]>;
+        pub points_m: Vec<[f64; 2]>, FAR, "metres";
         /// Whether the last point is joined to the first: a polygon. Default: false.
         pub closed: bool = false;
         /// Width of a door in the middle of a wall of two points, metres. Default: no door.
@@ -270,7 +274,7 @@ table! {
     #[derive(Copy)]
     pub struct BallEntry {
         /// Centre, metres.
-        pub center_m: Place;
+        pub center_m: Place, FAR, "metres";
         /// Radius, metres.
         pub radius_m: f64, 0.001..=1e6, "metres";
     }
@@ -285,9 +289,9 @@ table! {
         /// Radius of each, metres.
         pub radius_m: f64, 0.001..=1e6, "metres";
         /// Corner of the box of uniform random centres, metres.
-        pub from_m: Place;
+        pub from_m: Place, FAR, "metres";
         /// Opposite corner.
-        pub to_m: Place;
+        pub to_m: Place, FAR, "metres";
         /// Smallest distance between two surfaces, metres. Default: 0.
         pub gap_m: f64 = 0.0, 0.0..=1e6, "metres";
     }
@@ -298,7 +302,7 @@ table! {
     #[derive(Copy)]
     pub struct HalfSpaceEntry {
         /// A point on its border, metres.
-        pub point_m: Place;
+        pub point_m: Place, FAR, "metres";
         /// A vector out of it, of any length.
         pub normal: Place;
     }
@@ -313,9 +317,9 @@ table! {
         /// Index of the goal, from 0. Default: 0.
         pub goal: u8 = 0;
         /// Position of the goal, metres.
-        pub place_m: Place;
+        pub place_m: Place, FAR, "metres";
         /// Velocity of the goal, m/s. Default: at rest.
-        pub velocity_mps: Place = Default::default();
+        pub velocity_mps: Place = Default::default(), FAST, "m/s";
     }
 }
 

@@ -92,7 +92,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots.list = [{{ start_m = [nan, 0] }}]\n"),
-            "s.toml:7:28: plane.group[0].robots.list[0].start_m: this is too far away",
+            "s.toml:7:29: plane.group[0].robots.list[0].start_m[0]: NaN is out of range",
         ),
         (
             format!("{HEAD}{PLANE}{TWO}[[plane.group]]\nradius_m = 3\nrobots.list = [{{ start_m = [6.0, 0] }}]\n"),
@@ -116,7 +116,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             robots("list = [{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0], [nan, 0]] }]"),
-            "s.toml:7:63: plane.robots.list[0].via_m[1]: this is too far away",
+            "s.toml:7:64: plane.robots.list[0].via_m[1][0]: NaN is out of range",
         ),
         (
             format!(
@@ -127,11 +127,11 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [33, 0]\nradius_m = 1\n"),
-            "s.toml:10:16: plane.intruder[0].velocity_mps: this is too fast",
+            "s.toml:10:17: plane.intruder[0].velocity_mps[0]: 33 is out of range",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, inf]\nvelocity_mps = [1, 0]\nradius_m = 1\n"),
-            "s.toml:9:11: plane.intruder[0].start_m: this is too far away",
+            "s.toml:9:15: plane.intruder[0].start_m[1]: inf is out of range",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [1, 0]\nradius_m = 0\n"),
