@@ -59,7 +59,7 @@ impl PageArgs {
                     description: description(&text_with(path, self.source.settings())?),
                     ..Scene::new(&scenario, Mode::Recording)
                 };
-                let output = Files::reading(&scenario.files).create(&self.out)?;
+                let output = Files::reading(&scenario.origin.files).create(&self.out)?;
                 (recorded(&scenario, scene, self.every, &stop, global)?, output)
             }
             false if !self.minds.is_empty() => {

@@ -88,7 +88,7 @@ impl RunArgs {
             eprintln!("the files of --record and --mcap start after tick {}", from.tick());
         }
         let before_seconds = from.as_ref().map_or(0.0, Checkpoint::wall_seconds);
-        let mut files = Files::reading(&scenario.files);
+        let mut files = Files::reading(&scenario.origin.files);
         files.claim(&out)?;
         let checkpoints = match self.checkpoint.checkpoint {
             Some(every) => {

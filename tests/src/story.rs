@@ -39,16 +39,16 @@ pub fn gaps(scenario: &Scenario, outcome: &Outcome) -> Vec<String> {
 fn events(scenario: &Scenario) -> Vec<(&'static str, u32)> {
     let ends = |from: u32, to: u32| if to >= scenario.ticks { from } else { to };
     let tick = |at_s: f64| (at_s / scenario.tick_s()) as u32;
-    let orders = scenario.plane.iter().flat_map(|plane| &plane.orders);
+    let orders = scenario.plane().into_iter().flat_map(|plane| &plane.orders);
     let rolls = scenario.key_rotation().into_iter().flat_map(|keeping| &keeping.rolls);
     let blackouts = scenario.radio.blackout_s.iter().map(|&[from_s, to_s]| ends(tick(from_s), tick(to_s)));
     let mut events: Vec<_> = orders.map(|order| ("an order", order.tick)).collect();
     events.extend(rolls.map(|roll| ("a key change", roll.tick)));
     events.extend(blackouts.map(|tick| ("a blackout", tick)));
-    events.extend(scenario.interventions.iter().map(|(tick, _)| ("an intervention", *tick)));
-    events.extend(scenario.changes.iter().map(|change| ("a change of the land", change.first)));
-    events.extend(scenario.faults.iter().map(|fault| ("a fault", ends(fault.from_tick, fault.to_tick))));
-    events.extend(scenario.attacks.iter().map(|attack| ("an attack", ends(attack.from_tick, attack.to_tick))));
+    events.extend(scenario.events.interventions.iter().map(|(tick, _)| ("an intervention", *tick)));
+    events.extend(scenario.land.changes.iter().map(|change| ("a change of the land", change.first)));
+    events.extend(scenario.events.faults.iter().map(|fault| ("a fault", ends(fault.from_tick, fault.to_tick))));
+    events.extend(scenario.events.attacks.iter().map(|attack| ("an attack", ends(attack.from_tick, attack.to_tick))));
     events
 }
 

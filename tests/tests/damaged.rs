@@ -81,7 +81,7 @@ fn scenarios(count: u32) {
     let large = ["million", "scale", "scale-plane", "scale-plane-small", "scale-small"];
     check("scenarios", &seeds("scenarios", &["toml"], &large), count, 0.3, &|path, bytes| {
         let scenario = Scenario::parse(&text(bytes), path, &ticks(3)).map_err(|error| error.to_string())?;
-        if scenario.robots.len() > 200 || scenario.terrain.cells().len() > 1_000_000 {
+        if scenario.robots.len() > 200 || scenario.land.terrain.cells().len() > 1_000_000 {
             return Ok(());
         }
         let run = simulate(&scenario, |_, _| ControlFlow::Continue(()));

@@ -8,7 +8,7 @@ fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
     let mut scenario = scenario(name, Some(ticks));
     scenario.seed = seed;
     let faults = dead.iter().map(|&(robot, from_tick)| Fault { robot: RobotId(robot), from_tick, to_tick: ticks });
-    scenario.faults.extend(faults);
+    scenario.events.faults.extend(faults);
     scenario
 }
 
@@ -49,9 +49,9 @@ fn ranks_close_the_gap_of_a_dead_robot() {
         let mut scenario = without("figure-5", 1, &dead, 300);
         let goals: Vec<_> = scenario.robots.iter().map(|robot| robot.goal).collect();
         let mut ends = [false, true].map(|closes_ranks| {
-            let mut params = scenario.formation_law.params();
+            let mut params = scenario.laws.formation.params();
             params.closes_ranks = closes_ranks;
-            scenario.formation_law = FormationSetup::Staya(params);
+            scenario.laws.formation = FormationSetup::Staya(params);
             assert_eq!(missing(&scenario, &dead), [0_usize; 0], "without {robot}");
             let (_, rows) = run(&scenario);
             let (_, robots) = rows.last().expect("at least the start").clone();

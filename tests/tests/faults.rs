@@ -71,7 +71,7 @@ fn any_robot_may_restart_during_the_run() {
     for robot in 1..=6 {
         for down in [0, 15, 40] {
             let mut scenario = scenario("figure-6", None);
-            scenario.faults = vec![Fault { robot: RobotId(robot), from_tick: 120, to_tick: 120 + down }];
+            scenario.events.faults = vec![Fault { robot: RobotId(robot), from_tick: 120, to_tick: 120 + down }];
             let (outcome, rows) = run(&scenario);
             let who = format!("robot {robot}, {down} ticks");
             assert_eq!((outcome.arrived, outcome.collisions), (6, 0), "{who}");
@@ -88,7 +88,7 @@ fn any_robot_may_restart_during_the_run() {
 fn a_robot_that_stays_down_delays_its_followers_only() {
     // Robot 6 has no followers.
     let mut scenario = scenario("figure-6", Some(900));
-    scenario.faults = vec![Fault { robot: RobotId(6), from_tick: 100, to_tick: u32::MAX }];
+    scenario.events.faults = vec![Fault { robot: RobotId(6), from_tick: 100, to_tick: u32::MAX }];
     let (outcome, _) = run(&scenario);
     assert_eq!(outcome.arrived, 5);
     assert_eq!(outcome.arrival_times[5], None);

@@ -179,7 +179,7 @@ fn two_flocks_pass_without_losing_robots() {
 #[test]
 fn two_groups_of_one_flock_merge_and_stop() {
     let mut scenario = seeded("two-flocks", 1);
-    let plane = scenario.plane.as_mut().expect("a plane");
+    let plane = scenario.plane_mut().expect("a plane");
     plane.groups.iter_mut().for_each(|group| group.flock = 0);
     assert_eq!(two_flocks(&scenario).1, None);
 }

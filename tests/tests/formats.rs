@@ -41,7 +41,7 @@ fn flocks_run_identically_in_both_formats() {
     same_over_either("flock-squeeze", Some(120), |_| ());
     // The scenario's operator moves a goal during the run.
     let moves_goal = |scenario: &mut Scenario| {
-        let orders = &scenario.plane.as_ref().expect("a plane").orders;
+        let orders = &scenario.plane().expect("a plane").orders;
         assert!(orders.first().is_some_and(|order| order.tick + 50 < scenario.ticks), "{orders:?}");
     };
     same_over_either("goal-flock", Some(900), moves_goal);

@@ -22,7 +22,7 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
     if let Some(clearance) = outcome.clearance.filter(|clearance| clearance.intruders_m.is_finite()) {
         writeln!(text, "intruders  {} overlaps", clearance.intruder_overlaps)?;
     }
-    if scenario.plane.as_ref().is_some_and(|plane| plane.kinds().any(|group| group.downwash() > 1.0)) {
+    if scenario.plane().is_some_and(|plane| plane.kinds().any(|group| group.downwash() > 1.0)) {
         let washed = outcome.clearance.map_or(0, |clearance| clearance.washed);
         writeln!(text, "downwash   {washed} in that of others")?;
     }
@@ -47,7 +47,7 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
     writeln!(
         text,
         " tick arrived  delivered  error  graph  first robots: {}, mode",
-        if scenario.plane.is_some() { "place (m)" } else { "cell" }
+        if scenario.plane().is_some() { "place (m)" } else { "cell" }
     )?;
     let every = (outcome.ticks / 24).max(1);
     let last = rows.len() - 1;
@@ -55,7 +55,7 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
         if !row.tick.is_multiple_of(every) && index != last {
             continue;
         }
-        let is_there = |r: &&RobotRow| match scenario.plane {
+        let is_there = |r: &&RobotRow| match scenario.plane() {
             Some(_) => r.mode == Mode::Arrived,
             None => r.motion.cell == r.target,
         };
@@ -68,7 +68,7 @@ fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>
         for robot in &robots[..robots.len().min(SHOWN)] {
             let mode = format!("{:?}", robot.mode).to_lowercase();
             let [x, y, _] = robot.motion.position_m;
-            if scenario.plane.is_some() {
+            if scenario.plane().is_some() {
                 write!(text, " {x:8.3},{y:<8.3} {mode:<7}")?;
                 continue;
             }

@@ -49,7 +49,7 @@ fn all_arrive(scenario: &Scenario, what: &str) -> u32 {
     assert_eq!((outcome.arrived, outcome.collisions), (scenario.robots.len(), 0), "{what}");
     assert!(gap_m > 0.001, "{what}: {gap_m} m");
     let robots = rows.iter().flat_map(|(_, robots)| robots);
-    let wall_m = robots.map(|robot| to_walls(&scenario.terrain, robot)).fold(f64::INFINITY, f64::min);
+    let wall_m = robots.map(|robot| to_walls(&scenario.land.terrain, robot)).fold(f64::INFINITY, f64::min);
     assert!(wall_m > 0.001, "{what}: {wall_m} m from a wall");
     outcome.ticks
 }

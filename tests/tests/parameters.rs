@@ -9,7 +9,7 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::{Parameter, Parameters};
 use staya_controller::route::RouteParams;
 use staya_sim::engine::operated;
-use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::scenario::{Line, Overrides, Read as _, Scenario, ScenarioFile};
 use staya_tests::{golden, root};
 use std::fs;
 
@@ -95,4 +95,21 @@ fn golden_list_of_parameters() {
         list += &format!("{name:<15} {mavlink:<15} {unit:<9} {range:<14} {default:<8} {what}\n");
     }
     golden("parameters", &list, &[]);
+}
+
+fn list_fields(lines: Vec<Line>, table: &str, list: &mut String) {
+    for Line { name, doc, kind, limits, default, inner } in lines {
+        let limits = limits.map_or_else(String::new, |limits| format!(", {limits}"));
+        let default = if default.is_empty() { String::new() } else { format!(", default {default}") };
+        *list += &format!("{table}{name}: {kind}{limits}{default}; {}\n", doc.trim());
+        list_fields(inner, &format!("{table}{name}."), list);
+    }
+}
+
+/// All fields of scenario files, from their tables and from those of the parameters.
+#[test]
+fn golden_list_of_scenario_fields() {
+    let mut list = String::new();
+    list_fields(ScenarioFile::lines(), "", &mut list);
+    golden("scenario-fields", &list, &[]);
 }

@@ -48,7 +48,7 @@ impl HilArgs {
 /// Missing devices, firmware or firmware features, or a device that fails or differs from its
 /// shadow.
 pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
-    let other = match scenario.formation_law {
+    let other = match scenario.laws.formation {
         FormationSetup::Staya(_) => None,
         FormationSetup::Lookahead(_) => Some(FormationLaw::Lookahead),
         FormationSetup::Published(_) => Some(FormationLaw::Paper),
@@ -109,13 +109,13 @@ pub(crate) fn drive(
     page: &WatchArgs,
     global: &Global,
 ) -> Result<Ended> {
-    if scenario.maps.is_some() {
+    if scenario.laws.maps.is_some() {
         bail!("maps.share is not available in firmware; remove [maps], or run without devices");
     }
-    if scenario.sensing.is_some() {
+    if scenario.sensing().is_some() {
         bail!("plane.sensing is not available on devices; remove it, or run without devices");
     }
-    if scenario.keys.is_some() {
+    if scenario.trust.keys.is_some() {
         bail!("{}: devices do not support keys; remove [authentication]", scenario.name);
     }
     let plan = devices.plan(scenario)?;

@@ -111,7 +111,7 @@ pub fn draw(
         }
     });
     let Some(history) = outcome.ok().and_then(|_| recorder.finish().ok()) else { return Ok(Vec::new()) };
-    let mut files = match &scenario.plane {
+    let mut files = match scenario.plane() {
         None => run_pictures(scenario, &history, stem)?,
         Some(_) => motion_sheet(title, scenario, &history).draw().write(stem)?,
     };

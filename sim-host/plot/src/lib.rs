@@ -53,9 +53,9 @@ use story::Story;
 pub fn run_pictures(scenario: &Scenario, history: &History, out_dir: &Path) -> Result<Vec<PathBuf>, Error> {
     record::make_dir(out_dir)?;
     let of = format!("{} (seed {})", scenario.name, scenario.seed);
-    if scenario.plane.is_none() {
+    if scenario.plane().is_none() {
         let (changing, edges) = (scenario.changing_cells(), scenario.numbered_edges());
-        return run::on_map(&of, &scenario.terrain, &changing, history, &edges, out_dir);
+        return run::on_map(&of, &scenario.land.terrain, &changing, history, &edges, out_dir);
     }
     let mut files = Vec::new();
     if !history.frames().is_empty() {

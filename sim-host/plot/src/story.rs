@@ -37,7 +37,7 @@ pub struct Story<'a> {
 impl<'a> Story<'a> {
     pub fn new(scenario: &'a Scenario, history: &'a History) -> Self {
         let groups: Vec<u32> = (0..scenario.robots.len()).map(|index| scene::group(scenario, index)).collect();
-        let setup = scenario.plane.as_ref();
+        let setup = scenario.plane();
         let has_land = setup.is_none_or(|setup| setup.has_terrain);
         let samples = || history.frames().iter().flat_map(|frame| &frame.samples);
         let is_space = scene::is_in_space(scenario) || samples().any(|sample| sample.position_m[2] != 0.0);
@@ -49,7 +49,7 @@ impl<'a> Story<'a> {
             space: setup.map_or(Space::OPEN, |setup| setup.space()),
             stage: Snapshot {
                 solids: setup.map_or([].into(), |setup| setup.solids.clone().into()),
-                land: has_land.then(|| Arc::new(scenario.terrain.clone())),
+                land: has_land.then(|| Arc::new(scenario.land.terrain.clone())),
                 is_space,
                 downwash: scene::downwash(scenario),
                 ..Snapshot::default()
@@ -86,7 +86,7 @@ impl<'a> Story<'a> {
                 ..Body::default()
             }
         });
-        let intruders = self.scenario.plane.iter().flat_map(|setup| &setup.intruders).map(|intruder| Body {
+        let intruders = self.scenario.plane().into_iter().flat_map(|setup| &setup.intruders).map(|intruder| Body {
             position_m: moved(intruder.position_m, intruder.velocity_mps, frame.time_s),
             radius_m: intruder.radius_m,
             colour: marks::INTRUDER,
@@ -169,7 +169,7 @@ impl<'a> Story<'a> {
         if self.colour_by != ColourBy::Mode && samples().any(|sample| sample.mode == Mode::Fault) {
             keys.push((Mode::Fault.name().to_owned(), DOWN));
         }
-        if self.scenario.plane.as_ref().is_some_and(|setup| !setup.intruders.is_empty()) {
+        if self.scenario.plane().is_some_and(|setup| !setup.intruders.is_empty()) {
             keys.push(("intruder".into(), marks::INTRUDER));
         }
         keys
@@ -185,8 +185,8 @@ impl<'a> Story<'a> {
                 self.goals_of(index, frame.tick).into_iter().map(move |goal| (goal, colour))
             })
             .collect();
-        if goals.is_empty() && (self.scenario.plane.is_none() || self.stage.land.is_some()) {
-            let land = &self.scenario.terrain;
+        if goals.is_empty() && (self.scenario.plane().is_none() || self.stage.land.is_some()) {
+            let land = &self.scenario.land.terrain;
             let is_on_map = |(_, sample): &(usize, &staya_sim::record::Sample)| land.index(sample.target).is_some();
             let samples = frame.samples.iter().enumerate().filter(is_on_map);
             goals.extend(samples.map(|(index, sample)| {
@@ -203,8 +203,7 @@ impl<'a> Story<'a> {
     }
 
     fn goals_of(&self, robot: usize, tick: u32) -> Vec<[f64; 3]> {
-        let Some((setup, start)) =
-            self.scenario.plane.as_ref().and_then(|setup| Some((setup, setup.starts.get(robot)?)))
+        let Some((setup, start)) = self.scenario.plane().and_then(|setup| Some((setup, setup.starts.get(robot)?)))
         else {
             return Vec::new();
         };

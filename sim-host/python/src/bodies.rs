@@ -7,7 +7,7 @@ use pyo3::sync::MutexExt as _;
 use staya_controller::agent::Command;
 use staya_controller::grid::{Cell, Dir};
 use staya_sim::engine::Grid;
-use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::scenario::{Movement, Overrides, Scenario};
 use staya_sim::world::World;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -25,7 +25,10 @@ impl GridBodies {
     #[new]
     fn new(path: PathBuf) -> PyResult<Self> {
         let scenario = Scenario::load(&path, &Overrides::default()).map_err(|error| scenario_error(&error))?;
-        let grid = Grid::new(&scenario).map_err(|error| scenario_error(&error))?;
+        let Movement::Cells(rules) = scenario.movement else {
+            return Err(scenario_error(&"the robots are not in cells"));
+        };
+        let grid = Grid::new(&scenario, rules).map_err(|error| scenario_error(&error))?;
         Ok(Self { world: Mutex::new((grid.world, 0)) })
     }
 

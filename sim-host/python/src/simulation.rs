@@ -246,7 +246,7 @@ impl Run {
     /// Radius, m, and highest speed, m/s, of each robot in the plane.
     fn bodies<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
         let inner = self.lock(py);
-        let plane = inner.scenario.plane.as_ref()?;
+        let plane = inner.scenario.plane()?;
         let groups = (0..inner.scenario.robots.len()).map(|index| plane.group(index));
         Some(rows(py, groups.map(|group| [group.radius_m, group.abilities.max_speed_mps])))
     }

@@ -241,7 +241,7 @@ impl Scene {
     /// Creates the scene of a scenario before its first tick. O(robots + cells).
     #[must_use]
     pub fn new(scenario: &Scenario, mode: Mode) -> Self {
-        let setup = scenario.plane.as_ref();
+        let setup = scenario.plane();
         let has_land = setup.is_none_or(|setup| setup.has_terrain);
         let origin = origin_m(scenario);
         let (bounds_m, height_m) = bounds(scenario, origin);
@@ -263,7 +263,7 @@ impl Scene {
             colour_by: ColourBy::of(&robots.group),
             robots,
             downwash: downwash(scenario),
-            land: has_land.then(|| land(&scenario.terrain, origin)),
+            land: has_land.then(|| land(&scenario.land.terrain, origin)),
             solids: setup.map_or_else(Vec::new, |setup| solids(&setup.solids, is_in_space(scenario), origin)),
             intruders: setup.map_or(&[][..], |setup| &setup.intruders).iter().map(Intruder::from).collect(),
             formation: (!scenario.formations.is_empty())
@@ -306,7 +306,7 @@ fn names<T: Named>() -> Vec<String> {
 /// Origin of a scenario's scene and frames, metres: near enough to the bodies for `f32`.
 #[must_use]
 pub fn origin_m(scenario: &Scenario) -> [f64; 3] {
-    match &scenario.plane {
+    match scenario.plane() {
         Some(setup) if !setup.has_terrain => {
             // Coordinates of the scenario stay unchanged unless that would cost precision.
             let far = setup.starts.iter().flat_map(|start| start.position_m).fold(0.0, |far: f64, x| far.max(x.abs()));
@@ -315,14 +315,14 @@ pub fn origin_m(scenario: &Scenario) -> [f64; 3] {
                 _ => [0.0; 3],
             }
         }
-        _ => [scenario.terrain.origin_m[0], scenario.terrain.origin_m[1], 0.0],
+        _ => [scenario.land.terrain.origin_m[0], scenario.land.terrain.origin_m[1], 0.0],
     }
 }
 
 /// Whether bodies of a scenario have heights.
 #[must_use]
 pub fn is_in_space(scenario: &Scenario) -> bool {
-    scenario.plane.as_ref().is_some_and(|setup| {
+    scenario.plane().is_some_and(|setup| {
         let starts = setup.starts.iter();
         let moves = starts.clone().map(|start| (start.position_m, start.velocity_mps));
         let goals = starts.flat_map(|start| &start.places).chain(setup.orders.iter().map(|order| &order.target));
@@ -336,14 +336,14 @@ pub fn is_in_space(scenario: &Scenario) -> bool {
 /// The group of robot `index`, in the order of the scenario from 1; 0 for no group.
 #[must_use]
 pub fn group(scenario: &Scenario, index: usize) -> u32 {
-    let group = scenario.plane.as_ref().and_then(|setup| setup.starts.get(index)?.group);
+    let group = scenario.plane().and_then(|setup| setup.starts.get(index)?.group);
     group.map_or(0, |group| group as u32 + 1)
 }
 
 /// Largest [`Scene::downwash`] of the robots.
 #[must_use]
 pub fn downwash(scenario: &Scenario) -> f64 {
-    scenario.plane.iter().flat_map(|setup| setup.kinds()).map(|group| group.downwash()).fold(1.0, f64::max)
+    scenario.plane().into_iter().flat_map(|setup| setup.kinds()).map(|group| group.downwash()).fold(1.0, f64::max)
 }
 
 /// The map relative to `origin_m`.
@@ -380,9 +380,9 @@ pub fn solids(solids: &[plane::Solid], is_in_space: bool, origin_m: [f64; 3]) ->
 /// The radius of robot `index`, metres; on the grid a fraction of a cell.
 #[must_use]
 pub fn radius_m(scenario: &Scenario, index: usize) -> f64 {
-    match &scenario.plane {
+    match scenario.plane() {
         Some(setup) => setup.group(index).radius_m,
-        None => scenario.terrain.cell_m * GRID_RADIUS,
+        None => scenario.land.terrain.cell_m * GRID_RADIUS,
     }
 }
 
@@ -391,9 +391,9 @@ fn robots(scenario: &Scenario) -> Robots {
     for (index, robot) in scenario.robots.iter().enumerate() {
         robots.id.push(robot.id.0);
         robots.radius_m.push(radius_m(scenario, index));
-        robots.max_speed_mps.push(match &scenario.plane {
+        robots.max_speed_mps.push(match scenario.plane() {
             Some(setup) => setup.group(index).abilities.max_speed_mps,
-            None => scenario.terrain.cell_m / scenario.tick_s(),
+            None => scenario.land.terrain.cell_m / scenario.tick_s(),
         });
         robots.group.push(group(scenario, index));
     }
@@ -402,8 +402,8 @@ fn robots(scenario: &Scenario) -> Robots {
 
 fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
     let mut extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-    let land = &scenario.terrain;
-    match &scenario.plane {
+    let land = &scenario.land.terrain;
+    match scenario.plane() {
         None => {
             for cell in scenario.robots.iter().flat_map(|robot| [robot.start, robot.goal]) {
                 let [x, y] = land.center_m(cell);

@@ -221,7 +221,7 @@ impl Summary {
                     .collect(),
             ),
             packets: outcome.packets,
-            is_authenticated: scenario.keys.is_some(),
+            is_authenticated: scenario.trust.keys.is_some(),
             packets_throttled: outcome.throttled,
             waits: outcome.waits.iter().map(|count| Waited::new(count, scenario.tick_s())).collect(),
             formation_error_per_agent: formation.map(|f| f.error_per_agent),
@@ -231,7 +231,7 @@ impl Summary {
             place_error_worst_m: outcome.place_error.map(|error| error.worst_m),
             place_error_worst_robot: outcome.place_error.map(|error| error.robot),
             place_error_worst_s: outcome.place_error.map(|error| error.at_s),
-            groups: scenario.parts.iter().map(|part| GroupFigures::new(part, scenario, outcome)).collect(),
+            groups: scenario.origin.parts.iter().map(|part| GroupFigures::new(part, scenario, outcome)).collect(),
             time_over_free_time: units.iter().max().and_then(|&last| {
                 let free_s = free_formation_s(scenario).filter(|_| outcome.arrived == scenario.robots.len())?;
                 Some(seconds(last as f64) / free_s)
@@ -242,8 +242,8 @@ impl Summary {
             intruder_overlaps: outcome.clearance.map_or(0, |c| c.intruder_overlaps),
             washed: outcome.clearance.map_or(0, |c| c.washed),
             trace_hash: format!("{:016x}", outcome.trace_hash),
-            parameters: scenario.parameters.clone(),
-            obstacles: scenario.plane.iter().flat_map(|setup| &setup.solids).map(Obstacle::from).collect(),
+            parameters: scenario.origin.parameters.clone(),
+            obstacles: scenario.plane().into_iter().flat_map(|setup| &setup.solids).map(Obstacle::from).collect(),
             files,
         }
     }

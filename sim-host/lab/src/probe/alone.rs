@@ -22,8 +22,8 @@ impl Probe for Alone {
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>> {
         let mut alone = scenario.clone();
         alone.formations.clear();
-        alone.maps = None;
-        alone.route.sharpness = Sharpness::Greedy;
+        alone.laws.maps = None;
+        alone.laws.route.sharpness = Sharpness::Greedy;
         alone.radio = RadioParams { range_m: scenario.radio.range_m, ..RadioParams::default() };
         let other = simulate(&alone, |_, _| ControlFlow::Continue(())).ok();
         let ratio = last(outcome).zip(other.as_ref().and_then(last)).map(|(own, other)| own as f64 / other as f64);

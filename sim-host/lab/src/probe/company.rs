@@ -64,7 +64,7 @@ struct State {
 
 impl State {
     fn new(scenario: &Scenario) -> Option<Self> {
-        let plane = scenario.plane.as_ref()?;
+        let plane = scenario.plane()?;
         let GuidanceSetup::GoalFlock { params, arrival_m, .. } = &plane.group(0).guidance else { return None };
         let unit_m = f64::from(params.min_distance_m);
         Some(Self {

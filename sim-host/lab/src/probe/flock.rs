@@ -29,7 +29,7 @@ pub const KIND: Kind = Kind {
         ("inside", "robots whose centre was ever in an obstacle"),
         ("past", "robots east of all balls at the end"),
     ],
-    new: |scenario| Box::new(Flock { state: scenario.plane.as_ref().and_then(|plane| State::new(scenario, plane)) }),
+    new: |scenario| Box::new(Flock { state: scenario.plane().and_then(|plane| State::new(scenario, plane)) }),
 };
 
 /// From then on distances of pairs count: random starts may nearly coincide.

@@ -15,7 +15,7 @@ pub const KIND: Kind = Kind {
         ("turns", "changes of direction between two that pass; 1: one crowd after the other"),
     ],
     new: |scenario| {
-        let plane = scenario.plane.iter();
+        let plane = scenario.plane().into_iter();
         let robot = plane.flat_map(|plane| {
             let side = |(index, start): (usize, &staya_sim::scenario::Start)| Crosser {
                 side: start.position_m[0].signum(),

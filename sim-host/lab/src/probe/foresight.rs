@@ -29,10 +29,11 @@ impl Probe for Least {
     fn values(&self, scenario: &Scenario, outcome: &Outcome) -> Vec<Option<f64>> {
         let (robot, time) = (scenario.robots.first(), outcome.arrival_times.first().copied().flatten());
         let loss = robot.zip(time).map(|(robot, time)| {
-            let land = (&scenario.terrain, &scenario.changes[..], scenario.seed);
+            let land = (&scenario.land.terrain, &scenario.land.changes[..], scenario.seed);
             let ends = [robot.start, robot.goal];
             // The least travel time is at most that of the robot.
-            let least = Foresight::default().least_cost(land, ends, scenario.rules.norm, time).unwrap_or(time);
+            let least =
+                Foresight::default().least_cost(land, ends, scenario.laws.route.params.norm, time).unwrap_or(time);
             100.0 * (time as f64 / least.max(1) as f64 - 1.0)
         });
         vec![loss]

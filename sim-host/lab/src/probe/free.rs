@@ -24,7 +24,7 @@ struct Free {
 
 /// Length of each robot's way, metres; `None` without a goal.
 fn ways_m(scenario: &Scenario) -> impl Iterator<Item = Option<f64>> {
-    scenario.plane.iter().flat_map(|plane| &plane.starts).map(|start| {
+    scenario.plane().into_iter().flat_map(|plane| &plane.starts).map(|start| {
         let places = start.places.iter().map(|place| place.position_m);
         let (way_m, _) = places.fold((0.0, start.position_m), |(way_m, from), to| (way_m + distance_m(from, to), to));
         (!start.places.is_empty()).then_some(way_m)
@@ -40,7 +40,7 @@ impl Probe for Free {
         let seconds = |units: u64| units as f64 / f64::from(UNIT) * scenario.tick_s();
         let (mut ratios, mut last_s, mut arrived) = (Vec::new(), 0.0_f64, 0);
         for (index, (way_m, time)) in ways_m(scenario).zip(&outcome.arrival_times).enumerate() {
-            let (Some(way_m), Some(plane), Some(time_s)) = (way_m, &scenario.plane, time.map(seconds)) else {
+            let (Some(way_m), Some(plane), Some(time_s)) = (way_m, scenario.plane(), time.map(seconds)) else {
                 continue;
             };
             arrived += 1;

@@ -3,6 +3,7 @@
 use super::{Kind, Probe};
 use crate::optimal::Planner;
 use staya_controller::grid::UNIT;
+use staya_controller::route::RouteParams;
 use staya_sim::engine::Outcome;
 use staya_sim::scenario::{Robot, Scenario};
 
@@ -23,8 +24,8 @@ impl Probe for Optimum {
         let mut planner = Planner::default();
         let loss = |(robot, time): (&Robot, &Option<u64>)| {
             let since = time.as_ref()?.saturating_sub(u64::from(departure(scenario, robot)) * u64::from(UNIT));
-            let rules = scenario.rules;
-            let route = planner.route(&scenario.terrain, robot.start, robot.goal, rules.norm, rules.corner_cutting)?;
+            let RouteParams { norm, corner_cutting, .. } = scenario.laws.route.params;
+            let route = planner.route(&scenario.land.terrain, robot.start, robot.goal, norm, corner_cutting)?;
             (route.cost > 0).then(|| 100.0 * (since as f64 / route.cost as f64 - 1.0))
         };
         let losses: Vec<Option<f64>> = scenario.robots.iter().zip(&outcome.arrival_times).map(loss).collect();
@@ -35,6 +36,6 @@ impl Probe for Optimum {
 
 /// Tick in which a robot sets out: one that is down at the start does so later.
 fn departure(scenario: &Scenario, robot: &Robot) -> u32 {
-    let mut faults = scenario.faults.iter().filter(|fault| fault.robot == robot.id && fault.from_tick == 0);
+    let mut faults = scenario.events.faults.iter().filter(|fault| fault.robot == robot.id && fault.from_tick == 0);
     faults.next().map_or(0, |fault| fault.to_tick)
 }

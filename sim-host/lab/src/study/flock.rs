@@ -187,7 +187,7 @@ impl Run {
     /// Names the field that is wrong.
     pub fn read(given: &Given<'_>, parameters: Parameters) -> Result<Self, SweepError> {
         let mut scenario = given.scenario()?;
-        let Some(plane) = scenario.plane.as_mut().filter(|plane| plane.torus_m.is_none()) else {
+        let Some(plane) = scenario.plane_mut().filter(|plane| plane.torus_m.is_none()) else {
             return Err(given.error("knows", "the scenario has no open plane", "name a scenario in the plane"));
         };
         if parameters.deviation_m != [0.0; 3] {
@@ -228,7 +228,7 @@ impl Run {
         }
         let run = Self { scenario, parameters };
         if run.parameters.knows == Knowledge::All
-            && run.scenario.plane.as_ref().and_then(|plane| Crowd::new(&run, plane)).is_none()
+            && run.scenario.plane().and_then(|plane| Crowd::new(&run, plane)).is_none()
         {
             let what = "exact knowledge is for one alpha flock, or goal flock behind push-out, among balls";
             return Err(given.error("knows", what, "give \"packets\""));
@@ -241,7 +241,7 @@ impl Run {
     /// # Errors
     /// The robots cannot be placed, or leave the world.
     pub fn simulate(&self, each: &mut engine::Watch<'_>) -> Result<Outcome, String> {
-        let exact = self.scenario.plane.as_ref().filter(|_| self.parameters.knows == Knowledge::All);
+        let exact = self.scenario.plane().filter(|_| self.parameters.knows == Knowledge::All);
         match exact.and_then(|plane| Crowd::new(self, plane)) {
             Some(crowd) => crowd.simulate(&self.scenario, each),
             None => engine::simulate_with(&self.scenario, None, each)

@@ -98,31 +98,31 @@ impl Trip {
         let Parameters { radius, visits, learned, parked } = given.parameters()?;
         let maker = maker(given, visits, learned)?;
         let scenario = given.scenario()?;
-        if scenario.plane.is_some() || scenario.robots.len() != 1 {
+        if scenario.plane().is_some() || scenario.robots.len() != 1 {
             let what = "the scenario is not about one robot on the grid";
             return Err(given.error("radius", what, "name one whose robots.list has one element"));
         }
-        let radius = radius.unwrap_or(scenario.route.params.radius);
+        let radius = radius.unwrap_or(scenario.laws.route.params.radius);
         if !(1..=MAX_RADIUS).contains(&radius) {
             let what = format!("a window of radius {radius} is out of range");
             return Err(given.error("radius", what, format!("give 1 to {MAX_RADIUS} cells")));
         }
-        let cells = scenario.terrain.cells().len();
+        let cells = scenario.land.terrain.cells().len();
         if parked as usize > cells / 2 {
             let what = format!("{parked} parked robots on {cells} cells");
             return Err(given.error("parked", what, "take at most half of the cells"));
         }
-        let params = RouteParams { radius, ..scenario.route.params };
+        let params = RouteParams { radius, ..scenario.laws.route.params };
         let parked = park(&scenario, parked, given.seed);
         Ok(Self { scenario, params, parked, maker })
     }
 
     fn walk(&self) -> (Walk, Box<dyn Walks>, Option<optimal::Route>) {
         let Self { scenario, params, parked, maker } = self;
-        let (land, from, to) = (&scenario.terrain, scenario.robots[0].start, scenario.robots[0].goal);
+        let (land, from, to) = (&scenario.land.terrain, scenario.robots[0].start, scenario.robots[0].goal);
         let mut walker = maker();
-        let order = (scenario.route.sharpness, &mut Rng::keyed(scenario.seed, MOVES, 0, 0));
-        let walk = walker.walk(&Task { land, parked, from, to }, params, scenario.route.replan, order);
+        let order = (scenario.laws.route.sharpness, &mut Rng::keyed(scenario.seed, MOVES, 0, 0));
+        let walk = walker.walk(&Task { land, parked, from, to }, params, scenario.laws.route.replan, order);
         (walk, walker, optimal::route(land, from, to, params.norm, params.corner_cutting))
     }
 
@@ -131,7 +131,7 @@ impl Trip {
         let best = best.map(|route| (route.cost as f64, route.length(self.params.norm) as f64));
         let is_there = |value: f64| walk.arrived.then_some(value);
         let excess = is_there(walk.length as f64).zip(best).map(|(ours, (_, best))| percent(ours, best));
-        let Metrics { entropy, total_edge, total_edge_density, .. } = Metrics::of(&self.scenario.terrain);
+        let Metrics { entropy, total_edge, total_edge_density, .. } = Metrics::of(&self.scenario.land.terrain);
         Measured::of([
             ("arrived", Some(f64::from(walk.arrived))),
             ("loss_percent", is_there(walk.cost as f64).zip(best).map(|(ours, (best, _))| percent(ours, best))),
@@ -155,7 +155,7 @@ impl Trip {
         const LEFT: f64 = 20.0;
         const TOP: f64 = 100.0;
         let (walk, walker, best) = self.walk();
-        let land = &self.scenario.terrain;
+        let land = &self.scenario.land.terrain;
         let map = Map::of_scale(land, [LEFT, TOP], SIDE / f64::from(land.width().max(land.height())));
         let (cell, area) = (map.cell, map.area);
         let centre = |at: &Cell| map.place_cells([f64::from(at.x) + 0.5, f64::from(at.y) + 0.5]);
@@ -213,7 +213,7 @@ impl Trip {
 
 /// Cells of parked robots, in ascending order.
 fn park(scenario: &Scenario, count: u32, seed: u64) -> Vec<Cell> {
-    let (land, robot) = (&scenario.terrain, &scenario.robots[0]);
+    let (land, robot) = (&scenario.land.terrain, &scenario.robots[0]);
     let mut rng = Rng::keyed(seed, PARKED, 0, 0);
     let mut cells = BTreeSet::new();
     while cells.len() < count as usize {

@@ -178,7 +178,7 @@ impl CostFunction for Cost<'_> {
 /// Time straight from the middle of the starts to where robots have gathered, K1 and R_MinDist;
 /// `None` without a goal flock.
 fn way(scenario: &Scenario) -> Option<(f64, f64, f64)> {
-    let plane = scenario.plane.as_ref()?;
+    let plane = scenario.plane()?;
     let GuidanceSetup::GoalFlock { arrival_m, params, .. } = &plane.general.guidance else { return None };
     let mean =
         |places: &[[f64; 3]], axis: usize| places.iter().map(|place| place[axis]).sum::<f64>() / places.len() as f64;

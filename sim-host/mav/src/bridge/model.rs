@@ -27,15 +27,15 @@ pub struct VehicleModel {
 impl VehicleModel {
     /// Describes the vehicles of `scenario`.
     pub fn new(scenario: &Scenario, origin: Origin) -> Self {
-        let on_grid = scenario.plane.is_none();
-        let plane = scenario.plane.as_ref();
+        let on_grid = scenario.plane().is_none();
+        let plane = scenario.plane();
         let largest = |of: fn(&RobotGroup) -> f64| {
             let groups = plane.into_iter().flat_map(PlaneSetup::kinds);
             groups.map(of).fold(0.0, f64::max) as f32
         };
         Self {
             flies: plane.is_some_and(|plane| plane.kinds().any(|group| group.safety.kind() == SafetyKind::Fly)),
-            grid: on_grid.then(|| scenario.terrain.clone()),
+            grid: on_grid.then(|| scenario.land.terrain.clone()),
             in_formation: on_grid && !scenario.formations.is_empty(),
             max_speed_mps: largest(|group| group.abilities.max_speed_mps),
             radius_m: largest(|group| group.radius_m),

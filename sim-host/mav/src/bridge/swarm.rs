@@ -116,7 +116,7 @@ impl Swarm {
         };
         let vehicles = numbers.into_iter().enumerate().map(vehicle).collect();
         let lines = Lines::open(&options.mavlink)?;
-        let create = |path: &PathBuf| Tlog::create(path, &mut Files::reading(&scenario.files));
+        let create = |path: &PathBuf| Tlog::create(path, &mut Files::reading(&scenario.origin.files));
         let log = options.tlog.as_ref().map(create).transpose()?;
         let listing = Budget::per_second(parameters_per_s(&options.mavlink));
         Ok(Self {

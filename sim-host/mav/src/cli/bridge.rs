@@ -57,7 +57,7 @@ impl BridgeArgs {
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let overrides = Overrides { seed: self.seed, ticks: None };
         let mut scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
-        scenario.files.extend(self.key.clone());
+        scenario.origin.files.extend(self.key.clone());
         for remark in scenario.remarks() {
             say(&remark);
         }

@@ -42,7 +42,7 @@ impl CompanionArgs {
         let mut config = Config::load(&self.config)?;
         config.key = self.key.clone().or(config.key);
         config.link_key = self.link_key.clone().or(config.link_key);
-        let inputs = config.scenario.files.iter().chain(&config.key).chain(&config.link_key);
+        let inputs = config.scenario.origin.files.iter().chain(&config.key).chain(&config.link_key);
         let mut files = Files::reading(inputs);
         let tlog = self.tlog.as_deref().map(|path| Tlog::create(path, &mut files)).transpose()?;
         let stop = Stop::on_ctrl_c()?;

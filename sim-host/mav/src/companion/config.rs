@@ -128,7 +128,7 @@ pub struct VehicleSetup {
 pub struct Config {
     /// The scenario, with geographic goals converted to metres.
     pub scenario: Scenario,
-    /// The bodies: `scenario.plane`, with a lag of at least `rules.lag_s`.
+    /// The bodies: `scenario.plane()`, with a lag of at least `rules.lag_s`.
     pub plane: PlaneSetup,
     /// Geographic position of the scenario's (0, 0).
     pub origin: Origin,
@@ -174,21 +174,21 @@ impl Config {
         check_rules(&source, &file.rules)?;
         let mut scenario = Scenario::load(&source.file(&file.scenario), &Overrides::default())?;
         // A vehicle with an uncertain position adds the error to its radius, and may jump later.
-        scenario.plausibility.max_radius_m += file.rules.error_m as f32;
-        scenario.plausibility.slack_m += file.rules.error_m as f32;
-        if let Some(plane) = &mut scenario.plane {
+        scenario.trust.plausibility.max_radius_m += file.rules.error_m as f32;
+        scenario.trust.plausibility.slack_m += file.rules.error_m as f32;
+        if let Some(plane) = scenario.plane_mut() {
             let groups = core::iter::once(&mut plane.general).chain(&mut plane.groups);
             groups.for_each(|group| group.raise_lag(file.rules.lag_s));
         }
         check_scenario(&source, &scenario)?;
         let air = air(&source, &file.air)?;
         let (lines, vehicles) = vehicles(&source, &file, &origin, &mut scenario)?;
-        let Some(plane) = scenario.plane.clone() else {
+        let Some(plane) = scenario.plane().cloned() else {
             return Err(no_plane(&source));
         };
         let beside = |path: &PathBuf| source.file(path);
         let (key, link_key) = (file.air.key.as_ref().map(beside), file.link_key.as_ref().map(beside));
-        scenario.files.extend(source.files());
+        scenario.origin.files.extend(source.files());
         Ok(Self {
             scenario,
             plane,
@@ -211,11 +211,11 @@ fn no_plane(source: &Source<'_>) -> ScenarioError {
 }
 
 fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
-    let Some(plane) = &scenario.plane else {
+    let Some(plane) = scenario.plane() else {
         return Err(no_plane(source));
     };
     let tick = format!("its tick of {} s is too long for vehicles", scenario.tick_s());
-    let radius = format!("route.radius {} is too large", scenario.route.params.radius);
+    let radius = format!("route.radius {} is too large", scenario.laws.route.params.radius);
     let faults: [(bool, &str, &str); 6] = [
         (scenario.tick_us > 500_000, &tick, "give it tick_s = 0.5 or less; 0.1 is good"),
         (
@@ -229,8 +229,8 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
             "remove it; intruders are simulated only",
         ),
         (plane.torus_m.is_some(), "plane.torus_m is not supported on real vehicles", "remove plane.torus_m"),
-        (scenario.sensing.is_some(), "autopilots report no detections of other vehicles", "remove plane.sensing"),
-        (scenario.route.params.radius > RADIUS, &radius, "give 16 or less"),
+        (scenario.sensing().is_some(), "autopilots report no detections of other vehicles", "remove plane.sensing"),
+        (scenario.laws.route.params.radius > RADIUS, &radius, "give 16 or less"),
     ];
     match faults.into_iter().find(|(is_wrong, ..)| *is_wrong) {
         Some((_, what, remedy)) => Err(source.error("scenario", what, remedy)),
@@ -369,7 +369,7 @@ fn assign_goal(
 ) -> Result<(), [&'static str; 2]> {
     let place = origin.to_enu_m(&Global { latitude_deg, longitude_deg, altitude_m: origin.place().altitude_m });
     let [x, y, _] = place.ok_or(["not a position near the origin", "give [latitude, longitude] in degrees"])?;
-    let plane = scenario.plane.as_mut();
+    let plane = scenario.plane_mut();
     let target = plane.filter(|plane| plane.group(index).guidance.kind() == GuidanceKind::Waypoint);
     let target = target.and_then(|plane| plane.starts.get_mut(index)?.places.last_mut());
     let target = target.ok_or([

@@ -50,13 +50,13 @@ impl<W: Wire> Controller<W> {
     /// companion died keeps moving for a while.
     pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, error_m: f64, wire: W) -> Self {
         let (config, task) = ground.setup(index, 0);
-        let config = AgentConfig { boot, seed: scenario.seed, plausibility: scenario.plausibility, ..config };
+        let config = AgentConfig { boot, seed: scenario.seed, plausibility: scenario.trust.plausibility, ..config };
         // No operator sends goals here, so speed and tolerance are unused.
         let law = Guided::new(scenario.guidance(index).law(()), 0.0, 0.0);
         let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).safety(), wire));
         // A law that takes no task refuses it; the scenario was validated for that.
         let _ = agent.assign(&task);
-        let plane = scenario.plane.as_ref();
+        let plane = scenario.plane();
         let group = plane.map(|plane| plane.group(index));
         let places = plane.and_then(|plane| plane.starts.get(index)).map(|start| &start.places);
         let goal = group.zip(places).and_then(|(group, places)| match group.guidance.kind() {

@@ -16,7 +16,7 @@ use staya_sim::engine::{Agents, AnyGround, Engine, Moment, Outcome, Saves, Watch
 use staya_sim::metrics::{FormationQuality, Member};
 use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
-use staya_sim::scenario::{AttackKind, Intervention, Scenario};
+use staya_sim::scenario::{AttackKind, Intervention, Movement, Scenario};
 use std::time::Instant;
 
 /// A robot at the end: its number, arrival time, mode and cause of waiting.
@@ -65,10 +65,10 @@ pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     if ranks > 1 && scenario.torus_m().is_some() {
         return Err(RankError::Torus { ranks });
     }
-    if ranks > 1 && scenario.sensing.is_some() {
+    if ranks > 1 && scenario.sensing().is_some() {
         return Err(RankError::Sensing { ranks });
     }
-    if scenario.rules.simultaneous {
+    if matches!(&scenario.movement, Movement::Cells(rules) if rules.simultaneous) {
         return Err(RankError::Simultaneous);
     }
     if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
@@ -123,12 +123,12 @@ pub(super) struct Rank<'a> {
 }
 
 fn starts(scenario: &Scenario) -> impl Iterator<Item = [f64; 2]> + '_ {
-    scenario.robots.iter().enumerate().map(|(index, robot)| match &scenario.plane {
+    scenario.robots.iter().enumerate().map(|(index, robot)| match scenario.plane() {
         Some(plane) => {
             let [x, y, _] = plane.starts[index].position_m;
             [x, y]
         }
-        None => scenario.terrain.center_m(robot.start),
+        None => scenario.land.terrain.center_m(robot.start),
     })
 }
 
@@ -258,7 +258,7 @@ impl<'a> Rank<'a> {
     /// An attacker gets a captured robot's keys from that robot's rank.
     fn hand_out_keys(&mut self) -> Result<(), RankError> {
         let tick = self.engine.tick;
-        let attacks = self.scenario.attacks.iter();
+        let attacks = self.scenario.events.attacks.iter();
         let taken = attacks.filter(|attack| attack.kind == AttackKind::Insider && attack.from_tick == tick);
         let taken: Vec<RobotId> = taken.map(|attack| attack.claims).collect();
         if taken.is_empty() {

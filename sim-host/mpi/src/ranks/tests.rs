@@ -2,7 +2,8 @@ use super::*;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::{Moment, Outcome, agents, simulate, simulate_from};
 use staya_sim::record::RobotRow;
-use staya_sim::scenario::{Overrides, Scenario};
+use staya_sim::scenario::{Movement, Overrides, Scenario};
+use staya_sim::world::MoveRules;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
@@ -70,7 +71,7 @@ fn every_scenario(ticks: u32, most: usize, ranks: &[usize]) {
             continue;
         }
         eprintln!("{name}");
-        if scenario.torus_m().is_some() || scenario.sensing.is_some() {
+        if scenario.torus_m().is_some() || scenario.sensing().is_some() {
             let refused = on_ranks(&scenario, 2, &Sharing::default());
             let is_said = |ended: &Result<_, _>| {
                 matches!(ended, Err(RankError::Torus { ranks: 2 } | RankError::Sensing { ranks: 2 }))
@@ -86,7 +87,7 @@ fn every_scenario(ticks: u32, most: usize, ranks: &[usize]) {
 #[test]
 fn robots_that_move_at_once_are_refused() {
     let mut scenario = load("corridor.toml", 20);
-    scenario.rules.simultaneous = true;
+    scenario.movement = Movement::Cells(MoveRules { simultaneous: true, ..MoveRules::default() });
     let ended = on_ranks(&scenario, 1, &Sharing::default());
     assert!(matches!(ended[..], [Err(RankError::Simultaneous)]));
 }

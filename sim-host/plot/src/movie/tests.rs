@@ -57,7 +57,7 @@ fn flyers_above_each_other_are_apart_in_the_picture() {
     let in_space = coloured(&Frames::new(&scenario, &history, 300).unwrap().next(last).unwrap());
     // The ratio of height to width of two rings one above the other; from above it is 1.
     let ratio = |[low, high]: [[f64; 2]; 2]| (high[1] - low[1]) / (high[0] - low[0]);
-    let setup = scenario.plane.as_mut().unwrap();
+    let setup = scenario.plane_mut().unwrap();
     for start in &mut setup.starts {
         start.position_m[2] = 0.0;
         start.places.iter_mut().for_each(|place| place.position_m[2] = 0.0);

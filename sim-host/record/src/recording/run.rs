@@ -41,7 +41,7 @@ impl<W: Sink> RunRecorder<W> {
     /// # Errors
     /// `out` cannot be written.
     pub fn of(scene: Scene, out: W, path: &Path, scenario: &Scenario, every: u32) -> Result<Self, RecordingError> {
-        let interventions = scenario.interventions.iter();
+        let interventions = scenario.events.interventions.iter();
         let mut changes: Vec<u32> =
             interventions.clone().filter(|(_, what)| changes_scene(what)).map(|(tick, _)| *tick).collect();
         changes.sort_unstable_by(|a, b| b.cmp(a));
@@ -54,7 +54,7 @@ impl<W: Sink> RunRecorder<W> {
             every: every.max(1),
             scene,
             changes,
-            rules: scenario.changes.clone(),
+            rules: scenario.land.changes.clone(),
             seen: 0,
             orders,
             minds: Vec::new(),

@@ -46,11 +46,11 @@ impl Attacker {
             AttackKind::Replay | AttackKind::Unsigned => (None, STARTS),
         };
         let index = scenario.robots.binary_search_by_key(&attack.claims, |robot| robot.id);
-        let radius_m = index.ok().zip(scenario.plane.as_ref()).map_or(0.0, |(at, plane)| plane.group(at).radius_m);
+        let radius_m = index.ok().zip(scenario.plane()).map_or(0.0, |(at, plane)| plane.group(at).radius_m);
         Self {
             id: RobotId(u32::MAX - 1 - u32::try_from(number).unwrap_or(u32::MAX / 2)),
             attack: attack.clone(),
-            cell_m: scenario.terrain.cell_m,
+            cell_m: scenario.land.terrain.cell_m,
             last: scenario.usual_claims().last.0,
             radius_mm: libm::round(radius_m * 1000.0) as u16,
             wire: radio::wire(scenario.radio.format, key, starts),

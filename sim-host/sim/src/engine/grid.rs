@@ -8,7 +8,7 @@ use super::state::{Reader, StateError, write};
 use crate::record::Motion;
 use crate::scenario::{Intervention, Robot, Scenario};
 use crate::world::scouts::{Memory, Scouts};
-use crate::world::{Body, Misplaced, Refusal, World};
+use crate::world::{Body, Misplaced, MoveRules, Refusal, World};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AgentConfig, AnyInputs, AnySurroundings, CellState, Command, Inputs, OnGrid, Task};
 use staya_controller::grid::{Cell, Dir, UNIT};
@@ -32,20 +32,20 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Creates the scenario's terrain with the robots at their starts.
+    /// Creates the scenario's terrain with the robots at their starts, and rules of movement.
     ///
     /// # Errors
     /// Two robots start in one cell, or one starts in a wall.
-    pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
+    pub fn new(scenario: &Scenario, rules: MoveRules) -> Result<Self, Misplaced> {
         let starts = scenario.robots.iter().map(|robot| (robot.id, robot.start));
-        let world = World::new(scenario.terrain.clone(), scenario.rules, scenario.seed, starts)?;
+        let world = World::new(scenario.land.terrain.clone(), rules, scenario.seed, starts)?;
         Ok(Self {
             kinematics: Kinematics::new(world.terrain(), scenario.tick_s()),
             robots: scenario.numbered(),
             numbers: (0..scenario.robots.len() as u32).collect(),
             changed: Changed::new(),
             scouts: scenario.scouts(),
-            radius: scenario.route.params.radius,
+            radius: scenario.laws.route.params.radius,
             tick_us: scenario.tick_us,
             world,
         })

@@ -3,7 +3,7 @@
 use super::state::{Reader, StateError};
 use super::{Grid, PlaneGround, Status};
 use crate::record::Motion;
-use crate::scenario::{Intervention, Scenario};
+use crate::scenario::{Intervention, Movement, Scenario};
 use crate::terrain::Terrain;
 use crate::world::plane::{Clearance, Disc, Solid};
 use crate::world::{Misplaced, Refusal};
@@ -145,9 +145,9 @@ impl AnyGround {
     /// # Errors
     /// See [`Grid::new`].
     pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
-        Ok(match &scenario.plane {
-            Some(setup) => Self::Plane(Box::new(PlaneGround::new(scenario, setup))),
-            None => Self::Cells(Box::new(Grid::new(scenario)?)),
+        Ok(match &scenario.movement {
+            Movement::Plane(setup) => Self::Plane(Box::new(PlaneGround::new(scenario, setup))),
+            Movement::Cells(rules) => Self::Cells(Box::new(Grid::new(scenario, *rules)?)),
         })
     }
 }

@@ -58,8 +58,8 @@ fn law_of(setup: &GuidanceSetup, formation: &FormationSetup, map: Map) -> Scenar
 pub fn agents(scenario: &Scenario) -> Agents {
     let kind = |index| (scenario.guidance(index), scenario.safety(index), limits(scenario, index));
     // Members of formations differ individually, others only by group; each kind is created once.
-    let groups = scenario.plane.as_ref().map_or(0, |plane| plane.groups.len());
-    let group_of = |index: usize| match (scenario.formation_of(index), &scenario.plane) {
+    let groups = scenario.plane().map_or(0, |plane| plane.groups.len());
+    let group_of = |index: usize| match (scenario.formation_of(index), scenario.plane()) {
         (Some(_), _) => groups + 1 + index,
         (None, Some(plane)) => plane.starts[index].group.map_or(0, |group| group + 1),
         (None, None) => 0,
@@ -72,8 +72,8 @@ pub fn agents(scenario: &Scenario) -> Agents {
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, formation) = (scenario.maps, scenario.formation_law);
-    let own = scenario.law.as_ref().map(NamedLaw::law);
+    let (maps, formation) = (scenario.laws.maps, scenario.laws.formation);
+    let own = scenario.laws.added.as_ref().map(NamedLaw::law);
     Box::new(move |index| {
         let (guidance, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
@@ -85,7 +85,7 @@ pub fn agents(scenario: &Scenario) -> Agents {
 
 /// Speed and arrival distance of a robot that an operator sends to a waypoint, m/s and metres.
 fn limits(scenario: &Scenario, index: usize) -> [f32; 2] {
-    let group = scenario.plane.as_ref().map(|setup| setup.group(index));
+    let group = scenario.plane().map(|setup| setup.group(index));
     group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32))
 }
 
@@ -112,7 +112,7 @@ fn fits<L: OwnLaw>(scenario: &Scenario) -> Result<(), WrongWorld> {
     let grid = OnGrid { cell: CellState::default(), window: None };
     let plane = InPlane { max_speed_mps: 0.0, obstacles: &[] };
     let in_cell = InCell { offset_m: Vec2::ZERO, cell_m: 1.0 };
-    let (surroundings, wrong) = match &scenario.plane {
+    let (surroundings, wrong) = match scenario.plane() {
         None => (AnySurroundings::OnGrid(grid), WrongWorld::Grid),
         Some(setup) if !setup.has_terrain => (AnySurroundings::InPlane(plane), WrongWorld::Plane),
         Some(_) => (AnySurroundings::InCells(InCells { grid, plane, in_cell }), WrongWorld::Land),

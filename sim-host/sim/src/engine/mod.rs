@@ -218,11 +218,11 @@ impl Engine {
             roster: Roster::new(scenario, agents),
             tick_us: scenario.tick_us,
             tick: 0,
-            faults: scenario.faults.clone(),
-            changes: scenario.changes.clone(),
-            interventions: scenario.interventions.iter().cloned().collect(),
+            faults: scenario.events.faults.clone(),
+            changes: scenario.land.changes.clone(),
+            interventions: scenario.events.interventions.iter().cloned().collect(),
             shapes: scenario.formations.iter().map(Formation::members).collect(),
-            is_mute: scenario.sensing.is_some_and(|sensing| !sensing.has_beacons),
+            is_mute: scenario.sensing().is_some_and(|sensing| !sensing.has_beacons),
             meter: FormationMeters::new(scenario),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids)
                 .on_torus(scenario.torus_m())

@@ -63,7 +63,7 @@ impl PlaneGround {
     #[must_use]
     pub fn new(scenario: &Scenario, setup: &PlaneSetup) -> Self {
         let discs = (0..scenario.robots.len()).map(|number| disc(scenario.robots[number].id, setup, number));
-        let land = setup.has_terrain.then(|| scenario.terrain.clone());
+        let land = setup.has_terrain.then(|| scenario.land.terrain.clone());
         // Beaconing intruders have the ids after the robots' last; silent intruders need none.
         let last = scenario.robots.last().map_or(0, |robot| robot.id.0);
         let mut ids = (last + 1..).map(RobotId);
@@ -81,7 +81,7 @@ impl PlaneGround {
         let plane = plane.with_sight(sights.fold(0.0, f64::max)).in_space(setup.space());
         let is_flat = setup.starts.iter().all(|start| start.position_m[2] == 0.0)
             && setup.kinds().all(|group| group.safety.kind() != SafetyKind::Fly);
-        let sight = scenario.sensing.map(|sensing| {
+        let sight = scenario.sensing().map(|sensing| {
             let mut sight = Sight::new(sensing, scenario.seed, scenario.tick_us, is_flat);
             sight.look(&plane);
             sight
@@ -96,7 +96,7 @@ impl PlaneGround {
             plane,
             robots: scenario.numbered(),
             numbers: (0..scenario.robots.len() as u32).collect(),
-            radius: scenario.route.params.radius,
+            radius: scenario.laws.route.params.radius,
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
             range_m: scenario.radio.range_m.min(FARTHEST_M) as f32,

@@ -38,9 +38,9 @@ impl Roster {
             format: scenario.radio.format,
             key: scenario.key().cloned(),
             master: scenario.key_rotation().map(|keeping| keeping.master.clone()),
-            plausibility: scenario.plausibility,
+            plausibility: scenario.trust.plausibility,
             torus: scenario.torus_m().map(|sides_m| Torus { size_m: sides_m.map(|side_m| side_m as f32) }),
-            tracking: scenario.sensing.map(|sensing| sensing.tracking),
+            tracking: scenario.sensing().map(|sensing| sensing.tracking),
             tuned: Vec::new(),
         }
     }

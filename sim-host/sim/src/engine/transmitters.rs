@@ -14,7 +14,7 @@ use staya_controller::wire::Ring;
 /// The transmitters of a scenario: attackers, then the intruders that send beacons, then the key
 /// server.
 pub(super) fn transmitters(scenario: &Scenario, intruders: &[Disc]) -> Vec<Box<dyn Transmitter>> {
-    let attackers = scenario.attacks.iter().enumerate();
+    let attackers = scenario.events.attacks.iter().enumerate();
     let attackers = attackers.map(|(index, attack)| Box::new(Attacker::new(attack, index, scenario)) as _);
     let heard = intruders.iter().filter(|disc| disc.id.is_some());
     let intruders = heard.map(|disc| Box::new(Intruder::new(disc.id, scenario.radio.format)) as _);

@@ -213,7 +213,7 @@ pub fn in_cells(cell: Cell) -> [f64; 2] {
 /// goal on easy land, with full acceleration and braking. `None` without such a formation.
 #[must_use]
 pub fn free_formation_s(scenario: &Scenario) -> Option<f64> {
-    let plane = scenario.plane.as_ref().filter(|_| !scenario.formations.is_empty())?;
+    let plane = scenario.plane().filter(|_| !scenario.formations.is_empty())?;
     let keeps_one = |(index, _): &(usize, _)| scenario.formation_of(*index).is_some();
     let free = plane.starts.iter().enumerate().filter(keeps_one).filter_map(|(index, start)| {
         let group = plane.group(index);

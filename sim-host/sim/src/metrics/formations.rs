@@ -27,8 +27,9 @@ impl FormationMeters {
     /// Creates meters without measurements; `None` if the scenario has no formation.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
-        let meter =
-            |graph| FormationMeter::new(graph, scenario.formation_law.eps(), &scenario.terrain, scenario.tick_s());
+        let meter = |graph| {
+            FormationMeter::new(graph, scenario.laws.formation.eps(), &scenario.land.terrain, scenario.tick_s())
+        };
         let each: Vec<_> = scenario.formations.iter().map(|graph| (graph.members(), meter(graph))).collect();
         let numbers = scenario.robots.iter().map(|robot| robot.id.0).collect();
         (!each.is_empty()).then_some(Self { each, numbers })

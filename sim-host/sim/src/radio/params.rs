@@ -24,7 +24,7 @@ table! {
         /// Wire format: `postcard` (Staya's frames) or `mavlink` (MAVLink 2, ids up to 254).
         pub format: Format = Format::Postcard;
         /// Farthest distance at which a packet can be received, metres; `inf` for unlimited range.
-        pub range_m: f64 = 100.0;
+        pub range_m: f64 = 100.0, 0.0..=f64::INFINITY, "metres";
         /// Probability that a receiver loses a packet, 0 to 1.
         pub loss: f64 = 0.0, 0.0..=1.0, "probability";
         /// Bursts of loss, in addition to `loss`.

@@ -1,8 +1,8 @@
 //! `[authentication]` and `[[attack]]`: the swarm's key, and attackers.
 
-use super::source::Source;
+use super::source::Checked;
 use super::{
-    Attack, AttackKind, AttackTable, AuthenticationTable, KeyRotation, Lie, Robot, Roll, ScenarioError, ScenarioFile,
+    Attack, AttackKind, AttackTable, AuthenticationTable, Draft, KeyRotation, Lie, Robot, Roll, Secret, check,
 };
 use crate::key::{self, KeyFile};
 use crate::radio::PEERS;
@@ -11,56 +11,6 @@ use staya_controller::robot::RobotId;
 use staya_controller::wire::Format;
 use staya_mavlink::any::max_robot;
 use std::path::Path;
-
-pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<Option<Keys>, ScenarioError> {
-    let Some(table) = &file.authentication else {
-        return Ok(None);
-    };
-    let from_file = |field: &str, name: &Path| {
-        let read = KeyFile::read(&source.file(name)).map_err(|error| {
-            let remedy = "file names are relative to the scenario file";
-            source.error(&format!("authentication.{field}"), error.to_string(), remedy)
-        })?;
-        Ok((read.key, read.remark))
-    };
-    let from_text = |field: &str, text: &str| {
-        let key = key::parse(text).map_err(|(_, problem)| {
-            let remedy = "give 64 hexadecimal digits, or \"passphrase: \" and words";
-            source.error(&format!("authentication.{field}"), problem, remedy)
-        })?;
-        Ok((key, None))
-    };
-    let (found, has_master) = match (&table.key_file, &table.key, &table.master_file, &table.master) {
-        (Some(name), None, None, None) => (from_file("key_file", name)?, false),
-        (None, Some(text), None, None) => (from_text("key", text)?, false),
-        (None, None, Some(name), None) => (from_file("master_file", name)?, true),
-        (None, None, None, Some(text)) => (from_text("master", text)?, true),
-        _ => {
-            let remedy = "give exactly one of key_file, key, master_file, master";
-            return Err(source.error("authentication", "it is not clear which key is meant", remedy));
-        }
-    };
-    let keeping = if has_master { Some(keeping(source, file, table, robots, &found.0)?) } else { None };
-    if keeping.is_none() && (!table.roll.is_empty() || table.overlap_s.is_some() || table.place_m.is_some()) {
-        let remedy = "give master_file or master, or leave roll, overlap_s and place_m out";
-        return Err(source.error("authentication", "only robots with a master key receive new keys", remedy));
-    }
-    // The operators take two more entries of the peer table.
-    if robots.len() + 2 > PEERS {
-        let problem = format!("{} robots do not fit into a robot's table of peers", robots.len());
-        let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
-        return Err(source.error("authentication", problem, remedy));
-    }
-    let most = max_robot(file.radio.format, true);
-    if let Some(robot) = robots.iter().find(|robot| robot.id > most) {
-        let problem = format!("robot {} has no number in frames with a tag", robot.id.0);
-        let remedy = format!("give numbers up to {}", most.0);
-        return Err(source.error("authentication", problem, remedy));
-    }
-    let (key, remark) = found;
-    let key = if has_master { Master::new(&key).seed(0).key(0) } else { key };
-    Ok(Some(Keys { key, remark, rotation: keeping }))
-}
 
 /// The keys of a swarm whose beacons are authenticated.
 #[derive(Clone, Debug)]
@@ -73,114 +23,113 @@ pub struct Keys {
     pub remark: Option<String>,
 }
 
-fn keeping(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    table: &AuthenticationTable,
-    robots: &[Robot],
-    master: &Key,
-) -> Result<KeyRotation, ScenarioError> {
-    if file.radio.format != Format::Postcard {
-        let remedy = "give radio.format = \"postcard\", or a key instead of a master";
-        return Err(source.error("authentication.master", "MAVLink's signatures have one key", remedy));
+pub(super) fn key(draft: &Draft<'_>, robots: &[Robot]) -> Checked<Option<Keys>> {
+    let Some(table) = &draft.file.authentication else { return Ok(None) };
+    let at = draft.at("authentication");
+    let from_file = |field: &str, name: &Path| {
+        let read = KeyFile::read(&draft.source.file(name))
+            .map_err(|error| at.error(field, error.to_string(), "file names are relative to the scenario file"))?;
+        Ok((read.key, read.remark))
+    };
+    let from_text = |field: &str, text: &str| {
+        let key = key::parse(text).map_err(|(_, problem)| {
+            at.error(field, problem, "give 64 hexadecimal digits, or \"passphrase: \" and words")
+        })?;
+        Ok((key, None))
+    };
+    let (secret, remark) = match &table.secret {
+        Secret::KeyFile(name) => from_file("key_file", name),
+        Secret::Key(text) => from_text("key", text),
+        Secret::MasterFile(name) => from_file("master_file", name),
+        Secret::Master(text) => from_text("master", text),
+    }?;
+    let (key, rotation) = if let Secret::Key(_) | Secret::KeyFile(_) = table.secret {
+        let is_fixed = table.roll.is_empty() && table.overlap_s.is_none() && table.place_m.is_none();
+        let remedy = "give master_file or master, or leave roll, overlap_s and place_m out";
+        let what = "only robots with a master key receive new keys";
+        draft.require(is_fixed, "authentication", what, remedy)?;
+        (secret, None)
+    } else {
+        (Master::new(&secret).seed(0).key(0), Some(rotation(draft, table, robots, secret)?))
+    };
+    // The operators take two more entries of the peer table.
+    let what = format!("{} robots do not fit into a robot's table of peers", robots.len());
+    let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
+    draft.require(robots.len() + 2 <= PEERS, "authentication", what, remedy)?;
+    let most = max_robot(draft.file.radio.format, true);
+    if let Some(robot) = robots.iter().find(|robot| robot.id > most) {
+        let problem = format!("robot {} has no number in frames with a tag", robot.id.0);
+        return Err(draft.error("authentication", problem, format!("give numbers up to {}", most.0)));
     }
-    if file.plane.as_ref().is_some_and(|plane| !plane.order.is_empty()) {
-        let remedy = "give each robot its goal by [[intervention]], or a key instead of a master";
-        return Err(source.error("plane.order", "robots with keys of their own take no order to all", remedy));
-    }
-    let place_m = table.place_m.unwrap_or_default();
-    let ticks = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
+    Ok(Some(Keys { key, remark, rotation }))
+}
+
+fn rotation(draft: &Draft<'_>, table: &AuthenticationTable, robots: &[Robot], master: Key) -> Checked<KeyRotation> {
+    let (has_keys, remedy) =
+        (draft.file.radio.format == Format::Postcard, "give radio.format = \"postcard\", or a key instead of a master");
+    draft.require(has_keys, "authentication.master", "MAVLink's signatures have one key", remedy)?;
+    let has_orders = draft.file.plane.as_ref().is_some_and(|plane| !plane.order.is_empty());
+    let remedy = "give each robot its goal by [[intervention]], or a key instead of a master";
+    draft.require(!has_orders, "plane.order", "robots with keys of their own take no order to all", remedy)?;
     let mut rolls = Vec::new();
     for (index, roll) in table.roll.iter().enumerate() {
-        let revoke: Vec<_> = roll.revoke.iter().map(|&number| RobotId(number)).collect();
-        let stranger = revoke.iter().find(|id| robots.binary_search_by_key(*id, |robot| robot.id).is_err());
-        if let Some(stranger) = stranger {
-            let field = format!("authentication.roll[{index}].revoke");
-            let remedy = "give numbers of robots of this scenario";
-            return Err(source.error(&field, format!("there is no robot {stranger}"), remedy));
-        }
-        rolls.push(Roll { tick: ticks(roll.at_s), revoke });
+        let field = format!("authentication.roll[{index}].revoke");
+        let revoke = roll.revoke.iter().map(|&id| check::known(draft, robots, &field, id)).collect::<Checked<_>>()?;
+        rolls.push(Roll { tick: draft.tick(roll.at_s), revoke });
     }
     rolls.sort_by_key(|roll| roll.tick);
-    let overlap_ticks = ticks(table.overlap_s.unwrap_or(5.0));
-    Ok(KeyRotation { master: master.clone(), place_m, overlap_ticks, rolls })
+    let overlap_ticks = draft.tick(table.overlap_s.unwrap_or(5.0));
+    let place_m = table.place_m.unwrap_or_default();
+    Ok(KeyRotation { master, place_m, overlap_ticks, rolls })
 }
 
-pub(super) fn attacks(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    robots: &[Robot],
-) -> Result<Vec<Attack>, ScenarioError> {
-    let tables = file.attack.iter().enumerate();
-    tables.map(|(index, table)| attack(source, file, robots, table, &format!("attack[{index}]"))).collect()
+pub(super) fn attacks(draft: &Draft<'_>, robots: &[Robot]) -> Checked<Vec<Attack>> {
+    let tables = draft.file.attack.iter().enumerate();
+    tables.map(|(index, table)| attack(draft, robots, table, index)).collect()
 }
 
-fn attack(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    robots: &[Robot],
-    table: &AttackTable,
-    field: &str,
-) -> Result<Attack, ScenarioError> {
-    let is_insider = table.kind == AttackKind::Insider;
-    if is_insider == table.lies.is_empty() {
-        let remedy = "give lies, one or more of \"orders\", \"radius\", \"speed\", \"jump\", \"ghosts\", or another kind without lies";
-        return Err(source.error(field, "kind = \"insider\" requires lies, and no other kind has them", remedy));
-    }
+fn attack(draft: &Draft<'_>, robots: &[Robot], table: &AttackTable, index: usize) -> Checked<Attack> {
+    let at = draft.at(format!("attack[{index}]"));
+    let unless = |holds: bool, what: &str, remedy: &str| if holds { Err(at.unfit(what, remedy)) } else { Ok(()) };
+    let (is_insider, is_replay) = (table.kind == AttackKind::Insider, table.kind == AttackKind::Replay);
+    let what = "kind = \"insider\" requires lies, and no other kind has them";
+    let remedy = "give lies, one or more of \"orders\", \"radius\", \"speed\", \"jump\", \"ghosts\", or another \
+                  kind without lies";
+    unless(is_insider == table.lies.is_empty(), what, remedy)?;
     let has_ghosts = table.lies.contains(&Lie::Ghosts);
-    if table.ghosts.is_some() && !has_ghosts {
-        let what = "lies does not contain \"ghosts\"";
-        return Err(source.error(&format!("{field}.ghosts"), what, "give lies = [\"ghosts\"], or leave it out"));
-    }
-    let ghosts = table.ghosts.unwrap_or(16);
-    let lure_m = match (table.kind, table.lure_m, table.delay_s) {
-        (AttackKind::Replay, None, _) => [0.0; 2],
-        (AttackKind::Forge | AttackKind::Unsigned | AttackKind::Insider, Some(lure_m), None) => lure_m,
-        (AttackKind::Replay, Some(_), _) => {
-            let remedy = "leave lure_m out, or choose another kind";
-            return Err(source.error(field, "a replay says what others have said", remedy));
-        }
-        (_, None, _) => {
-            let remedy = "give lure_m, metres";
-            return Err(source.error(field, "it does not say where it orders the robots to", remedy));
-        }
-        (_, _, Some(_)) => {
-            let remedy = "leave delay_s out, or give kind = \"replay\"";
-            return Err(source.error(field, "only a replay has a delay", remedy));
-        }
-    };
-    let tick = |seconds: f64| libm::ceil(seconds / file.tick_s) as u32;
+    let remedy = "give lies = [\"ghosts\"], or leave it out";
+    at.require(has_ghosts || table.ghosts.is_none(), "ghosts", "lies does not contain \"ghosts\"", remedy)?;
+    let ghosts = if has_ghosts { table.ghosts.unwrap_or(16) } else { 0 };
+    let remedy = "leave lure_m out, or choose another kind";
+    unless(is_replay && table.lure_m.is_some(), "a replay says what others have said", remedy)?;
+    let what = "it does not say where it orders the robots to";
+    unless(!is_replay && table.lure_m.is_none(), what, "give lure_m, metres")?;
+    let remedy = "leave delay_s out, or give kind = \"replay\"";
+    unless(!is_replay && table.delay_s.is_some(), "only a replay has a delay", remedy)?;
     let last = robots.last().map_or(RobotId(1), |robot| robot.id);
     let claims = table.claims.map_or(last, RobotId);
-    let most = max_robot(file.radio.format, true);
-    if !claims.is_some() || claims > most {
-        let remedy = format!("give 1 to {}", most.0);
-        return Err(source.error(&format!("{field}.claims"), format!("{claims} is not a valid robot number"), remedy));
+    let most = max_robot(draft.file.radio.format, true);
+    let (what, remedy) = (format!("{claims} is not a valid robot number"), format!("give 1 to {}", most.0));
+    at.require(claims.is_some() && claims <= most, "claims", what, remedy)?;
+    if is_insider {
+        check::known(draft, robots, &at.field("claims"), claims.0)?;
     }
-    if is_insider && robots.binary_search_by_key(&claims, |robot| robot.id).is_err() {
-        let remedy = "give the number of a robot of this scenario";
-        return Err(source.error(&format!("{field}.claims"), format!("there is no robot {claims} to take"), remedy));
-    }
-    if has_ghosts && claims.0.max(last.0) + u32::from(ghosts) > most.0 {
-        let remedy = format!("give fewer; numbers end at {}", most.0);
-        let what = format!("there are not enough robot numbers for {ghosts} ghosts");
-        return Err(source.error(&format!("{field}.ghosts"), what, remedy));
-    }
-    let from_tick = tick(table.from_s);
-    let to_tick = table.to_s.map_or(u32::MAX, tick);
-    if to_tick <= from_tick {
-        let remedy = "give a tick or more after from_s";
-        return Err(source.error(&format!("{field}.to_s"), "the attack is over before its first tick", remedy));
-    }
+    let what = format!("there are not enough robot numbers for {ghosts} ghosts");
+    let are_free = !has_ghosts || claims.0.max(last.0) + u32::from(ghosts) <= most.0;
+    at.require(are_free, "ghosts", what, format!("give fewer; numbers end at {}", most.0))?;
+    let from_tick = draft.tick(table.from_s);
+    let to_tick = table.to_s.map_or(u32::MAX, |to_s| draft.tick(to_s));
+    let what = "the attack is over before its first tick";
+    at.require(to_tick > from_tick, "to_s", what, "give a tick or more after from_s")?;
     Ok(Attack {
         kind: table.kind,
         place_m: table.place_m,
         from_tick,
         to_tick,
-        lure_m,
+        lure_m: table.lure_m.unwrap_or_default(),
         claims,
-        delay_ticks: tick(table.delay_s.unwrap_or(10.0)),
+        delay_ticks: draft.tick(table.delay_s.unwrap_or(10.0)),
         lies: table.lies.clone(),
-        ghosts: if has_ghosts { ghosts } else { 0 },
+        ghosts,
     })
 }

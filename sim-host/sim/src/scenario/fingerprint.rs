@@ -1,6 +1,6 @@
 //! A hash of everything that determines a run.
 
-use super::{FormationSetup, KeyRotation, Scenario, Scouting};
+use super::{KeyRotation, Land, Scenario, Scouting, Trust};
 use staya_controller::auth::Key;
 use std::fmt::{self, Debug, Write as _};
 
@@ -40,63 +40,25 @@ impl Scenario {
             name: _,
             seed,
             ticks: _,
-            files: _,
             tick_us,
-            terrain,
-            changes,
-            scouting,
-            rules,
+            land: Land { terrain, changes, scouting },
             radio,
             robots,
             formations,
-            parts: _,
-            plane,
-            law,
-            route,
-            maps,
-            formation_law,
-            sensing,
-            faults,
-            interventions,
-            misnumbered,
-            keys,
-            plausibility,
-            attacks,
-            parameters: _,
+            movement,
+            laws,
+            trust: Trust { misnumbered, keys, plausibility },
+            events,
+            origin: _,
         } = self;
         let mut all = Fingerprint(0xCBF2_9CE4_8422_2325);
         all.mix(terrain.cells());
-        all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m));
-        let published = match formation_law {
-            FormationSetup::Published(params) => Some(params),
-            _ => None,
-        };
-        let formation = formation_law.params();
-        all.add(&(seed, tick_us, rules, radio, robots, formations.first(), plane, route, formation, published));
-        all.add(&(faults, interventions, misnumbered, plausibility, attacks));
-        if !changes.is_empty() {
-            all.add(changes);
-        }
-        if formations.len() > 1 {
-            all.add(formations);
-        }
+        all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m, changes));
         if let Some(Scouting { map, sight }) = scouting {
             all.mix(map.cells());
             all.add(sight);
         }
-        // Hashed only if set, so that fingerprints of scenarios without these features are stable.
-        if let Some(law) = law {
-            all.add(law);
-        }
-        if matches!(formation_law, FormationSetup::Lookahead(_)) {
-            all.add(&true);
-        }
-        if let Some(maps) = maps {
-            all.add(maps);
-        }
-        if let Some(sensing) = sensing {
-            all.add(sensing);
-        }
+        all.add(&(seed, tick_us, radio, robots, formations, movement, laws, events, misnumbered, plausibility));
         // `Debug` output hides secrets.
         let rotation = keys.as_ref().and_then(|keys| keys.rotation.as_ref());
         all.key(keys.as_ref().map(|keys| &keys.key));

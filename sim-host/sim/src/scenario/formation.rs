@@ -1,12 +1,24 @@
 //! Fields of a formation, shared by `[robots]` and `[plane]`.
 
 use super::{Line, Node, Read, Wrong};
-use crate::table;
+use crate::{one_of, table};
 use toml::de::DeValue;
+
+one_of! {
+    /// Starts of a formation.
+    pub enum FormationStarts {
+        /// Cell where robot 1, the top leader, starts; the others start at their places around it.
+        First([i16; 2]) = "start";
+        /// Instead of `start`: the start cell of each robot, by number. The formation forms on the
+        /// way.
+        All(Vec<[i16; 2]>) = "starts";
+    }
+}
 
 table! {
     /// `robots.formation`: robots 1, 2, 3, ... in rows, or at given places.
     pub struct FormationEntry {
+        part starts: FormationStarts;
         /// Rows of a grid, numbered row by row; neighbours in a row or a column share an edge.
         pub rows: Option<u16>;
         /// Robots in a row.
@@ -17,11 +29,6 @@ table! {
         pub places: Option<Vec<[i16; 2]>>;
         /// With `places`: pairs of robot numbers that are neighbours in the formation's graph.
         pub edges: Option<Vec<[u32; 2]>>;
-        /// Cell where robot 1, the top leader, starts; the others start at their places around it.
-        pub start: Option<[i16; 2]>;
-        /// Instead of `start`: the start cell of each robot, by number. The formation forms on the
-        /// way.
-        pub starts: Option<Vec<[i16; 2]>>;
         /// Goal cell of robot 1; the others go to their places around it.
         pub goal: [i16; 2];
     }

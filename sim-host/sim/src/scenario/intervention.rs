@@ -1,9 +1,9 @@
 //! Interventions: changes to a running simulation, made by hand in the viewer or listed as
 //! `[[intervention]]` in a scenario.
 
-use super::ranges::{micros, short};
-use super::source::{ScenarioError, Source};
-use super::{Robot, Scenario, ScenarioFile, nearest};
+use super::ranges::short;
+use super::source::Checked;
+use super::{Draft, Robot, Scenario, nearest};
 use crate::world::Refusal;
 use crate::world::plane::{FAR_M, Shape};
 use crate::{kinds, table};
@@ -131,13 +131,16 @@ impl Intervention {
             let what = format!("there is no robot {number}");
             return Err(Refusal::new("robot", what, "give the number of a robot of this scenario"));
         }
+        let require = |holds: bool, field, what: &dyn Fn() -> String, remedy: &str| {
+            if holds { Ok(()) } else { Err(Refusal::new(field, what(), remedy)) }
+        };
+        let is_near = |x: &f64| x.abs() <= FAR_M;
+        let out_of_range = |value: f64| format!("{} is out of range", short(value));
+        let metres = format!("give metres within {FAR_M}");
         match self {
             Self::Goal { place_m, .. } | Self::Waypoint { place_m, .. } => {
-                let is_far = |x: &f64| x.is_nan() || x.abs() > FAR_M;
-                if place_m.iter().any(is_far) {
-                    let remedy = format!("give metres within {FAR_M}");
-                    return Err(Refusal::new("place_m", "a coordinate is out of range", remedy));
-                }
+                let what = || "a coordinate is out of range".to_owned();
+                require(place_m.iter().all(is_near), "place_m", &what, &metres)
             }
             Self::Parameter { name, value, .. } => {
                 let Some(row) = parameters().find(|row| row.name == name) else {
@@ -148,62 +151,40 @@ impl Intervention {
                     return Err(Refusal::new("name", format!("unknown value `{name}`"), remedy));
                 };
                 let [least, greatest] = row.range;
-                if !(least..=greatest).contains(value) {
-                    let what = format!("{} is out of range", short((*value).into()));
-                    return Err(Refusal::new("value", what, format!("give {least} to {greatest}")));
-                }
+                let (is_in, remedy) = ((least..=greatest).contains(value), format!("give {least} to {greatest}"));
+                require(is_in, "value", &|| out_of_range((*value).into()), &remedy)
             }
-            Self::Down { for_s: Some(for_s), .. } if !(0.0..=1e9).contains(for_s) => {
-                return Err(Refusal::new(
-                    "for_s",
-                    format!("{} is out of range", short(*for_s)),
-                    "give seconds, 0 to 1e9",
-                ));
+            Self::Down { for_s, .. } => {
+                let for_s = for_s.unwrap_or_default();
+                let is_time = (0.0..=1e9).contains(&for_s);
+                require(is_time, "for_s", &|| out_of_range(for_s), "give seconds, 0 to 1e9")
             }
-            Self::Radio { loss: Some(loss), .. } if !(0.0..=1.0).contains(loss) => {
-                let what = format!("{} is not a probability", short(*loss));
-                return Err(Refusal::new("loss", what, "give a number from 0 to 1"));
+            Self::Radio { loss, range_m } => {
+                let (loss, range_m) = (loss.unwrap_or_default(), range_m.unwrap_or_default());
+                let what = || format!("{} is not a probability", short(loss));
+                require((0.0..=1.0).contains(&loss), "loss", &what, "give a number from 0 to 1")?;
+                let what = || format!("{} is not a distance", short(range_m));
+                require(range_m >= 0.0, "range_m", &what, "give metres, 0 or more, or inf")
             }
-            Self::Radio { range_m: Some(range_m), .. } if range_m.is_nan() || *range_m < 0.0 => {
-                let what = format!("{} is not a distance", short(*range_m));
-                return Err(Refusal::new("range_m", what, "give metres, 0 or more, or inf"));
+            Self::Solid { solid } => solid.check(),
+            Self::Move { by_m, .. } => {
+                let what = || "the displacement is out of range".to_owned();
+                require(by_m.iter().all(is_near), "by_m", &what, &metres)
             }
-            Self::Solid { solid } => solid.check()?,
-            Self::Move { by_m, .. } if by_m.iter().any(|x| x.is_nan() || x.abs() > FAR_M) => {
-                return Err(Refusal::new(
-                    "by_m",
-                    "the displacement is out of range",
-                    format!("give metres within {FAR_M}"),
-                ));
-            }
-            _ => {}
+            Self::Remove { .. } | Self::Cell { .. } => Ok(()),
         }
-        Ok(())
     }
 }
 
-pub(super) fn interventions(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    robots: &[Robot],
-) -> Result<Vec<(u32, Intervention)>, ScenarioError> {
-    let mut interventions = Vec::with_capacity(file.intervention.len());
-    for (index, table) in file.intervention.iter().enumerate() {
-        let field = |name: &str| format!("intervention[{index}].{name}");
-        table
-            .r#do
-            .check(robots)
-            .map_err(|refusal| source.error(&field(&format!("do.{}", refusal.field)), refusal.what, refusal.remedy))?;
-        interventions.push((tick(table.at_s, file.tick_s), table.r#do.clone()));
+pub(super) fn interventions(draft: &Draft<'_>, robots: &[Robot]) -> Checked<Vec<(u32, Intervention)>> {
+    let mut interventions = Vec::with_capacity(draft.file.intervention.len());
+    for (index, InterventionTable { at_s, r#do }) in draft.file.intervention.iter().enumerate() {
+        let field = |refusal: &Refusal| format!("intervention[{index}].do.{}", refusal.field);
+        r#do.check(robots).map_err(|refusal| draft.error(&field(&refusal), refusal.what, refusal.remedy))?;
+        interventions.push((draft.tick(*at_s), r#do.clone()));
     }
     interventions.sort_by_key(|(tick, _)| *tick);
     Ok(interventions)
-}
-
-/// First tick that does not begin before `at_s`. Exact for times that are multiples of a tick.
-pub(super) fn tick(at_s: f64, tick_s: f64) -> u32 {
-    let tick_us = f64::from(micros(tick_s).max(1));
-    libm::ceil(libm::round(at_s * 1e6) / tick_us) as u32
 }
 
 impl Scenario {
@@ -211,12 +192,12 @@ impl Scenario {
     /// the terrain, key rotation, attack. 0 without any. O(events).
     #[must_use]
     pub fn last_event(&self) -> u32 {
-        let faults = self.faults.iter().map(|fault| fault.from_tick);
-        let interventions = self.interventions.iter().map(|(tick, _)| *tick);
-        let orders = self.plane.iter().flat_map(|plane| &plane.orders).map(|order| order.tick);
-        let changes = self.changes.iter().map(|change| change.first);
+        let faults = self.events.faults.iter().map(|fault| fault.from_tick);
+        let interventions = self.events.interventions.iter().map(|(tick, _)| *tick);
+        let orders = self.plane().into_iter().flat_map(|plane| &plane.orders).map(|order| order.tick);
+        let changes = self.land.changes.iter().map(|change| change.first);
         let rolls = self.key_rotation().into_iter().flat_map(|keeping| &keeping.rolls).map(|roll| roll.tick);
-        let attacks = self.attacks.iter().map(|attack| attack.from_tick);
+        let attacks = self.events.attacks.iter().map(|attack| attack.from_tick);
         let all = faults.chain(interventions).chain(orders).chain(changes).chain(rolls).chain(attacks);
         all.max().unwrap_or_default()
     }

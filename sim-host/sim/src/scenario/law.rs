@@ -1,9 +1,8 @@
 //! `[law]`: a law that the program adds, instead of those of Staya.
 
-use super::ranges;
-use super::read::nearest;
-use super::source::{ScenarioError, Source};
-use super::{PlaneSetup, ScenarioFile};
+use super::read::{Limits, nearest};
+use super::source::Checked;
+use super::{Draft, PlaneSetup};
 use crate::own_law::{NEGOTIATION, Own, named};
 use crate::table;
 use crate::terrain::Terrain;
@@ -62,26 +61,21 @@ impl NamedLaw {
 }
 
 pub(super) fn law(
-    source: &Source<'_>,
-    file: &ScenarioFile,
+    draft: &Draft<'_>,
     plane: Option<&PlaneSetup>,
     terrain: Option<&Terrain>,
-) -> Result<Option<NamedLaw>, ScenarioError> {
-    let Some(table) = &file.law else { return Ok(None) };
-    let moves = Moves { diagonals: file.grid.moves == 8, circles: file.grid.simultaneous };
+) -> Checked<Option<NamedLaw>> {
+    let Some(table) = &draft.file.law else { return Ok(None) };
+    let grid = &draft.file.grid;
+    let moves = Moves { diagonals: grid.moves == 8, circles: grid.simultaneous };
     let cruise_mps = plane.map(|setup| setup.general.cruise_mps as f32);
     let mut law = named(&table.name, moves, cruise_mps).map_err(|known| {
-        let what = format!("this program has no law \"{}\"", table.name);
-        let remedy = match nearest(&table.name, known.iter().copied()) {
-            Some(near) => format!("did you mean \"{near}\"?"),
-            None if known.is_empty() => "build a program that adds it, see docs/project.md".to_owned(),
-            None => format!("it has {}", known.join(", ")),
-        };
-        source.error("law.name", what, remedy)
+        let remedy = suggestion(&table.name, &known, "build a program that adds it, see docs/project.md");
+        draft.error("law.name", format!("this program has no law \"{}\"", table.name), remedy)
     })?;
     let grid = OnGrid { cell: CellState::default(), window: None };
     let in_plane = InPlane { max_speed_mps: 0.0, obstacles: &[] };
-    let (here, place) = match (plane.is_some(), file.terrain.is_some()) {
+    let (here, place) = match (plane.is_some(), terrain.is_some()) {
         (false, _) => (AnySurroundings::OnGrid(grid), "the robots go from cell to cell, and the law does not"),
         (true, false) => (AnySurroundings::InPlane(in_plane), "the robots have no cells, and the law needs them"),
         (true, true) => {
@@ -90,41 +84,40 @@ pub(super) fn law(
             (here, "the robots go by velocities, and the law does not")
         }
     };
-    if !law.fits(&here) {
-        let remedy = if plane.is_some() { "give [terrain], or another law" } else { "give [plane], or another law" };
-        return Err(source.error("law.name", place, remedy));
-    }
-    if let (true, Some(setup), Some(land)) = (table.name == NEGOTIATION, plane, terrain) {
-        if !setup.kinds().all(|group| group.guidance.kind().is_on_grid()) {
-            let what = "robots that negotiate have goals in cells";
-            return Err(source.error("plane.guidance", what, "give guidance = \"route\""));
-        }
+    let remedy = if plane.is_some() { "give [terrain], or another law" } else { "give [plane], or another law" };
+    draft.require(law.fits(&here), "law.name", place, remedy)?;
+    if let (NEGOTIATION, Some(setup), Some(land)) = (&table.name[..], plane, terrain) {
+        let are_in_cells = setup.kinds().all(|group| group.guidance.kind().is_on_grid());
+        let what = "robots that negotiate have goals in cells";
+        draft.require(are_in_cells, "plane.guidance", what, "give guidance = \"route\"")?;
         let widest_m = land.cell_m * WIDEST;
-        if let Some(group) = setup.kinds().find(|group| group.radius_m > widest_m) {
-            let what = format!("{} m are more than {WIDEST} cells: robots touch at a corner", group.radius_m);
-            let remedy = format!("give at most {widest_m}, or a larger terrain.cell_m");
-            return Err(source.error("plane.radius_m", what, remedy));
-        }
+        let radius_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
+        let what = format!("{radius_m} m are more than {WIDEST} cells: robots touch at a corner");
+        let remedy = format!("give at most {widest_m}, or a larger terrain.cell_m");
+        draft.require(radius_m <= widest_m, "plane.radius_m", what, remedy)?;
     }
     let mut parameters = Vec::new();
     for (name, &value) in &table.parameters {
         let field = format!("law.parameters.{name}");
-        let (mut result, mut known) = (None, Vec::new());
-        Law::<f32>::parameters(&mut law, &mut |tables| {
-            known.extend(tables.table().iter().map(|row| row.name));
-            if result.is_none() && tables.index(name).is_some() {
-                result = Some(ranges::set(source, &field, Some(value), tables, name));
-            }
+        let (mut limits, mut known) = (None, Vec::new());
+        Law::<f32>::parameters(&mut law, &mut |table| {
+            known.extend(table.table().iter().map(|row| row.name));
+            limits = limits.take().or_else(|| table.index(name).map(|index| Limits::of(&table.table()[index])));
         });
-        result.unwrap_or_else(|| {
-            let remedy = match nearest(name, known.iter().copied()) {
-                Some(near) => format!("did you mean \"{near}\"?"),
-                None if known.is_empty() => "leave it out: it has none".to_owned(),
-                None => format!("it has {}", known.join(", ")),
-            };
-            Err(source.error(&field, "the law has no such parameter", remedy))
+        let limits = limits.ok_or_else(|| {
+            draft.error(&field, "the law has no such parameter", suggestion(name, &known, "leave it out: it has none"))
         })?;
+        draft.limit(&field, value, &limits)?;
         parameters.push((name.clone(), value as f32));
     }
     Ok(Some(NamedLaw { name: table.name.clone(), parameters, moves, cruise_mps }))
+}
+
+/// The remedy for an unknown name.
+fn suggestion(name: &str, known: &[&str], if_empty: &str) -> String {
+    match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None if known.is_empty() => if_empty.to_owned(),
+        None => format!("it has {}", known.join(", ")),
+    }
 }

@@ -1,13 +1,12 @@
 //! `[maps]`: exchange of terrain maps between robots.
 
 use super::params::FormationLaw;
-use super::source::Source;
-use super::{PlaneSetup, ScenarioError, ScenarioFile};
+use super::source::Checked;
+use super::{Draft, PlaneSetup, ranges::duration};
 use crate::{defaults, table};
 use staya_controller::agent::RouteSetup;
 use staya_controller::land::MapParams;
 use staya_controller::route::{ExitRule, Replan};
-use staya_controller::time::Duration;
 
 table! {
     /// `[maps]`: robots that plan on terrain exchange what they see of it.
@@ -22,40 +21,39 @@ table! {
 
 defaults!(MapsTable);
 
-pub(super) fn sharing(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    route: &RouteSetup,
-    plane: Option<&PlaneSetup>,
-) -> Result<Option<MapParams>, ScenarioError> {
-    let mut params = MapParams::default();
-    if let Some(seconds) = file.maps.forget_after_s {
-        params.forget_after = Duration::from_micros((seconds * 1e6) as i32);
+pub(super) fn sharing(draft: &Draft<'_>, route: &RouteSetup, plane: Option<&PlaneSetup>) -> Checked<Option<MapParams>> {
+    let MapsTable { share, forget_after_s } = draft.file.maps;
+    if !share {
+        let (field, remedy) = ("maps.forget_after_s", "give maps.share = true, or leave it out");
+        draft.require(forget_after_s.is_none(), field, "no robot shares a map", remedy)?;
+        return Ok(None);
     }
-    if !file.maps.share {
-        let what = "no robot shares a map";
-        let is_alone = file.maps.forget_after_s.is_some();
-        return if is_alone {
-            Err(source.error("maps.forget_after_s", what, "give maps.share = true, or leave it out"))
-        } else {
-            Ok(None)
-        };
+    let plans = plane.is_none_or(|plane| plane.kinds().any(|group| group.guidance.kind().is_on_grid()));
+    for (fits, what, remedy) in [
+        (plans, "no robot plans on the map", "give a guidance \"route\" or \"formation\", or leave it out"),
+        (
+            route.params.exit != ExitRule::Ray,
+            "route.exit = \"ray\" ignores the land beyond the window",
+            "give exit = \"best\"",
+        ),
+        (
+            route.replan != Replan::UntilChanged,
+            "route.replan = \"until_changed\" plans routes in the window only",
+            "give \"each_cell\"",
+        ),
+        (
+            draft.file.scouting.is_none(),
+            "robots that have a map ([scouting]) plan by that one",
+            "leave one of the two out",
+        ),
+        (
+            draft.file.formation.law != FormationLaw::Paper,
+            "the paper's law knows the window alone",
+            "give formation.law = \"staya\", or leave it out",
+        ),
+    ] {
+        draft.require(fits, "maps.share", what, remedy)?;
     }
-    let refused = |what: &str, remedy: &str| Err(source.error("maps.share", what, remedy));
-    if plane.is_some_and(|plane| !plane.kinds().any(|group| group.guidance.kind().is_on_grid())) {
-        return refused("no robot plans on the map", "give a guidance \"route\" or \"formation\", or leave it out");
-    }
-    if route.params.exit == ExitRule::Ray {
-        return refused("route.exit = \"ray\" ignores the land beyond the window", "give exit = \"best\"");
-    }
-    if route.replan == Replan::UntilChanged {
-        return refused("route.replan = \"until_changed\" plans routes in the window only", "give \"each_cell\"");
-    }
-    if file.scouting.is_some() {
-        return refused("robots that have a map ([scouting]) plan by that one", "leave one of the two out");
-    }
-    if file.formation.law == Some(FormationLaw::Paper) {
-        return refused("the paper's law knows the window alone", "give formation.law = \"staya\", or leave it out");
-    }
-    Ok(Some(params))
+    let MapParams { forget_after } = MapParams::default();
+    Ok(Some(MapParams { forget_after: forget_after_s.map_or(forget_after, duration) }))
 }

@@ -7,6 +7,7 @@ mod check;
 mod field;
 mod fingerprint;
 mod formation;
+mod given;
 mod intervention;
 mod land;
 mod law;
@@ -22,11 +23,13 @@ mod scouting;
 mod setting;
 mod setup;
 mod source;
+mod table;
 mod write;
 
 pub use authentication::Keys;
 pub use field::Field;
-pub use formation::FormationEntry;
+pub use formation::{FormationEntry, FormationStarts};
+pub use given::{Given, Row, Rows};
 pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use law::{LawTable, NamedLaw};
 pub use maps::MapsTable;
@@ -35,18 +38,20 @@ pub(crate) use plane::goals;
 pub use plane::{
     BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
     IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
-    PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, SensingTable, Start, Target, WallEntry, circle_starts,
+    PlaneTable, PushOutTable, RobotGroup, RobotsSource, ScatteredDiscs, SensingTable, Start, Target, WallEntry,
 };
 pub use plausibility::PlausibilityTable;
-pub use ranges::within;
-pub use read::{AnyTable, Field as Read, Fields, Line, Node, Table, Wrong, empty, nearest, plain, word};
+pub use read::{AnyTable, Field as Read, Limits, Line, Node, Table, Wrong, nearest, word};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
-    AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,
-    MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, TerrainTable, UniformTable,
+    Area, AttackKind, AttackTable, AuthenticationTable, ChangeSource, ChangeTable, Crop, DriftTable, EntropyTable,
+    FaultTable, LandSource, Lie, MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, Secret,
+    TerrainTable, UniformTable,
 };
 pub use setting::{Setting, text_with, with_settings};
+use source::{Checked, Section};
 pub use source::{Location, ScenarioError, Source};
+pub use table::{Fields, OneOf, empty, plain};
 pub use write::{fields, inline};
 
 use crate::radio::RadioParams;
@@ -56,12 +61,12 @@ use crate::world::MoveRules;
 pub use crate::world::plane::Sensing;
 pub use crate::world::scouts::Scouting;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{GuidanceSetup, RouteSetup};
+use staya_controller::agent::RouteSetup;
 use staya_controller::auth::Key;
 use staya_controller::land::MapParams;
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
 
 const LIST: &str = "scenarios/README.md";
@@ -140,6 +145,28 @@ pub struct Roll {
     pub revoke: Vec<RobotId>,
 }
 
+/// A file that is being checked, with overrides applied.
+#[derive(Debug)]
+struct Draft<'a> {
+    whole: Section<'a>,
+    file: ScenarioFile,
+}
+
+impl Draft<'_> {
+    /// See [`ranges::tick`].
+    fn tick(&self, at_s: f64) -> u32 {
+        ranges::tick(at_s, self.file.tick_s)
+    }
+}
+
+impl<'a> Deref for Draft<'a> {
+    type Target = Section<'a>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.whole
+    }
+}
+
 /// A checked scenario, ready to run.
 #[derive(Clone, Debug)]
 pub struct Scenario {
@@ -151,50 +178,90 @@ pub struct Scenario {
     pub ticks: u32,
     /// Length of a tick, microseconds.
     pub tick_us: u32,
-    /// The terrain; one flat cell for a plane without terrain.
-    pub terrain: Terrain,
-    /// Changes of the terrain during the run.
-    pub changes: Vec<LandChange>,
-    /// Terrain that robots know before they see it; `None`: only what their laws remember.
-    pub scouting: Option<Scouting>,
-    /// Rules of movement on the grid.
-    pub rules: MoveRules,
+    /// The terrain, its changes, and what robots know of it.
+    pub land: Land,
     /// Parameters of the radio.
     pub radio: RadioParams,
     /// Robots, sorted by id. Starts are free and distinct; goals are distinct.
     pub robots: Vec<Robot>,
     /// Formations; each robot is in at most one.
     pub formations: Vec<Formation>,
-    /// Groups of different robots, in the file's order; empty if all robots are alike.
-    pub parts: Vec<Part>,
-    /// Bodies in the plane or in space; `None`: robots move from cell to cell.
-    pub plane: Option<PlaneSetup>,
-    /// Sensing of other robots in the plane; `None`: disabled.
-    pub sensing: Option<Sensing>,
+    /// How the bodies move.
+    pub movement: Movement,
+    /// The laws of the robots, as far as groups in the plane do not have their own.
+    pub laws: Laws,
+    /// Identities, and which packets the robots trust.
+    pub trust: Trust,
+    /// Events of the run, besides changes of the terrain, orders and key rotations.
+    pub events: Events,
+    /// Where the scenario comes from.
+    pub origin: Origin,
+}
+
+/// The terrain of a scenario.
+#[derive(Clone, Debug)]
+pub struct Land {
+    /// The terrain; one flat cell for a plane without terrain.
+    pub terrain: Terrain,
+    /// Changes of the terrain during the run.
+    pub changes: Vec<LandChange>,
+    /// Terrain that robots know before they see it; `None`: only what their laws remember.
+    pub scouting: Option<Scouting>,
+}
+
+/// How the bodies of a scenario move.
+#[derive(Clone, Debug)]
+pub enum Movement {
+    /// From cell to cell.
+    Cells(MoveRules),
+    /// In the plane or in space.
+    Plane(Box<PlaneSetup>),
+}
+
+/// Laws of the robots of a scenario.
+#[derive(Clone, Debug)]
+pub struct Laws {
     /// The law of all robots, if the program adds it.
-    pub law: Option<NamedLaw>,
-    /// Route planning of the robots.
+    pub added: Option<NamedLaw>,
+    /// Route planning.
     pub route: RouteSetup,
     /// Exchange of terrain maps; `None`: disabled.
     pub maps: Option<MapParams>,
     /// The law of formations.
-    pub formation_law: FormationSetup,
-    /// Temporary failures of robots.
-    pub faults: Vec<Fault>,
-    /// Interventions with their ticks, sorted by tick.
-    pub interventions: Vec<(u32, Intervention)>,
+    pub formation: FormationSetup,
+}
+
+/// Identities of the robots, and which packets they trust.
+#[derive(Clone, Debug)]
+pub struct Trust {
     /// Robots with a wrong id: the id in this scenario, then the id that the robot claims.
     pub misnumbered: Vec<(RobotId, RobotId)>,
     /// Keys of the swarm; `None`: beacons are not authenticated.
     pub keys: Option<Keys>,
     /// Plausibility limits on received beacons.
     pub plausibility: PlausibilityLimits<f32>,
+}
+
+/// Events of a run.
+#[derive(Clone, Debug)]
+pub struct Events {
+    /// Temporary failures of robots.
+    pub faults: Vec<Fault>,
+    /// Interventions with their ticks, sorted by tick.
+    pub interventions: Vec<(u32, Intervention)>,
     /// Attackers.
     pub attacks: Vec<Attack>,
-    /// The files that the scenario was read from.
+}
+
+/// Files and fields from which a scenario was read; no influence on the run.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    /// The files.
     pub files: Vec<PathBuf>,
     /// Fields of the file with overrides applied, for result files; without secrets.
     pub parameters: serde_json::Value,
+    /// Groups of different robots, in the file's order; empty if all robots are alike.
+    pub parts: Vec<Part>,
 }
 
 impl Scenario {
@@ -225,141 +292,121 @@ impl Scenario {
     }
 
     /// Refuses events that are later than `ticks`, than the text's ticks, and than the override's.
-    fn build(mut source: Source<'_>, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
+    fn build(mut source: Source<'_>, overrides: &Overrides, ticks: u32) -> Checked<Self> {
         let parameters = source.json();
         plane::inherit(source.root_mut());
         let mut file: ScenarioFile = source.read(LIST)?;
         let ticks = ticks.max(file.ticks);
         file.seed = overrides.seed.unwrap_or(file.seed);
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
-        check::general(&source, &file)?;
-        check::times(&source, &file, ticks.max(file.ticks))?;
-        check::radio(&source, &file)?;
-        check::moves(&source, &file)?;
-        let (terrain, robots, formations, parts, plane) = match &file.plane {
-            None => {
-                let terrain = check::terrain(&source, &file)?;
-                let (robots, formations) = robots::build(&source, &file, &terrain)?;
-                let parts = formations.iter().enumerate().filter(|_| formations.len() > 1);
-                let parts = parts.map(|(index, formation)| Part {
-                    table: format!("robots.formation[{index}]"),
-                    members: formation.members(),
-                });
-                let parts = parts.collect();
-                (terrain, robots, formations, parts, None)
-            }
+        let draft = &Draft { whole: source.whole(), file };
+        let file = &draft.file;
+        check::general(draft)?;
+        check::times(draft, ticks.max(file.ticks))?;
+        check::radio(draft)?;
+        check::moves(draft)?;
+        let land = check::terrain(draft)?;
+        let (route, formation) = (params::routing(draft)?, FormationSetup::new(draft)?);
+        let (Placed { robots, formations, parts }, movement) = match &file.plane {
             Some(table) => {
-                let land = match &file.terrain {
-                    Some(_) => Some(check::terrain(&source, &file)?),
-                    None => None,
+                let (placed, setup) = plane::build(draft, table, land.as_ref())?;
+                (placed, Movement::Plane(Box::new(setup)))
+            }
+            None => {
+                let rules = MoveRules {
+                    norm: file.grid.norm,
+                    corner_cutting: file.grid.corner_cutting,
+                    crossing: matches!(formation, FormationSetup::Published(_)),
+                    orthogonal: file.grid.moves == 4,
+                    simultaneous: file.grid.simultaneous,
                 };
-                let cells = match (&file.robots, &land) {
-                    (Some(_), Some(land)) => Some(robots::build(&source, &file, land)?),
-                    (Some(_), None) => {
-                        let remedy = "give [terrain], or plane.robots in metres";
-                        return Err(source.error("robots", "there are no cells", remedy));
-                    }
-                    (None, _) => None,
-                };
-                let plane::Placed { setup, robots, formations, parts } =
-                    plane::build(&source, &file, table, land.as_ref(), cells)?;
-                let land = land.unwrap_or_else(|| Terrain::flat(1, 1));
-                (land, robots, formations, parts, Some(setup))
+                (robots::in_cells(draft, land.as_ref())?, Movement::Cells(rules))
             }
         };
-        let heard = plane.as_ref().map_or(0, PlaneSetup::heard);
-        check::numbers(&source, &file, &robots, heard)?;
-        let positions_m: Vec<[f64; 2]> = match &plane {
-            Some(setup) => setup.starts.iter().map(|start| [start.position_m[0], start.position_m[1]]).collect(),
-            None => robots.iter().map(|robot| terrain.center_m(robot.start)).collect(),
+        let plane = movement.plane();
+        check::numbers(draft, &robots, plane.map_or(0, PlaneSetup::heard))?;
+        let laws = Laws {
+            added: law::law(draft, plane, land.as_ref())?,
+            maps: maps::sharing(draft, &route, plane)?,
+            route,
+            formation,
         };
-        check::memory(&source, &file, &positions_m, &terrain)?;
-        let keys = authentication::key(&source, &file, &robots)?;
-        let attacks = authentication::attacks(&source, &file, &robots)?;
-        let faults = check::faults(&source, &file, &robots)?;
-        let interventions = intervention::interventions(&source, &file, &robots)?;
-        let changes = land::changes(&source, &file, &terrain)?;
-        let misnumbered = check::misnumbered(&source, &file, &robots)?;
-        check::formation_only(&source, &file)?;
-        let route = params::routing(&source, &file)?;
-        let land = Some(&terrain).filter(|_| file.terrain.is_some());
-        let scouting = scouting::scouting(&source, &file, land, params::sight(&file))?;
-        let sensing = match file.plane.as_ref().zip(plane.as_ref()) {
-            Some((table, setup)) => plane::sensing(&source, &file, table, setup)?,
-            None => None,
-        };
-        let maps = maps::sharing(&source, &file, &route, plane.as_ref())?;
-        let formation_law = FormationSetup::new(&source, &file.formation)?;
-        let law = law::law(&source, &file, plane.as_ref(), land)?;
+        let scouting = scouting::scouting(draft, land.as_ref())?;
+        let terrain = land.unwrap_or_else(|| Terrain::flat(1, 1));
+        check::memory(draft, &robots, plane, &terrain)?;
+        check::formation_only(draft)?;
         let mut scenario = Self {
             name: file.name.clone(),
             seed: file.seed,
             ticks: file.ticks,
             tick_us: ranges::micros(file.tick_s),
-            terrain,
-            changes,
-            scouting,
-            rules: MoveRules {
-                norm: file.grid.norm,
-                corner_cutting: file.grid.corner_cutting,
-                crossing: matches!(formation_law, FormationSetup::Published(_)),
-                orthogonal: file.grid.moves == 4,
-                simultaneous: file.grid.simultaneous,
-            },
+            land: Land { changes: land::changes(draft, &terrain)?, terrain, scouting },
             radio: file.radio.clone(),
+            trust: Trust {
+                misnumbered: check::misnumbered(draft, &robots)?,
+                keys: authentication::key(draft, &robots)?,
+                plausibility: PlausibilityLimits::ANY,
+            },
+            events: Events {
+                faults: check::faults(draft, &robots)?,
+                interventions: intervention::interventions(draft, &robots)?,
+                attacks: authentication::attacks(draft, &robots)?,
+            },
             robots,
             formations,
-            parts,
-            plane,
-            sensing,
-            law,
-            route,
-            maps,
-            formation_law,
-            faults,
-            interventions,
-            misnumbered,
-            keys,
-            plausibility: PlausibilityLimits::ANY,
-            attacks,
-            files: source.files(),
-            parameters: with_overrides(parameters, &file),
+            movement,
+            laws,
+            origin: Origin { files: source.files(), parameters: with_overrides(parameters, file), parts },
         };
-        scenario.plausibility = plausibility::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
+        scenario.trust.plausibility = plausibility::limits(draft, &scenario.robots, scenario.usual_claims())?;
         Ok(scenario)
+    }
+
+    /// Bodies in the plane or in space; `None`: robots move from cell to cell.
+    #[must_use]
+    pub fn plane(&self) -> Option<&PlaneSetup> {
+        self.movement.plane()
+    }
+
+    /// See [`plane`](Self::plane).
+    pub fn plane_mut(&mut self) -> Option<&mut PlaneSetup> {
+        match &mut self.movement {
+            Movement::Cells(_) => None,
+            Movement::Plane(setup) => Some(setup),
+        }
+    }
+
+    /// Sensing of other robots in the plane; `None`: disabled.
+    #[must_use]
+    pub fn sensing(&self) -> Option<Sensing> {
+        self.plane()?.sensing
     }
 
     /// Warnings, one line each: key file, unstable gains, probable mistakes in `[plane]`.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
-        let groups = self.plane.iter().flat_map(PlaneSetup::kinds);
-        let gains = groups.filter_map(|group| match &group.guidance {
-            GuidanceSetup::Lattice { params, .. } => plane::remark(params, &self.radio, self.tick_s()),
-            _ => None,
-        });
-        let plane = self.plane.iter().flat_map(|setup| plane::remarks(setup, self.tick_s()));
-        self.keys.iter().filter_map(|keys| keys.remark.clone()).chain(gains).chain(plane).collect()
+        let key = self.trust.keys.iter().filter_map(|keys| keys.remark.clone());
+        key.chain(self.plane().into_iter().flat_map(|setup| plane::remarks(self, setup))).collect()
     }
 
     /// The key that all robots share, or the operator's first one.
     #[must_use]
     pub fn key(&self) -> Option<&Key> {
-        self.keys.as_ref().map(|keys| &keys.key)
+        self.trust.keys.as_ref().map(|keys| &keys.key)
     }
 
     /// The operator's keys, if each robot has its own key.
     #[must_use]
     pub fn key_rotation(&self) -> Option<&KeyRotation> {
-        self.keys.as_ref()?.rotation.as_ref()
+        self.trust.keys.as_ref()?.rotation.as_ref()
     }
 
-    /// The robots with the ids that they claim ([`misnumbered`](Self::misnumbered)).
+    /// The robots with the ids that they claim ([`Trust::misnumbered`]).
     #[must_use]
     pub fn numbered(&self) -> Vec<Robot> {
-        let number =
-            |id: RobotId| self.misnumbered.iter().find(|(robot, _)| *robot == id).map_or(id, |(_, said)| *said);
-        let robots = self.robots.iter();
-        robots.map(|robot| Robot { id: number(robot.id), ..*robot }).collect()
+        let claims = &self.trust.misnumbered;
+        let number = |id| claims.iter().find(|(robot, _)| *robot == id).map_or(id, |(_, claimed)| *claimed);
+        self.robots.iter().map(|robot| Robot { id: number(robot.id), ..*robot }).collect()
     }
 
     /// Length of a tick, seconds.
@@ -369,17 +416,29 @@ impl Scenario {
     }
 }
 
+impl Movement {
+    const fn plane(&self) -> Option<&PlaneSetup> {
+        match self {
+            Self::Cells(_) => None,
+            Self::Plane(setup) => Some(setup),
+        }
+    }
+}
+
+/// Robots with their formations, and the tables of the file that describe them.
+struct Placed {
+    robots: Vec<Robot>,
+    formations: Vec<Formation>,
+    parts: Vec<Part>,
+}
+
 /// The fields of the file with overrides applied, without secrets.
 fn with_overrides(mut fields: serde_json::Value, file: &ScenarioFile) -> serde_json::Value {
-    if let Some(fields) = fields.as_object_mut() {
-        fields.insert("seed".into(), file.seed.into());
-        fields.insert("ticks".into(), file.ticks.into());
-        if let Some(table) = fields.get_mut("authentication").and_then(serde_json::Value::as_object_mut) {
-            for secret in ["key", "master"] {
-                if let Some(said) = table.get_mut(secret) {
-                    *said = "(left out)".into();
-                }
-            }
+    fields["seed"] = file.seed.into();
+    fields["ticks"] = file.ticks.into();
+    for secret in ["/authentication/key", "/authentication/master"] {
+        if let Some(text) = fields.pointer_mut(secret) {
+            *text = "(left out)".into();
         }
     }
     fields

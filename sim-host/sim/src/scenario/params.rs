@@ -1,9 +1,10 @@
-//! `[route]` and `[formation]`: route planning and formation keeping. The defaults are the
+//! `[grid]`, `[route]` and `[formation]`: route planning and formation keeping. The defaults are the
 //! controller's; a test compares them with the list in scenarios/README.md.
 
-use super::ranges::{range, row, set, within};
-use super::source::Source;
-use super::{ScenarioError, ScenarioFile};
+use super::given::Given;
+use super::ranges::units;
+use super::source::Checked;
+use super::{Draft, ScenarioFile};
 use crate::{choice, defaults, names, table};
 use staya_controller::agent::RouteSetup;
 use staya_controller::cost::Gain;
@@ -29,29 +30,20 @@ table! {
     }
 }
 
-const MAX_RADIUS: u8 = 16;
-
 table! {
     /// `[route]`: windowed routing (KUZ sections 3 and 5). Coefficients are rounded to sixteenths.
-    #[derive(Copy)]
     pub struct RouteTable {
+        // Coefficients of the costs.
+        part costs: Given<RouteParams>;
         /// Sight, cells in each direction, 1 to 16.
         pub radius: Option<u8>, 1.0..=16.0, "cells";
         /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
         pub exit: Option<ExitRule>;
         /// When to plan: `"each_cell"` or `"until_changed"` (keeps its plan; not in formations).
-        pub replan: Option<Replan>;
-        /// Weight of travel time, 0 to 4095.
-        pub a0: Option<f64>;
-        /// Extra ticks for a cell that another robot occupies, 0 to 4095.
-        pub a1: Option<f64>;
-        /// Ticks per earlier visit of a cell, 0 to 4095.
-        pub a2: Option<f64>;
-        /// Ticks per cell of distance from the exit to the goal, 0 to 4095.
-        pub a3: Option<f64>;
+        pub replan: Replan = Default::default();
         /// Weighted shuffle: a move that costs this many more ticks than another is half as likely
         /// to be tried first, 0 to 4095. 0: cheapest first, without randomness.
-        pub halved_per_ticks: Option<f64>, 0.0..=4095.0, "";
+        pub halved_per_ticks: f64 = 0.0, 0.0..=4095.0, "";
     }
 }
 
@@ -71,25 +63,20 @@ choice! {
 
 table! {
     /// `[formation]`: keeping a formation (KUZ section 7); for `robots.formation` only.
-    #[derive(Copy)]
     pub struct FormationTable {
+        // Cost of distance from the own place, and lags; `resume_cells` is at most `halt_cells`.
+        part params: Given<FormationParams>;
         /// The law: `"staya"`; `"lookahead"` (`"staya"` with followers that plan to where their
         /// places will be); `"paper"` (as published by A. V. Kuznetsov). The last two are for the
         /// grid only.
-        pub law: Option<FormationLaw>;
+        pub law: FormationLaw = Default::default();
         /// Largest number of graph edges between robots that count as neighbours, 1 or more; no
         /// robot may have more than 8 neighbours. Default: the largest of 3, 2, 1 that fits.
         pub rho: Option<u8>;
         /// Distance from its place within which a neighbour counts as found, cells.
         pub eps: Option<u8>;
-        /// Cost of distance from the own place, ticks per cell, 0 to 4095; rounded to sixteenths.
-        pub gain: Option<f64>;
-        /// Lag of a follower at which the top leader waits (r0), 0 to 900 cells.
-        pub halt_cells: Option<f64>;
-        /// Lag at which the waiting leader continues, cells; at most `halt_cells`.
-        pub resume_cells: Option<f64>;
         /// Whether the top leader waits for followers; not with `law = "paper"`, nor in the plane.
-        pub waits: Option<bool>;
+        pub waits: bool = true;
         /// Missing or surplus robots above which others are asked to turn; with `law = "paper"`.
         pub crowd: Option<u8>;
         /// How far ahead of the top leader's cell the followers aim, cells.
@@ -111,52 +98,47 @@ table! {
 names!(Norm, ExitRule, Replan, Prediction, Recovery);
 defaults!(GridTable, RouteTable, FormationTable);
 
+const MAX_RADIUS: u8 = 16;
+
 pub(super) fn sight(file: &ScenarioFile) -> u8 {
     file.route.radius.unwrap_or(RouteParams::default().radius)
 }
 
-pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteSetup, ScenarioError> {
-    let (table, grid) = (&file.route, &file.grid);
-    let mut radius = sight(file);
-    if let Some(scouting) = &file.scouting {
+pub(super) fn routing(draft: &Draft<'_>) -> Checked<RouteSetup> {
+    let (table, grid) = (&draft.file.route, &draft.file.grid);
+    let mut radius = sight(&draft.file);
+    if let Some(scouting) = &draft.file.scouting {
         let wide = scouting.radius.unwrap_or(MAX_RADIUS);
-        within(source, "scouting.radius", wide.into(), radius.into(), MAX_RADIUS.into(), "cells")?;
+        draft.within("scouting.radius", wide.into(), radius.into()..=MAX_RADIUS.into(), "cells")?;
         radius = wide;
     }
     let (norm, corner_cutting) = (grid.norm, grid.corner_cutting);
     let mut params = RouteParams { radius, norm, corner_cutting, ..RouteParams::default() };
     params.exit = table.exit.unwrap_or(params.exit);
-    for (name, value) in [("a0", table.a0), ("a1", table.a1), ("a2", table.a2), ("a3", table.a3)] {
-        set(source, &format!("route.{name}"), value, &mut params, name)?;
-    }
-    let halving = table.halved_per_ticks.unwrap_or_default();
-    let sharpness = match Gain::nearest(halving as f32) {
+    table.costs.store(&mut params);
+    let sharpness = match Gain::nearest(table.halved_per_ticks as f32) {
         Gain::ZERO => Sharpness::Greedy,
         halving => Sharpness::HalvedPer(halving),
     };
-    Ok(RouteSetup { params, replan: table.replan.unwrap_or_default(), sharpness })
+    Ok(RouteSetup { params, replan: table.replan, sharpness })
 }
 
-pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<FormationParams, ScenarioError> {
-    let looks_ahead = table.law == Some(FormationLaw::Lookahead);
+pub(super) fn formation(draft: &Draft<'_>) -> Checked<FormationParams> {
+    let table = &draft.file.formation;
+    let looks_ahead = table.law == FormationLaw::Lookahead;
     let mut params = if looks_ahead { FormationParams::looking_ahead() } else { FormationParams::default() };
     params.eps = table.eps.unwrap_or(params.eps);
     params.lead = table.lead.unwrap_or(params.lead);
-    set(source, "formation.gain", table.gain, &mut params, "place_gain")?;
-    if let Some(cells) = table.halt_cells {
-        within(source, "formation.halt_cells", cells, 0.0, most("halt_cells"), "cells")?;
-        params.halt_lag = units(cells);
-        params.resume_lag = params.resume_lag.min(params.halt_lag);
-    }
-    if let Some(cells) = table.resume_cells {
+    params.gain = table.params.get("gain").map_or(params.gain, |gain| Gain::nearest(gain as f32));
+    params.halt_lag = table.params.get("halt_cells").map_or(params.halt_lag, units);
+    params.resume_lag = params.resume_lag.min(params.halt_lag);
+    if let Some(cells) = table.params.get("resume_cells") {
         let most = f64::from(params.halt_lag) / f64::from(UNIT);
-        within(source, "formation.resume_cells", cells, 0.0, most, "cells")?;
+        draft.within("formation.resume_cells", cells, 0.0..=most, "cells")?;
         params.resume_lag = units(cells);
     }
-    if let Some(share) = table.footprint {
-        params.footprint = libm::round(share * 16.0) as u8;
-    }
-    if table.waits == Some(false) {
+    params.footprint = table.footprint.map_or(params.footprint, |share| libm::round(share * 16.0) as u8);
+    if !table.waits {
         (params.halt_lag, params.resume_lag) = (NEVER, NEVER);
     }
     params.closes_ranks = table.closes_ranks.unwrap_or(params.closes_ranks);
@@ -177,11 +159,11 @@ pub enum FormationSetup {
 }
 
 impl FormationSetup {
-    pub(super) fn new(source: &Source<'_>, table: &FormationTable) -> Result<Self, ScenarioError> {
-        Ok(match table.law {
-            None | Some(FormationLaw::Staya) => Self::Staya(formation(source, table)?),
-            Some(FormationLaw::Lookahead) => Self::Lookahead(formation(source, table)?),
-            Some(FormationLaw::Paper) => Self::Published(published(source, table)?),
+    pub(super) fn new(draft: &Draft<'_>) -> Checked<Self> {
+        Ok(match draft.file.formation.law {
+            FormationLaw::Staya => Self::Staya(formation(draft)?),
+            FormationLaw::Lookahead => Self::Lookahead(formation(draft)?),
+            FormationLaw::Paper => Self::Published(published(&draft.file.formation)),
         })
     }
 
@@ -204,31 +186,15 @@ impl FormationSetup {
     }
 }
 
-fn published(source: &Source<'_>, table: &FormationTable) -> Result<PublishedParams, ScenarioError> {
-    let mut params = PublishedParams::default();
-    params.eps = table.eps.unwrap_or(params.eps);
-    if let Some(gain) = table.gain {
-        within(source, "formation.gain", gain, 0.0, most("place_gain"), "ticks")?;
-        params.gain = Gain::nearest(gain as f32);
+fn published(table: &FormationTable) -> PublishedParams {
+    let usual = PublishedParams::default();
+    let halt = table.params.get("halt_cells").map_or(usual.halt, units);
+    PublishedParams {
+        eps: table.eps.unwrap_or(usual.eps),
+        gain: table.params.get("gain").map_or(usual.gain, |gain| Gain::nearest(gain as f32)),
+        halt,
+        resume: table.params.get("resume_cells").map_or(usual.resume, units).min(halt),
+        crowd: table.crowd.unwrap_or(usual.crowd),
+        prediction: table.prediction.unwrap_or(usual.prediction),
     }
-    for (field, value, param) in
-        [("halt_cells", table.halt_cells, &mut params.halt), ("resume_cells", table.resume_cells, &mut params.resume)]
-    {
-        if let Some(cells) = value {
-            within(source, &format!("formation.{field}"), cells, 0.0, most("halt_cells"), "cells")?;
-            *param = units(cells);
-        }
-    }
-    params.resume = params.resume.min(params.halt);
-    params.crowd = table.crowd.unwrap_or(params.crowd);
-    params.prediction = table.prediction.unwrap_or(params.prediction);
-    Ok(params)
-}
-
-fn most(name: &str) -> f64 {
-    range(row(FormationParams::TABLE, name))[1]
-}
-
-fn units(cells: f64) -> u16 {
-    libm::round(cells * f64::from(UNIT)) as u16
 }

@@ -1,7 +1,10 @@
-//! Reads the tables of a settings file without serde. [`table!`](crate::table!) defines a struct
-//! with reader, ranges, units, defaults and documentation. An error carries the place of the value.
+//! Reads the values of a settings file without serde. An error carries the place of the value.
+//! [`table!`](crate::table!) and its relatives define types that are read this way.
 
+use staya_controller::parameters::Parameter;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
 use std::ops::{Range, RangeInclusive};
 use std::path::PathBuf;
 use toml::Spanned;
@@ -31,7 +34,7 @@ impl Wrong {
         Self::about(what).at(node.span())
     }
 
-    pub(super) fn about(what: impl Into<String>) -> Self {
+    fn about(what: impl Into<String>) -> Self {
         Self { span: None, path: String::new(), what: what.into(), remedy: None, is_listed: true }
     }
 
@@ -40,25 +43,18 @@ impl Wrong {
         Self::new(node, format!("{} is not {needed}", in_words(node.get_ref())))
     }
 
-    pub(super) fn unknown_field(name: &str, known: &[&'static str]) -> Self {
+    /// Creates an error about a name that is not `known`; `what` is a field or a value.
+    fn unknown(what: &str, name: &str, known: &[&'static str], hint: &str) -> Self {
         let remedy = match nearest(name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
             None if known.is_empty() => "this table has no fields".to_owned(),
-            None => format!("this table has {}", listed(known)),
+            None => format!("{hint} {}", listed(known)),
         };
-        Self { remedy: Some(remedy), ..Self::about(format!("unknown field `{name}`")) }
-    }
-
-    pub(super) fn unknown_value(name: &str, known: &[&'static str]) -> Self {
-        let remedy = match nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("give one of {}", listed(known)),
-        };
-        Self { remedy: Some(remedy), ..Self::about(format!("unknown value `{name}`")) }
+        Self { remedy: Some(remedy), ..Self::about(format!("unknown {what} `{name}`")) }
     }
 
     /// Adds the position, unless it is known.
-    pub(super) fn at(mut self, span: Range<usize>) -> Self {
+    fn at(mut self, span: Range<usize>) -> Self {
         self.span.get_or_insert(span);
         self
     }
@@ -77,7 +73,7 @@ pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&
     similar.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, one)| one)
 }
 
-fn listed(names: &[&str]) -> String {
+pub(super) fn listed(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
@@ -109,9 +105,9 @@ pub struct Line {
     /// Kind of its value, such as `a number`.
     pub kind: &'static str,
     /// Least and greatest value, and the unit.
-    pub range: Option<(RangeInclusive<f64>, &'static str)>,
-    /// Value if the field is absent, as Rust code; empty if there is none.
-    pub default: &'static str,
+    pub limits: Option<Limits>,
+    /// Value if the field is absent, as Rust code or a number; empty if there is none.
+    pub default: Cow<'static, str>,
     /// Fields of the table, or of the tables in the list.
     pub inner: Vec<Line>,
 }
@@ -140,16 +136,65 @@ pub trait Field: Sized {
     }
 }
 
-/// The fields of a table, or some of them.
-pub trait Fields: Sized {
-    /// Names of its parts' fields, then of its own.
-    const NAMES: &'static [&'static [&'static str]];
+/// Least and greatest value of a number, and its unit in the words of error texts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    range: RangeInclusive<f64>,
+    unit: &'static str,
+}
 
-    /// Reads the fields.
-    ///
-    /// # Errors
-    /// See [`Field::read`]; also a missing field.
-    fn fields(table: &Table<'_>) -> Result<Self, Wrong>;
+impl Limits {
+    /// Creates limits; the unit `probability` has an error text of its own.
+    #[must_use]
+    pub const fn new(range: RangeInclusive<f64>, unit: &'static str) -> Self {
+        Self { range, unit }
+    }
+
+    /// Limits of a parameter, as decimal numbers: the nearest double of a float such as 0.001 is
+    /// greater.
+    #[must_use]
+    pub fn of(row: &Parameter) -> Self {
+        let [low, high] = row.range.map(|end| end.to_string().parse().unwrap_or(f64::from(end)));
+        let units = [("m", "metres"), ("s", "seconds"), ("rad", "radians")];
+        let unit = units.iter().find(|(short, _)| *short == row.unit).map_or(row.unit, |(_, unit)| unit);
+        Self::new(low..=high, unit)
+    }
+
+    /// Greatest value.
+    pub(super) const fn most(&self) -> f64 {
+        *self.range.end()
+    }
+
+    /// Cause and remedy, if the value is out of range.
+    pub(super) fn check(&self, value: f64) -> Result<(), [String; 2]> {
+        match (self.range.contains(&value), short(value), self.unit) {
+            (true, ..) => Ok(()),
+            (_, value, "probability") => {
+                let (low, high) = (self.range.start(), self.range.end());
+                Err([format!("{value} is not a probability"), format!("give a number from {low} to {high}")])
+            }
+            (_, value, _) => Err([format!("{value} is out of range"), format!("give {self}")]),
+        }
+    }
+
+    /// Checks a number, or the numbers of a list.
+    fn check_node(&self, node: &Node<'_>) -> Result<(), Wrong> {
+        if let DeValue::Array(list) = node.get_ref() {
+            let mut elements = list.iter().enumerate();
+            return elements.try_for_each(|(at, element)| {
+                self.check_node(element).map_err(|wrong| wrong.under(&format!("[{at}]")))
+            });
+        }
+        let Some([what, remedy]) = number(node).and_then(|value| self.check(value).err()) else { return Ok(()) };
+        Err(Wrong { remedy: Some(remedy), is_listed: false, ..Wrong::new(node, what) })
+    }
+}
+
+impl Display for Limits {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let space = if self.unit.is_empty() { "" } else { " " };
+        write!(f, "{} to {}{space}{}", short(*self.range.start()), short(*self.range.end()), self.unit)
+    }
 }
 
 fn integer(node: &Node<'_>) -> Option<i128> {
@@ -267,7 +312,7 @@ impl<T: Field> Field for BTreeMap<String, T> {
 
     fn read(node: &Node<'_>) -> Result<Self, Wrong> {
         let DeValue::Table(table) = node.get_ref() else { return Err(Wrong::not(node, Self::KIND)) };
-        let entry = |(key, value): (&Spanned<std::borrow::Cow<'_, str>>, &Node<'_>)| {
+        let entry = |(key, value): (&Spanned<Cow<'_, str>>, &Node<'_>)| {
             let value = T::read(value).map_err(|wrong| wrong.under(key.get_ref()))?;
             Ok((key.get_ref().clone().into_owned(), value))
         };
@@ -305,7 +350,7 @@ impl<'a> Table<'a> {
             return Ok(fields);
         };
         let name = key.get_ref();
-        let mut wrong = Wrong::unknown_field(name, known).at(key.span());
+        let mut wrong = Wrong::unknown("field", name, known, "this table has").at(key.span());
         if let Some((_, new)) = RENAMED.iter().find(|(old, new)| old == name && known.contains(new)) {
             wrong.remedy = Some(format!("the field is called `{new}` now"));
         }
@@ -327,14 +372,18 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// See [`Field::read`].
-    pub fn read<T: Field>(&self, name: &str, range: Option<&(RangeInclusive<f64>, &str)>) -> Result<Option<T>, Wrong> {
+    pub fn read<T: Field>(&self, name: &str, limits: Option<&Limits>) -> Result<Option<T>, Wrong> {
         let mut fields = self.table.iter().filter(|(key, _)| present(key.get_ref()) == name);
         let Some((key, node)) = fields.next() else { return Ok(T::absent()) };
-        let value = T::read(node).and_then(|value| {
-            range.map_or(Ok(()), |(range, unit)| within(node, range, unit))?;
-            Ok(Some(value))
-        });
-        value.map_err(|wrong| wrong.under(key.get_ref()))
+        let value = T::read(node);
+        let value = value.and_then(|value| limits.map_or(Ok(()), |limits| limits.check_node(node)).map(|()| value));
+        value.map(Some).map_err(|wrong| wrong.under(key.get_ref()))
+    }
+
+    /// Whether a field is there.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.table.keys().any(|key| present(key.get_ref()) == name)
     }
 
     /// Reads a field that must be there.
@@ -343,6 +392,34 @@ impl<'a> Table<'a> {
     /// It is missing, or see [`Field::read`].
     pub fn need<T: Field>(&self, name: &str) -> Result<T, Wrong> {
         self.read(name, None)?.ok_or_else(|| self.missing(name))
+    }
+
+    /// Reads the field `kind` and checks that the others are those of this kind.
+    ///
+    /// # Errors
+    /// See [`Field::read`]; also an unknown kind.
+    pub fn kind<K: Copy>(
+        node: &'a Node<'a>,
+        kinds: &[(&'static str, (K, &[&'static str]))],
+    ) -> Result<(K, Self), Wrong> {
+        let table = Self::any(node)?;
+        let Some((key, kind)) = table.table.get_key_value("kind") else { return Err(table.missing("kind")) };
+        let (kind, known) = word(kind, kinds).map_err(|wrong| wrong.under(key.get_ref()))?;
+        Ok((kind, Self::new(node, known)?))
+    }
+
+    /// The error about a table that has none of several fields, or more than one.
+    #[must_use]
+    pub fn unclear(&self, names: &[&str]) -> Wrong {
+        let mut given: Vec<_> = self.table.keys().filter(|key| names.contains(&key.get_ref().as_ref())).collect();
+        given.sort_by_key(|key| key.span().start);
+        let wrong = match given[..] {
+            [first, key, ..] => {
+                Wrong::about(format!("`{}` is given, too", first.get_ref())).at(key.span()).under(key.get_ref())
+            }
+            _ => Wrong::new(self.node, "a field is missing"),
+        };
+        Wrong { remedy: Some("give exactly one of ".to_owned() + &listed(names)), ..wrong }
     }
 
     /// The error about a missing field.
@@ -364,44 +441,6 @@ fn present(name: &str) -> &str {
     }
 }
 
-/// Checks a number, or the numbers of a list.
-fn within(node: &Node<'_>, range: &RangeInclusive<f64>, unit: &str) -> Result<(), Wrong> {
-    if let DeValue::Array(list) = node.get_ref() {
-        let mut elements = list.iter().enumerate();
-        return elements.try_for_each(|(at, element)| {
-            within(element, range, unit).map_err(|wrong| wrong.under(&format!("[{at}]")))
-        });
-    }
-    match number(node) {
-        Some(value) if !range.contains(&value) => {
-            let (what, remedy) = out_of(value, range, unit);
-            Err(Wrong { remedy: Some(remedy), is_listed: false, ..Wrong::new(node, what) })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Cause and remedy of a value that is out of range.
-pub(super) fn out_of(value: f64, range: &RangeInclusive<f64>, unit: &str) -> (String, String) {
-    let (value, low, high) = (short(value), short(*range.start()), short(*range.end()));
-    match unit {
-        "probability" => (format!("{value} is not a probability"), format!("give a number from {low} to {high}")),
-        _ => (format!("{value} is out of range"), format!("give {low} to {high} {unit}").trim_end().to_owned()),
-    }
-}
-
-/// Name of a field without the mark of names that are words of Rust.
-#[must_use]
-pub const fn plain(name: &'static str) -> &'static str {
-    match name.as_bytes() {
-        [b'r', b'#', rest @ ..] => match std::str::from_utf8(rest) {
-            Ok(name) => name,
-            Err(_) => name,
-        },
-        _ => name,
-    }
-}
-
 /// Reads one of several names.
 ///
 /// # Errors
@@ -411,171 +450,8 @@ pub fn word<T: Copy>(node: &Node<'_>, names: &[(&'static str, T)]) -> Result<T, 
     let found = names.iter().find(|(known, _)| known == name);
     found.map(|(_, value)| *value).ok_or_else(|| {
         let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
-        Wrong::unknown_value(name, &known).at(node.span())
+        Wrong::unknown("value", name, &known, "give one of").at(node.span())
     })
-}
-
-/// Reads enums with the names of [`Named`](staya_controller::names::Named).
-#[macro_export]
-macro_rules! names {
-    ($($name:ty),* $(,)?) => { $(
-        impl $crate::scenario::Read for $name {
-            const KIND: &'static str = "a name in quotes";
-
-            fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
-                $crate::scenario::word(node, <Self as staya_controller::names::Named>::NAMES)
-            }
-        }
-    )* };
-}
-
-/// Defines an enum whose values have names in files: `Variant = "name"`.
-#[macro_export]
-macro_rules! choice {
-    ($(#[$outer:meta])* pub enum $name:ident {
-        $($(#[$inner:meta])* $variant:ident = $word:literal),* $(,)?
-    }) => {
-        $(#[$outer])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum $name {
-            $($(#[$inner])* $variant),*
-        }
-
-        impl std::fmt::Display for $name {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str(match self {
-                    $(Self::$variant => $word),*
-                })
-            }
-        }
-
-        impl $crate::scenario::Read for $name {
-            const KIND: &'static str = "a name in quotes";
-
-            fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
-                $crate::scenario::word(node, &[$(($word, Self::$variant)),*])
-            }
-        }
-    };
-}
-
-/// Reads an enum whose variants are tables with a field `kind`.
-#[macro_export]
-macro_rules! kinds {
-    ($name:ident { $($variant:ident = $word:literal { $($field:ident),* }),* $(,)? }) => {
-        impl $crate::scenario::Read for $name {
-            const KIND: &'static str = "a table";
-
-            fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
-                use $crate::scenario::Table;
-                #[derive(Clone, Copy)]
-                struct Kind(&'static str, &'static [&'static str]);
-                const KINDS: &[(&str, Kind)] = &[$(($word, Kind($word, &["kind", $(stringify!($field)),*]))),*];
-                impl $crate::scenario::Read for Kind {
-                    const KIND: &'static str = "a name in quotes";
-
-                    fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
-                        $crate::scenario::word(node, KINDS)
-                    }
-                }
-                let Kind(kind, known) = Table::any(node)?.need("kind")?;
-                let table = Table::new(node, known)?;
-                $(if kind == $word {
-                    return Ok(Self::$variant { $($field: table.need(stringify!($field))?),* });
-                })*
-                Err(table.missing("kind"))
-            }
-        }
-    };
-}
-
-/// Defines a table of a settings file: a struct with documented fields, each with type, default
-/// (after `=`; without one it is required, unless it is an `Option`), range and unit. The fields of
-/// a struct in `part` belong to the same table.
-#[macro_export]
-macro_rules! table {
-    ($(#[$outer:meta])* pub struct $name:ident {
-        $(part $part:ident: $part_type:ty;)*
-        $($(#[doc = $doc:literal])* pub $field:ident: $type:ty $(= $default:expr)? $(, $range:expr, $unit:literal)?;)*
-    }) => {
-        $(#[$outer])*
-        #[derive(Clone, Debug)]
-        pub struct $name {
-            $(/// Fields of the same table.
-            pub $part: $part_type,)*
-            $($(#[doc = $doc])* pub $field: $type,)*
-        }
-
-        impl $crate::scenario::Fields for $name {
-            const NAMES: &'static [&'static [&'static str]] =
-                &[$(<$part_type as $crate::scenario::Fields>::NAMES[0],)* &[$($crate::scenario::plain(stringify!($field))),*]];
-
-            fn fields(table: &$crate::scenario::Table<'_>) -> Result<Self, $crate::scenario::Wrong> {
-                Ok(Self {
-                    $($part: $crate::scenario::Fields::fields(table)?,)*
-                    $($field: {
-                        let name = $crate::scenario::plain(stringify!($field));
-                        let value = table.read(name, $crate::table!(@range $($range, $unit)?).as_ref())?;
-                        $crate::table!(@or table, name, value $(, $default)?)
-                    }),*
-                })
-            }
-        }
-
-        impl $crate::scenario::Read for $name {
-            const KIND: &'static str = "a table";
-
-            fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
-                let names = <Self as $crate::scenario::Fields>::NAMES.concat();
-                $crate::scenario::Fields::fields(&$crate::scenario::Table::new(node, &names)?)
-            }
-
-            fn lines() -> Vec<$crate::scenario::Line> {
-                let parts: Vec<Vec<$crate::scenario::Line>> =
-                    vec![$(<$part_type as $crate::scenario::Read>::lines()),*];
-                let own = [$($crate::scenario::Line {
-                    name: $crate::scenario::plain(stringify!($field)),
-                    doc: concat!($($doc),*),
-                    kind: <$type as $crate::scenario::Read>::KIND,
-                    range: $crate::table!(@range $($range, $unit)?),
-                    default: concat!($(stringify!($default))?),
-                    inner: <$type as $crate::scenario::Read>::lines(),
-                }),*];
-                parts.into_iter().flatten().chain(own).collect()
-            }
-        }
-    };
-    (@range) => { None };
-    (@range $range:expr, $unit:literal) => { Some(($range, $unit)) };
-    (@or $table:ident, $name:ident, $value:ident) => {
-        match $value {
-            Some(value) => value,
-            None => return Err($table.missing($name)),
-        }
-    };
-    (@or $table:ident, $name:ident, $value:ident, $default:expr) => { $value.unwrap_or_else(|| $default) };
-}
-
-/// Implements [`Default`] for tables without required fields.
-#[macro_export]
-macro_rules! defaults {
-    ($($name:ty),* $(,)?) => { $(
-        impl Default for $name {
-            fn default() -> Self {
-                $crate::scenario::empty()
-            }
-        }
-    )* };
-}
-
-/// Reads a table without fields.
-///
-/// # Panics
-/// If `T` has a required field.
-#[must_use]
-pub fn empty<T: Field>() -> T {
-    let node = Spanned::new(0..0, DeValue::Table(DeTable::new()));
-    T::read(&node).unwrap_or_else(|wrong| panic!("{}", wrong.what))
 }
 
 /// The fields as JSON; numbers that JSON lacks are null.

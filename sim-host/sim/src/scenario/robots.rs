@@ -4,13 +4,13 @@ mod table;
 
 pub use table::{RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 
-use super::formation::FormationEntry;
-use super::source::Source;
-use super::{ScenarioError, ScenarioFile};
+use super::formation::{FormationEntries, FormationEntry, FormationStarts};
+use super::source::{Checked, Section};
+use super::{Draft, Part, Placed};
 use crate::terrain::Terrain;
 use crate::terrain::movingai;
 use staya_controller::agent::TEMPLATE;
-use staya_controller::grid::Cell;
+use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateError};
@@ -73,66 +73,74 @@ struct Entry {
     goal_moves: bool,
 }
 
-pub(super) fn build(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    terrain: &Terrain,
-) -> Result<(Vec<Robot>, Vec<Formation>), ScenarioError> {
-    let Some(table) = &file.robots else {
-        let remedy = "give exactly one of list, formation, scen, scattered";
-        return Err(source.error("robots", "the table is missing", remedy));
-    };
+impl Entry {
+    fn new(number: u32, start: Cell, goal: Cell, field: impl Into<String>) -> Self {
+        Self { robot: Robot { id: RobotId(number), start, goal }, field: field.into(), goal_moves: false }
+    }
+}
+
+pub(super) fn build(draft: &Draft<'_>, terrain: &Terrain) -> Checked<(Vec<Robot>, Vec<Formation>)> {
     let mut formations = Vec::new();
-    let entries = match (&table.list, &table.formation.0[..], &table.scen, &table.scattered) {
-        (Some(list), [], None, None) => listed(list),
-        (None, [_, ..], None, None) => {
+    let entries = match &draft.file.robots {
+        None => {
+            let remedy = "give exactly one of list, formation, scen, scattered";
+            return Err(draft.error("robots", "the table is missing", remedy));
+        }
+        Some(RobotsTable::List(list)) => listed(list),
+        Some(RobotsTable::Formation(FormationEntries(list))) => {
             let mut entries = Vec::new();
-            for (index, entry) in table.formation.0.iter().enumerate() {
-                let field = match table.formation.0.len() {
-                    1 => "robots.formation".to_owned(),
-                    _ => format!("robots.formation[{index}]"),
-                };
-                let (graph, mut members) = formation(source, &field, entry, file.formation.rho, entries.len())?;
+            for (index, entry) in list.iter().enumerate() {
+                let number = if list.len() == 1 { String::new() } else { format!("[{index}]") };
+                let at = draft.at(format!("robots.formation{number}"));
+                let (graph, mut members) = formation(&at, entry, draft.file.formation.rho, entries.len())?;
                 entries.append(&mut members);
                 formations.push(graph);
             }
             entries
         }
-        (None, [], Some(entry), None) => from_scen(source, entry, terrain)?,
-        (None, [], None, Some(entry)) => scattered(source, entry, terrain, file.seed)?,
-        _ => {
-            let remedy = "give exactly one of list, formation, scen, scattered";
-            return Err(source.error("robots", "the robots are not defined exactly once", remedy));
-        }
+        Some(RobotsTable::Scen(entry)) => from_scen(draft, entry, terrain)?,
+        Some(RobotsTable::Scattered(entry)) => scattered(draft, entry, terrain)?,
     };
-    check(source, &entries, terrain)?;
+    check(draft, &entries, terrain)?;
     let mut robots: Vec<_> = entries.into_iter().map(|entry| entry.robot).collect();
     robots.sort_unstable_by_key(|robot| robot.id);
     Ok((robots, formations))
 }
 
+/// Robots that move from cell to cell.
+pub(super) fn in_cells(draft: &Draft<'_>, terrain: Option<&Terrain>) -> Checked<Placed> {
+    let Some(terrain) = terrain else {
+        return Err(draft.error("terrain", "it is missing", "say what land is meant"));
+    };
+    let (robots, formations) = build(draft, terrain)?;
+    let parts = formations.iter().enumerate().filter(|_| formations.len() > 1);
+    let part = |(index, formation): (usize, &Formation)| Part {
+        table: format!("robots.formation[{index}]"),
+        members: formation.members(),
+    };
+    Ok(Placed { parts: parts.map(part).collect(), robots, formations })
+}
+
 pub(super) fn of_group(
-    source: &Source<'_>,
-    field: &str,
+    draft: &Draft<'_>,
+    at: &Section<'_>,
     entry: &FormationEntry,
-    file: &ScenarioFile,
     terrain: &Terrain,
-) -> Result<(Vec<Robot>, Formation), ScenarioError> {
-    let (formation, entries) = formation(source, field, entry, file.formation.rho, 0)?;
-    check(source, &entries, terrain)?;
+) -> Checked<(Vec<Robot>, Formation)> {
+    let (formation, entries) = formation(at, entry, draft.file.formation.rho, 0)?;
+    check(draft, &entries, terrain)?;
     Ok((entries.into_iter().map(|entry| entry.robot).collect(), formation))
 }
 
 fn formation(
-    source: &Source<'_>,
-    field: &str,
+    at: &Section<'_>,
     entry: &FormationEntry,
     rho: Option<u8>,
     before: usize,
-) -> Result<(Formation, Vec<Entry>), ScenarioError> {
-    let graph = graph(source, field, entry, rho)?;
+) -> Checked<(Formation, Vec<Entry>)> {
+    let graph = graph(at, entry, rho)?;
     let first = u32::try_from(before).unwrap_or(u32::MAX).saturating_add(1);
-    let entries = placed(source, field, entry, &graph, first)?;
+    let entries = placed(at, entry, &graph, first)?;
     Ok((graph.of(before, first), entries))
 }
 
@@ -141,43 +149,31 @@ fn cell([x, y]: [i16; 2]) -> Cell {
 }
 
 fn listed(list: &[RobotEntry]) -> Vec<Entry> {
-    (1..)
-        .zip(list)
-        .map(|(number, entry)| Entry {
-            robot: Robot { id: RobotId(entry.id.unwrap_or(number)), start: cell(entry.start), goal: cell(entry.goal) },
-            field: format!("robots.list[{}]", number - 1),
-            goal_moves: false,
-        })
-        .collect()
+    let entry = |(number, entry): (u32, &RobotEntry)| {
+        let field = format!("robots.list[{}]", number - 1);
+        Entry::new(entry.id.unwrap_or(number), cell(entry.start), cell(entry.goal), field)
+    };
+    (1..).zip(list).map(entry).collect()
 }
 
 type Graph = (Vec<Cell>, Vec<(u16, u16)>);
 
-fn graph(
-    source: &Source<'_>,
-    field: &str,
-    entry: &FormationEntry,
-    rho: Option<u8>,
-) -> Result<Formation, ScenarioError> {
+fn graph(at: &Section<'_>, entry: &FormationEntry, rho: Option<u8>) -> Checked<Formation> {
     let (places, edges) = match (entry.rows, entry.columns, &entry.places, &entry.edges) {
         (Some(rows), Some(columns), None, None) => grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3]))
             .ok_or_else(|| {
-                source.error(
-                    field,
-                    format!("{rows} rows of {columns} robots do not fit any map or any memory"),
-                    format!("give 1 or more of both, at most {MAX_PLACES} robots, and a smaller spacing"),
-                )
+                let what = format!("{rows} rows of {columns} robots do not fit any map or any memory");
+                let least = format!("give 1 or more of both, at most {MAX_PLACES} robots, and a smaller spacing");
+                at.unfit(what, least)
             }),
-        (None, None, Some(places), Some(edges)) => given_graph(source, field, places, edges),
-        _ => Err(source.error(
-            field,
-            "its shape is not clear",
-            "give rows and columns (and spacing), or places and edges",
-        )),
+        (None, None, Some(places), Some(edges)) => given_graph(at, places, edges),
+        _ => {
+            let remedy = "give rows and columns (and spacing), or places and edges";
+            Err(at.unfit("its shape is not clear", remedy))
+        }
     }?;
-    if rho == Some(0) {
-        return Err(source.error("formation.rho", "with rho = 0 no robot knows its neighbours", "give 1 or more"));
-    }
+    let (whole, field) = (at.source.whole(), "formation.rho");
+    whole.require(rho != Some(0), field, "with rho = 0 no robot knows its neighbours", "give 1 or more")?;
     let templates =
         |rho| (0..places.len()).map(|own| Template::from_graph(&places, &edges, own, rho)).collect::<Result<_, _>>();
     // More knowledge keeps the formation better: use the largest rho that fits.
@@ -185,23 +181,17 @@ fn graph(
         Some(rho) => templates(rho),
         None => templates(3).or_else(|_| templates(2)).or_else(|_| templates(1)),
     }
-    .map_err(|error| template_error(source, field, error))?;
+    .map_err(|error| match error {
+        TemplateError::TooMany => {
+            let what = format!("a robot would have more than {TEMPLATE} neighbours in the formation");
+            whole.error(field, what, "give a smaller rho, or fewer edges per robot")
+        }
+        TemplateError::NoSuchPlace | TemplateError::BadEdge => {
+            let what = format!("the formation has more than {MAX_PLACES} places");
+            at.unfit(what, format!("give at most {MAX_PLACES} robots"))
+        }
+    })?;
     Ok(Formation { places, edges, templates, first: 0 })
-}
-
-fn template_error(source: &Source<'_>, field: &str, error: TemplateError) -> ScenarioError {
-    match error {
-        TemplateError::TooMany => source.error(
-            "formation.rho",
-            format!("a robot would have more than {TEMPLATE} neighbours in the formation"),
-            "give a smaller rho, or fewer edges per robot",
-        ),
-        TemplateError::NoSuchPlace | TemplateError::BadEdge => source.error(
-            field,
-            format!("the formation has more than {MAX_PLACES} places"),
-            format!("give at most {MAX_PLACES} robots"),
-        ),
-    }
 }
 
 fn grid_graph(rows: u16, columns: u16, [dx, dy]: [i16; 2]) -> Option<Graph> {
@@ -226,43 +216,29 @@ fn grid_graph(rows: u16, columns: u16, [dx, dy]: [i16; 2]) -> Option<Graph> {
     Some((places, edges))
 }
 
-fn given_graph(
-    source: &Source<'_>,
-    field: &str,
-    places: &[[i16; 2]],
-    edges: &[[u32; 2]],
-) -> Result<Graph, ScenarioError> {
-    if places.first() != Some(&[0, 0]) {
-        let remedy = "places are relative to robot 1, the top leader";
-        return Err(source.error(&format!("{field}.places"), "the first place is not [0, 0]", remedy));
-    }
-    if places.len() > usize::from(MAX_PLACES) {
-        let what = format!("{} robots are more than a formation holds", places.len());
-        return Err(source.error(&format!("{field}.places"), what, format!("give at most {MAX_PLACES}")));
-    }
+fn given_graph(at: &Section<'_>, places: &[[i16; 2]], edges: &[[u32; 2]]) -> Checked<Graph> {
+    let remedy = "places are relative to robot 1, the top leader";
+    at.require(places.first() == Some(&[0, 0]), "places", "the first place is not [0, 0]", remedy)?;
+    let what = format!("{} robots are more than a formation holds", places.len());
+    at.require(places.len() <= usize::from(MAX_PLACES), "places", what, format!("give at most {MAX_PLACES}"))?;
     let mut pairs = BTreeSet::new();
     for (index, &[a, b]) in edges.iter().enumerate() {
         let place = |id: u32| {
             let place = u16::try_from(id.checked_sub(1)?).ok()?;
             (usize::from(place) < places.len()).then_some(place)
         };
-        match (place(a), place(b)) {
-            (Some(a), Some(b)) if a != b => {
-                pairs.insert((a.min(b), a.max(b)));
-            }
-            _ => {
-                let what = format!("[{a}, {b}] joins no two robots of the formation");
-                let remedy = format!("give two different numbers from 1 to {}", places.len());
-                return Err(source.error(&format!("{field}.edges[{index}]"), what, remedy));
-            }
-        }
+        let Some((a, b)) = place(a).zip(place(b)).filter(|(a, b)| a != b) else {
+            let what = format!("[{a}, {b}] joins no two robots of the formation");
+            let remedy = format!("give two different numbers from 1 to {}", places.len());
+            return Err(at.error(&format!("edges[{index}]"), what, remedy));
+        };
+        pairs.insert((a.min(b), a.max(b)));
     }
     if let Some(lost) = unreached(places.len(), &pairs) {
         let what = format!("no edges lead from robot 1 to robot {}", lost + 1);
-        return Err(source.error(&format!("{field}.edges"), what, "join every robot to the formation"));
+        return Err(at.error("edges", what, "join every robot to the formation"));
     }
-    let places = places.iter().copied().map(cell).collect();
-    Ok((places, pairs.into_iter().collect()))
+    Ok((places.iter().copied().map(cell).collect(), pairs.into_iter().collect()))
 }
 
 /// First place that is not connected to place 0. O(places * edges).
@@ -280,177 +256,116 @@ fn unreached(count: usize, edges: &BTreeSet<(u16, u16)>) -> Option<usize> {
     reached.iter().position(|is_reached| !is_reached)
 }
 
-fn placed(
-    source: &Source<'_>,
-    field: &str,
-    entry: &FormationEntry,
-    graph: &Formation,
-    first: u32,
-) -> Result<Vec<Entry>, ScenarioError> {
+fn placed(at: &Section<'_>, entry: &FormationEntry, graph: &Formation, first: u32) -> Checked<Vec<Entry>> {
     let shifted = |[x, y]: [i16; 2], by: Cell| Some(Cell::new(x.checked_add(by.x)?, y.checked_add(by.y)?));
-    let count = graph.places.len();
-    match (&entry.start, &entry.starts) {
-        (Some(_), None) => {}
-        (None, Some(starts)) if starts.len() == count => {}
-        (None, Some(starts)) => {
-            let what = format!("{} starts for {count} robots", starts.len());
-            return Err(source.error(&format!("{field}.starts"), what, "give one for each robot, by their numbers"));
-        }
-        _ => {
-            let remedy = "give start, of robot 1, or starts, of all, and not both";
-            return Err(source.error(field, "it is not clear where they start", remedy));
-        }
+    if let FormationStarts::All(starts) = &entry.starts {
+        let what = format!("{} starts for {} robots", starts.len(), graph.places.len());
+        let is_complete = starts.len() == graph.places.len();
+        at.require(is_complete, "starts", what, "give one for each robot, by their numbers")?;
     }
-    let start = |index: usize, place: Cell| match (&entry.starts, entry.start) {
-        (Some(starts), _) => starts.get(index).copied().map(cell),
-        (None, start) => shifted(start?, place),
-    };
     let placed = |(index, &place): (usize, &Cell)| {
         let number = index as u32 + first;
-        match (start(index, place), shifted(entry.goal, place)) {
-            (Some(start), Some(goal)) => Ok(Entry {
-                robot: Robot { id: RobotId(number), start, goal },
-                field: field.to_owned(),
-                goal_moves: index > 0,
-            }),
-            _ => Err(source.error(
-                field,
-                format!("robot {number} would be outside of any map"),
-                "give a smaller formation or another start and goal",
-            )),
-        }
+        let start = match &entry.starts {
+            FormationStarts::All(starts) => starts.get(index).copied().map(cell),
+            FormationStarts::First(start) => shifted(*start, place),
+        };
+        let Some((start, goal)) = start.zip(shifted(entry.goal, place)) else {
+            let what = format!("robot {number} would be outside of any map");
+            return Err(at.unfit(what, "give a smaller formation or another start and goal"));
+        };
+        Ok(Entry { goal_moves: index > 0, ..Entry::new(number, start, goal, &at.path) })
     };
     graph.places.iter().enumerate().map(placed).collect()
 }
 
-fn from_scen(source: &Source<'_>, entry: &ScenEntry, terrain: &Terrain) -> Result<Vec<Entry>, ScenarioError> {
-    let path = source.file(&entry.file);
-    let queries = movingai::load_scen(&path).map_err(|error| {
-        source.error("robots.scen.file", error.to_string(), "file names are relative to the scenario file")
-    })?;
-    let count = entry.count as usize;
-    if count == 0 || count > queries.len() {
-        let what = format!("{count} robots are wanted, the file has {}", queries.len());
-        return Err(source.error("robots.scen.count", what, format!("give 1 to {}", queries.len())));
-    }
-    (1..)
-        .zip(&queries[..count])
-        .map(|(number, query)| {
-            if (query.width, query.height) != (terrain.width(), terrain.height()) {
-                return Err(source.error(
-                    "robots.scen.file",
-                    format!(
-                        "it is for a map of {} x {} cells, the terrain has {} x {}",
-                        query.width,
-                        query.height,
-                        terrain.width(),
-                        terrain.height()
-                    ),
-                    format!("use the map {} uncropped", query.map),
-                ));
-            }
-            Ok(Entry {
-                robot: Robot { id: RobotId(number), start: query.start, goal: query.goal },
-                field: "robots.scen".to_owned(),
-                goal_moves: false,
-            })
-        })
-        .collect()
+fn from_scen(draft: &Draft<'_>, entry: &ScenEntry, terrain: &Terrain) -> Checked<Vec<Entry>> {
+    let (at, count) = (draft.at("robots.scen"), entry.count as usize);
+    let queries = movingai::load_scen(&draft.source.file(&entry.file))
+        .map_err(|error| at.error("file", error.to_string(), "file names are relative to the scenario file"))?;
+    let what = format!("{count} robots are wanted, the file has {}", queries.len());
+    at.require((1..=queries.len()).contains(&count), "count", what, format!("give 1 to {}", queries.len()))?;
+    let robot = |(number, query): (u32, &movingai::Query)| {
+        let (map, [width, height]) = ([query.width, query.height], [terrain.width(), terrain.height()]);
+        let what =
+            format!("it is for a map of {} x {} cells, the terrain has {width} x {height}", query.width, query.height);
+        at.require(map == [width, height], "file", what, format!("use the map {} uncropped", query.map))?;
+        Ok(Entry::new(number, query.start, query.goal, &at.path))
+    };
+    (1..).zip(&queries[..count]).map(robot).collect()
 }
 
 /// Numbers robots row by row from the south: neighbours on the land are neighbours in memory.
-fn scattered(
-    source: &Source<'_>,
-    entry: &ScatteredEntry,
-    terrain: &Terrain,
-    seed: u64,
-) -> Result<Vec<Entry>, ScenarioError> {
+fn scattered(draft: &Draft<'_>, entry: &ScatteredEntry, terrain: &Terrain) -> Checked<Vec<Entry>> {
+    let (at, seed) = (draft.at("robots.scattered"), draft.file.seed);
     let (width, height) = (i32::from(terrain.width()), i32::from(terrain.height()));
-    let mut free: Vec<u32> = (0..)
-        .zip(terrain.cells())
-        .filter_map(|(at, &u)| (u != staya_controller::grid::BLOCKED).then_some(at))
-        .collect();
+    let cells = (0..).zip(terrain.cells());
+    let mut free: Vec<u32> = cells.filter_map(|(at, &class)| (class != BLOCKED).then_some(at)).collect();
     let count = entry.count as usize;
-    if count == 0 || count > free.len() {
-        let what = format!("{count} robots on {} passable cells", free.len());
-        return Err(source.error("robots.scattered.count", what, format!("give 1 to {}", free.len())));
-    }
+    let what = format!("{count} robots on {} passable cells", free.len());
+    at.require((1..=free.len()).contains(&count), "count", what, format!("give 1 to {}", free.len()))?;
     let mut rng = Rng::keyed(seed, PLACES, 0, 0);
-    for at in 0..count {
-        let other = at + rng.below((free.len() - at) as u32) as usize;
-        free.swap(at, other);
+    for index in 0..count {
+        let other = index + rng.below((free.len() - index) as u32) as usize;
+        free.swap(index, other);
     }
     free.truncate(count);
     free.sort_unstable();
-    let cell_at = |at: u32| {
-        let at = at as i32;
-        (at % width, at / width)
-    };
     let travel = entry.travel.map_or(i32::MAX, i32::from);
     let mut taken = vec![false; terrain.cells().len()];
-    (1..)
-        .zip(free)
-        .map(|(number, at)| {
-            let (x, y) = cell_at(at);
-            let mut rng = Rng::keyed(seed, GOALS, number, 0);
-            let mut draw = |at: i32, length: i32| {
-                let low = at.saturating_sub(travel).max(0);
-                let high = at.saturating_add(travel).min(length - 1);
-                low + rng.below((high - low + 1) as u32) as i32
-            };
-            let goal = (0..TRIES).map(|_| Cell::new(draw(x, width) as i16, draw(y, height) as i16)).find(|&goal| {
-                let is_far = goal.chebyshev(Cell::new(x as i16, y as i16)) >= u32::from(entry.least);
-                let at = terrain.index(goal).filter(|_| is_far && terrain.is_passable(goal));
-                at.is_some_and(|at| !std::mem::replace(&mut taken[at], true))
-            });
-            let Some(goal) = goal else {
-                let what = format!("no free goal is left within reach of robot {number}");
-                return Err(source.error("robots.scattered", what, "give fewer robots or a longer travel"));
-            };
-            Ok(Entry {
-                robot: Robot { id: RobotId(number), start: Cell::new(x as i16, y as i16), goal },
-                field: "robots.scattered".to_owned(),
-                goal_moves: false,
-            })
-        })
-        .collect()
+    let place = |(number, index): (u32, u32)| {
+        let (x, y) = (index as i32 % width, index as i32 / width);
+        let start = Cell::new(x as i16, y as i16);
+        let mut rng = Rng::keyed(seed, GOALS, number, 0);
+        let mut draw = |at: i32, length: i32| {
+            let low = at.saturating_sub(travel).max(0);
+            let high = at.saturating_add(travel).min(length - 1);
+            (low + rng.below((high - low + 1) as u32) as i32) as i16
+        };
+        let mut goals = (0..TRIES).map(|_| Cell::new(draw(x, width), draw(y, height)));
+        let goal = goals.find(|&goal| {
+            let is_far = goal.chebyshev(start) >= u32::from(entry.least);
+            let at = terrain.index(goal).filter(|_| is_far && terrain.is_passable(goal));
+            at.is_some_and(|at| !std::mem::replace(&mut taken[at], true))
+        });
+        let goal = goal.ok_or_else(|| {
+            let what = format!("no free goal is left within reach of robot {number}");
+            at.unfit(what, "give fewer robots or a longer travel")
+        })?;
+        Ok(Entry::new(number, start, goal, &at.path))
+    };
+    (1..).zip(free).map(place).collect()
 }
 
-fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<(), ScenarioError> {
-    if entries.is_empty() {
-        return Err(source.error("robots", "there are no robots", "give at least one robot"));
-    }
+fn check(draft: &Draft<'_>, entries: &[Entry], terrain: &Terrain) -> Checked {
+    draft.require(!entries.is_empty(), "robots", "there are no robots", "give at least one robot")?;
     let mut ids = BTreeSet::new();
     let mut starts = vec![0; terrain.cells().len()];
     let mut goals = starts.clone();
-    for entry in entries {
-        let RobotId(id) = entry.robot.id;
+    for Entry { robot, field, goal_moves } in entries {
+        let RobotId(id) = robot.id;
+        let refuse = |name: &str, what: String, remedy: String| Err(draft.at(field).error(name, what, remedy));
         if id == 0 || !ids.insert(id) {
             let remedy = "numbers are 1 or more, and each robot has its own";
-            return Err(source.error(&format!("{}.id", entry.field), format!("{id} is not free"), remedy));
+            return refuse("id", format!("{id} is not free"), remedy.to_owned());
         }
-        for (name, place, taken) in [("start", entry.robot.start, &mut starts), ("goal", entry.robot.goal, &mut goals)]
-        {
-            let field = format!("{}.{name}", entry.field);
-            let Some(at) = terrain.index(place) else {
-                return Err(source.error(
-                    &field,
-                    format!("the {name} ({}, {}) of robot {id} is not on the map", place.x, place.y),
-                    format!("the map has columns 0 to {} and rows 0 to {}", terrain.width() - 1, terrain.height() - 1),
-                ));
+        for (name, place, taken) in [("start", robot.start, &mut starts), ("goal", robot.goal, &mut goals)] {
+            let the = || format!("the {name} ({}, {}) of robot {id}", place.x, place.y);
+            let Some(index) = terrain.index(place) else {
+                let (columns, rows) = (terrain.width() - 1, terrain.height() - 1);
+                let remedy = format!("the map has columns 0 to {columns} and rows 0 to {rows}");
+                return refuse(name, the() + " is not on the map", remedy);
             };
-            if !(terrain.is_passable(place) || name == "goal" && entry.goal_moves) {
-                let what = format!("the {name} ({}, {}) of robot {id} is in a wall", place.x, place.y);
+            if !(terrain.is_passable(place) || name == "goal" && *goal_moves) {
                 let remedy = match nearest_passable(terrain, place) {
                     Some(near) => format!("the nearest free cell is [{}, {}]", near.x, near.y),
                     None => "the map has no free cell at all".to_owned(),
                 };
-                return Err(source.error(&field, what, remedy));
+                return refuse(name, the() + " is in a wall", remedy);
             }
-            let other = std::mem::replace(&mut taken[at], id);
+            let other = std::mem::replace(&mut taken[index], id);
             if other != 0 {
                 let what = format!("robots {other} and {id} have the same {name} ({}, {})", place.x, place.y);
-                return Err(source.error(&field, what, "a cell holds one robot: move one of them"));
+                return refuse(name, what, "a cell holds one robot: move one of them".to_owned());
             }
         }
     }

@@ -8,13 +8,13 @@ use super::intervention::InterventionTable;
 use super::law::LawTable;
 use super::maps::MapsTable;
 use super::params::{FormationTable, GridTable, RouteTable};
-use super::plane::PlaneTable;
+use super::plane::{PlaneTable, RobotsSource};
 use super::plausibility::PlausibilityTable;
 use super::robots::RobotsTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
 use crate::terrain::generate::Hills;
-use crate::{choice, defaults, names, table};
+use crate::{choice, names, one_of, table};
 use staya_controller::grid::Norm;
 use std::path::PathBuf;
 
@@ -68,32 +68,32 @@ impl ScenarioFile {
     /// Whether robots given in cells keep a formation.
     #[must_use]
     pub fn cells_in_formation(&self) -> bool {
-        self.robots.as_ref().is_some_and(|robots| !robots.formation.0.is_empty())
+        matches!(&self.robots, Some(RobotsTable::Formation(_)))
     }
 
     /// Whether any robots keep a formation.
     #[must_use]
     pub fn in_formation(&self) -> bool {
-        self.cells_in_formation() || !self.group_formations().is_empty()
+        self.formations().next().is_some()
     }
 
-    pub(super) fn group_formations(&self) -> Vec<&FormationEntry> {
+    pub(super) fn formations(&self) -> impl Iterator<Item = &FormationEntry> {
+        let in_cells = match &self.robots {
+            Some(RobotsTable::Formation(formations)) => &formations.0[..],
+            _ => &[],
+        };
         let groups = self.plane.iter().flat_map(|plane| &plane.group);
-        groups.filter_map(|group| group.robots.formation.as_ref()).collect()
+        in_cells.iter().chain(groups.filter_map(|group| match &group.robots.robots {
+            RobotsSource::Formation(formation) => Some(formation),
+            _ => None,
+        }))
     }
 }
 
 table! {
-    /// `[terrain]`: exactly one of `file`, `uniform`, `natural`, `entropy`.
+    /// `[terrain]`.
     pub struct TerrainTable {
-        /// A map file: `.map` (Moving AI), `.asc` (ESRI heights), `.yaml` (ROS map_server).
-        pub file: Option<PathBuf>;
-        /// Impassability drawn independently for each cell. With `classes = 1`: flat terrain.
-        pub uniform: Option<UniformTable>;
-        /// Hills of mud (KUZ section 5).
-        pub natural: Option<NaturalTable>;
-        /// Terrain with a given configuration entropy and total edge (KUZ section 4).
-        pub entropy: Option<EntropyTable>;
+        part land: LandSource;
         /// Conversion of the file to impassability; see [`LoadOptions`].
         pub load: LoadOptions = Default::default();
         /// Part of the map to use. Default: all of it.
@@ -105,26 +105,53 @@ table! {
     }
 }
 
+one_of! {
+    /// Origin of the terrain.
+    pub enum LandSource {
+        /// A map file: `.map` (Moving AI), `.asc` (ESRI heights), `.yaml` (ROS map_server).
+        File(PathBuf) = "file";
+        /// Impassability drawn independently for each cell. With `classes = 1`: flat terrain.
+        Uniform(UniformTable) = "uniform";
+        /// Hills of mud (KUZ section 5).
+        Natural(NaturalTable) = "natural";
+        /// Terrain with a given configuration entropy and total edge (KUZ section 4).
+        Entropy(EntropyTable) = "entropy";
+    }
+}
+
+one_of! {
+    /// Cells that change.
+    pub enum Area {
+        /// Individual cells.
+        Cells(Vec<[i16; 2]>) = "cells";
+        /// All cells of a rectangle.
+        Rectangle(Crop) = "rectangle";
+        /// All cells whose centre is in a polygon with these corners, metres.
+        Polygon(Vec<[f64; 2]>) = "polygon_m";
+    }
+}
+
+one_of! {
+    /// How cells change.
+    pub enum ChangeSource {
+        /// New value of the cells: ticks to cross one, 1 to 255; 0: closed.
+        Class(u8) = "class";
+        /// Makes some of the cells slower or faster instead.
+        Drift(DriftTable) = "drift";
+    }
+}
+
 table! {
-    /// `[[terrain.change]]`: exactly one of `class`, `drift`; at most one of `cells`, `rectangle`,
-    /// `polygon_m` (one with `class`).
+    /// `[[terrain.change]]`. A `class` needs an area.
     pub struct ChangeTable {
+        part area: Option<Area>;
+        part becomes: ChangeSource;
         /// Time, seconds after the start. Applied before the first tick from then on. Default: 0.
         pub at_s: f64 = 0.0, 0.0..=14_400_000.0, "seconds";
         /// Period of repetition, seconds. Default: once.
         pub every_s: Option<f64>;
         /// With `class`: seconds until the cells revert; less than `every_s`. Default: never.
         pub for_s: Option<f64>;
-        /// Individual cells.
-        pub cells: Option<Vec<[i16; 2]>>;
-        /// All cells of a rectangle.
-        pub rectangle: Option<Crop>;
-        /// All cells whose centre is in a polygon with these corners, metres.
-        pub polygon_m: Option<Vec<[f64; 2]>>;
-        /// New value of the cells: ticks to cross one, 1 to 255; 0: closed.
-        pub class: Option<u8>;
-        /// Makes some of the cells slower or faster instead.
-        pub drift: Option<DriftTable>;
     }
 }
 
@@ -249,20 +276,27 @@ table! {
     }
 }
 
-table! {
-    /// `[authentication]`: exactly one of the four key fields. Robots then tag (postcard) or sign
-    /// (MAVLink) their frames, and reject frames without a valid key.
-    pub struct AuthenticationTable {
+one_of! {
+    /// A key of all robots, or a secret of the operator.
+    pub enum Secret {
         /// A file with 64 hexadecimal digits, or with `passphrase: ` and words.
-        pub key_file: Option<PathBuf>;
+        KeyFile(PathBuf) = "key_file";
         /// The same text inline, for demonstrations only: a scenario file is not a place for
         /// secrets.
-        pub key: Option<String>;
+        Key(String) = "key";
         /// Instead of a key, such a file with the operator's master secret: each robot then also
         /// has its own key, and accepts orders and new keys only under that key.
-        pub master_file: Option<PathBuf>;
+        MasterFile(PathBuf) = "master_file";
         /// The same text inline, for demonstrations only.
-        pub master: Option<String>;
+        Master(String) = "master";
+    }
+}
+
+table! {
+    /// `[authentication]`: robots tag (postcard) or sign (MAVLink) their frames, and reject frames
+    /// without a valid key.
+    pub struct AuthenticationTable {
+        part secret: Secret;
         /// With a master: position of the operator's radio, metres. Default: the south-west corner.
         pub place_m: Option<[f64; 2]>, -2e6..=2e6, "metres";
         /// With a master: longest wait for answers per phase of a rotation, seconds. Default: 5.
@@ -336,5 +370,4 @@ table! {
     }
 }
 
-defaults!(TerrainTable);
 names!(Hills);

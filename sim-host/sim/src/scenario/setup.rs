@@ -8,15 +8,15 @@ use staya_controller::grid::Cell;
 
 impl Scenario {
     /// Guidance law of robot `index`, with its formation template. Another
-    /// [`Scenario::formation_law`] than Staya's replaces the formation on the grid.
+    /// [`Laws::formation`](super::Laws::formation) than Staya's replaces the formation on the grid.
     #[must_use]
     pub fn guidance(&self, index: usize) -> GuidanceSetup {
-        let mut guidance = match (&self.plane, self.formation_of(index)) {
+        let mut guidance = match (self.plane(), self.formation_of(index)) {
             (Some(plane), _) => plane.group(index).guidance.clone(),
-            (None, None) => GuidanceSetup::Route { route: self.route, speed_mps: None },
+            (None, None) => GuidanceSetup::Route { route: self.laws.route, speed_mps: None },
             (None, Some(_)) => GuidanceSetup::Formation {
-                route: self.route,
-                formation: self.formation_law.params(),
+                route: self.laws.route,
+                formation: self.laws.formation.params(),
                 template: Default::default(),
                 speed_mps: None,
             },
@@ -54,11 +54,11 @@ impl Scenario {
     /// Sorted cells that a rule or an intervention sets, without drifting cells. O(cells).
     #[must_use]
     pub fn changing_cells(&self) -> Vec<Cell> {
-        let by_rule = self.changes.iter().flat_map(|rule| match &rule.kind {
+        let by_rule = self.land.changes.iter().flat_map(|rule| match &rule.kind {
             ChangeKind::Become { cells, .. } => &cells[..],
             ChangeKind::Drift { .. } => &[],
         });
-        let by_hand = self.interventions.iter().filter_map(|(_, what)| match what {
+        let by_hand = self.events.interventions.iter().filter_map(|(_, what)| match what {
             Intervention::Cell { cell: [x, y], .. } => Some(Cell::new(*x, *y)),
             _ => None,
         });
@@ -69,12 +69,12 @@ impl Scenario {
     }
 
     pub(crate) fn scouts(&self) -> Option<Scouts> {
-        self.scouting.as_ref().map(|known| Scouts::new(known, self.route.params.radius, self.robots.len()))
+        self.land.scouting.as_ref().map(|known| Scouts::new(known, self.laws.route.params.radius, self.robots.len()))
     }
 
     /// Safety layer of robot `index`.
     #[must_use]
     pub fn safety(&self, index: usize) -> SafetySetup {
-        self.plane.as_ref().map_or(SafetySetup::None, |plane| plane.group(index).safety)
+        self.plane().map_or(SafetySetup::None, |plane| plane.group(index).safety)
     }
 }

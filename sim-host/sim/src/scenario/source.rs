@@ -1,11 +1,11 @@
 //! TOML text of a scenario or another settings file, and errors that point into it.
 
-use super::read::{Field as Read, Node, Wrong, json};
+use super::read::{Field as Read, Limits, Node, Wrong, json};
 use super::{Field, write};
 use crate::file::read_remedy;
 use std::cell::RefCell;
 use std::fmt::{self, Display, Formatter};
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::Spanned;
@@ -37,6 +37,9 @@ pub enum ScenarioError {
         remedy: String,
     },
 }
+
+/// Result of a check.
+pub(super) type Checked<T = ()> = Result<T, ScenarioError>;
 
 /// Place in a text. Both are counted from 1; columns are characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +127,11 @@ impl<'a> Source<'a> {
     /// Creates an error about a field. If the field is absent, the place is that of its table.
     pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
         self.error_at(self.find(field).0.map_or(0..0, Spanned::span), field, what, remedy)
+    }
+
+    /// The whole text as a table.
+    pub(super) const fn whole(&self) -> Section<'_> {
+        Section { source: self, path: String::new() }
     }
 
     /// Creates an error about a range of bytes in the text.
@@ -244,6 +252,57 @@ impl<'a> Source<'a> {
             (node, found) = (next, Some(next));
         }
         (found, found.is_some())
+    }
+}
+
+/// A table in the text, for errors about its fields.
+#[derive(Clone, Debug)]
+pub(super) struct Section<'a> {
+    pub source: &'a Source<'a>,
+    /// Path of the table.
+    pub path: String,
+}
+
+impl Section<'_> {
+    /// Path of a field of the table.
+    pub fn field(&self, name: &str) -> String {
+        let dot = if self.path.is_empty() || name.starts_with('[') { "" } else { "." };
+        format!("{}{dot}{name}", self.path)
+    }
+
+    /// A table in the table.
+    pub fn at(&self, name: impl AsRef<str>) -> Self {
+        Self { source: self.source, path: self.field(name.as_ref()) }
+    }
+
+    /// Whether a field is there.
+    pub fn has(&self, name: &str) -> bool {
+        self.source.has(&self.field(name))
+    }
+
+    /// Creates an error about the table itself; see [`Source::error`].
+    pub fn unfit(&self, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
+        self.source.error(&self.path, what, remedy)
+    }
+
+    /// Creates an error about a field; see [`Source::error`].
+    pub fn error(&self, name: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
+        self.source.error(&self.field(name), what, remedy)
+    }
+
+    /// Refuses a field unless `holds`.
+    pub fn require(&self, holds: bool, name: &str, what: impl Into<String>, remedy: impl Into<String>) -> Checked {
+        if holds { Ok(()) } else { Err(self.error(name, what, remedy)) }
+    }
+
+    /// Refuses the value of a field if it is out of range.
+    pub fn limit(&self, name: &str, value: f64, limits: &Limits) -> Checked {
+        limits.check(value).map_err(|[what, remedy]| self.error(name, what, remedy))
+    }
+
+    /// Like [`limit`](Self::limit), for a range that depends on other fields.
+    pub fn within(&self, name: &str, value: f64, range: RangeInclusive<f64>, unit: &'static str) -> Checked {
+        self.limit(name, value, &Limits::new(range, unit))
     }
 }
 

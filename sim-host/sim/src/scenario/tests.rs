@@ -4,6 +4,7 @@ mod readme;
 
 use super::*;
 use proptest::prelude::*;
+use staya_controller::agent::GuidanceSetup;
 use staya_controller::cost::Gain;
 use staya_controller::formation::{FormationParams, NEVER};
 use staya_controller::grid::Cell;
@@ -39,7 +40,7 @@ fn with_robots(robots: &str) -> String {
 fn the_smallest_scenario_has_the_documented_defaults() {
     let scenario = parse(&with_robots("list = [{ start = [0, 0], goal = [3, 2] }]")).expect("good");
     assert_eq!((scenario.seed, scenario.ticks, scenario.tick_us), (0, 5, 1_000_000));
-    assert_eq!(scenario.rules, MoveRules::default());
+    assert!(matches!(scenario.movement, Movement::Cells(rules) if rules == MoveRules::default()));
     assert_eq!(scenario.radio, RadioParams::default());
     let [robot] = scenario.robots[..] else { panic!("one robot") };
     assert_eq!((robot.id, robot.start, robot.goal), (RobotId(1), Cell::new(0, 0), Cell::new(3, 2)));
@@ -100,7 +101,10 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             &format!("{HEAD}{robots}[grid]\nsimultaneous = true\n"),
             "s.toml:8:16: grid.simultaneous: diagonal moves at once would cross each other; give moves = 4",
         ),
-        (&format!("{HEAD}{robots}[radio]\nrange_m = nan\n"), "s.toml:8:11: radio.range_m: NaN is not a distance"),
+        (
+            &format!("{HEAD}{robots}[radio]\nrange_m = nan\n"),
+            "s.toml:8:11: radio.range_m: NaN is out of range; give 0 to inf metres",
+        ),
         (
             &format!("{HEAD}{robots}[radio]\ndelay_ms = -1\n"),
             "s.toml:8:12: radio.delay_ms: -1 is out of range; give 0 to 600000 milliseconds",
@@ -124,9 +128,9 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (&format!("{HEAD}cell_m = nan\n{robots}"), "s.toml:5:10: terrain.cell_m: NaN is out of range"),
         (
             &format!("name = \"t\"\nticks = 5\n[terrain]\n{robots}"),
-            "s.toml:3:1: terrain: it is not clear what land is meant; give exactly one of",
+            "s.toml:3:1: terrain: a field is missing; give exactly one of `file`, `uniform`",
         ),
-        (&with_robots(""), "s.toml:5:1: robots: the robots are not defined exactly once; give exactly one of"),
+        (&with_robots(""), "s.toml:5:1: robots: a field is missing; give exactly one of `list`"),
         (&with_robots("list = []"), "s.toml:5:1: robots: there are no robots"),
         (
             &with_robots("list = [\n{ start = [0, 0], goal = [3, 2] },\n{ start = [0, 0], goal = [3, 1] }]"),
@@ -186,7 +190,8 @@ fn a_law_gets_the_moves_of_the_bodies() {
     let robots = with_robots("list = [{ start = [0, 0], goal = [3, 2] }]");
     let of = |grid: &str| {
         let scenario = parse(&format!("{robots}[law]\nname = \"negotiation\"\n[grid]\n{grid}")).expect("good");
-        (scenario.rules.orthogonal, scenario.rules.simultaneous, scenario.law.expect("a law").moves)
+        let Movement::Cells(rules) = scenario.movement else { panic!("robots in cells") };
+        (rules.orthogonal, rules.simultaneous, scenario.laws.added.expect("a law").moves)
     };
     assert_eq!(of(""), (false, false, Moves::EIGHT));
     assert_eq!(of("moves = 4\nsimultaneous = true"), (true, true, Moves::FOUR));
@@ -200,7 +205,7 @@ fn robots_that_negotiate_in_the_plane_fit_around_corners_and_have_goals_in_cells
     };
     let cells = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
     let route = |radius_m: f64| with(&format!("radius_m = {radius_m}\nguidance = \"route\"\n"), cells);
-    assert_eq!(parse(&route(0.15)).expect("good").law.expect("a law").cruise_mps, Some(1.0));
+    assert_eq!(parse(&route(0.15)).expect("good").laws.added.expect("a law").cruise_mps, Some(1.0));
     assert!(refusal(&route(0.2)).starts_with("s.toml:12:12: plane.radius_m: 0.2 m are more than 0.35 cells"));
     let in_metres = "radius_m = 0.15\n[plane.robots]\nlist = [{ start_m = [0.25, 0.25], goal_m = [1.75, 1.25] }]\n";
     assert!(refusal(&with(in_metres, "")).contains("plane.guidance: robots that negotiate have goals in cells; give"));
@@ -259,9 +264,9 @@ fn scattered_goals_are_far_enough_and_hills_have_a_shape() {
     assert!(error.contains("no free goal is left within reach"), "{error}");
     let cells = |hills: &str| {
         let text = land(&format!("hills = '{hills}'\n[robots.scattered]\ncount = 1\n"));
-        parse(&text).expect("good").terrain.cells().to_vec()
+        parse(&text).expect("good").land.terrain.cells().to_vec()
     };
-    let even = parse(&land("[robots.scattered]\ncount = 1\n")).expect("good").terrain.cells().to_vec();
+    let even = parse(&land("[robots.scattered]\ncount = 1\n")).expect("good").land.terrain.cells().to_vec();
     assert!(cells("even") == even && cells("rough") != even && cells("wide") != even);
 }
 
@@ -322,7 +327,7 @@ fn fault_times_are_converted_to_ticks() {
         with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
     );
     let fault = Fault { robot: RobotId(1), from_tick: 3, to_tick: 5 };
-    assert_eq!(parse(&text).expect("good").faults, [fault]);
+    assert_eq!(parse(&text).expect("good").events.faults, [fault]);
 }
 
 #[test]
@@ -332,14 +337,14 @@ fn parameters_of_routes_and_formations_are_checked() {
         format!("{}{rest}", with_robots(robots))
     };
     let scenario = parse(&with("")).expect("good");
-    assert_eq!(scenario.route, RouteSetup::default());
-    assert_eq!(scenario.formation_law, FormationSetup::Staya(FormationParams::default()));
+    assert_eq!(scenario.laws.route, RouteSetup::default());
+    assert_eq!(scenario.laws.formation, FormationSetup::Staya(FormationParams::default()));
     let scenario = parse(&with(
         "[grid]\ncorner_cutting = true\n[route]\nradius = 16\nexit = \"ray\"\n\
          a2 = 0.5\nhalved_per_ticks = 2\n[formation]\nhalt_cells = 2\ngain = 4095\nfootprint = 1\n\
          prediction = \"reflexive\"\nrecovery = \"def\"\n",
     ));
-    let Scenario { route, formation_law, .. } = scenario.expect("good");
+    let Laws { route, formation: formation_law, .. } = scenario.expect("good").laws;
     let formation = formation_law.params();
     assert_eq!((route.params.radius, route.params.exit), (16, ExitRule::Ray));
     assert_eq!(route.params.a2, Gain::from_sixteenths(8));
@@ -372,19 +377,19 @@ fn a_formation_has_the_law_of_its_file() {
         format!("{}[formation]\n{rest}", with_robots(robots))
     };
     let ours = parse(&with("law = \"staya\"\nwaits = false\n")).expect("good");
-    assert!(matches!(ours.formation_law, FormationSetup::Staya(params) if params.halt_lag == NEVER));
+    assert!(matches!(ours.laws.formation, FormationSetup::Staya(params) if params.halt_lag == NEVER));
     let paper = parse(&with("law = \"paper\"\neps = 3\nhalt_cells = 6\nresume_cells = 2\ncrowd = 2\n"));
     let paper = paper.expect("good");
     let expected = PublishedParams { eps: 3, halt: 420, resume: 140, crowd: 2, ..PublishedParams::default() };
-    assert_eq!((paper.formation_law, paper.formation_law.eps()), (FormationSetup::Published(expected), 3));
+    assert_eq!((paper.laws.formation, paper.laws.formation.eps()), (FormationSetup::Published(expected), 3));
     assert!(matches!(paper.guidance(1), GuidanceSetup::Formation { template, .. } if template.slot == 1));
     let ahead = parse(&with("law = \"lookahead\"\n")).expect("good");
-    assert_eq!(ahead.formation_law, FormationSetup::Lookahead(FormationParams::looking_ahead()));
+    assert_eq!(ahead.laws.formation, FormationSetup::Lookahead(FormationParams::looking_ahead()));
     assert!(matches!(ahead.guidance(1), GuidanceSetup::Formation { template, .. } if template.slot == 1));
     assert_ne!(ahead.fingerprint(), parse(&with("")).expect("good").fingerprint());
     let low = parse(&with("law = \"paper\"\nhalt_cells = 1\n")).expect("good");
     assert!(
-        matches!(low.formation_law, FormationSetup::Published(params) if params.resume == 70),
+        matches!(low.laws.formation, FormationSetup::Published(params) if params.resume == 70),
         "resume is at most halt"
     );
     for (rest, expected) in [
@@ -406,7 +411,7 @@ fn formation_options_are_refused_without_a_formation() {
     let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
     let until_changed = format!("{list}[route]\nreplan = \"until_changed\"\n");
     let scenario = parse(&until_changed).expect("good");
-    assert_eq!(scenario.route.replan, Replan::UntilChanged);
+    assert_eq!(scenario.laws.route.replan, Replan::UntilChanged);
     let refusal = refusal(&format!("{list}[formation]\neps = 2\n"));
     let expected = "s.toml:7:1: formation: these robots keep no formation; give robots.formation";
     assert!(refusal.starts_with(expected), "{refusal}");
@@ -416,14 +421,14 @@ fn formation_options_are_refused_without_a_formation() {
 fn maps_are_shared_if_robots_plan_on_terrain() {
     let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
     let with = |rest: &str| format!("{list}{rest}");
-    assert_eq!(parse(&list).expect("good").maps, None);
+    assert_eq!(parse(&list).expect("good").laws.maps, None);
     let silent = parse(&with("[maps]\nshare = false\n")).expect("good");
-    assert_eq!((silent.maps, silent.fingerprint()), (None, parse(&list).expect("good").fingerprint()));
+    assert_eq!((silent.laws.maps, silent.fingerprint()), (None, parse(&list).expect("good").fingerprint()));
     let shared = parse(&with("[maps]\nshare = true\n")).expect("good");
-    assert_eq!(shared.maps, Some(MapParams::default()));
+    assert_eq!(shared.laws.maps, Some(MapParams::default()));
     assert_ne!(shared.fingerprint(), silent.fingerprint());
     let brief = parse(&with("[maps]\nshare = true\nforget_after_s = 1.5\n")).expect("good");
-    assert_eq!(brief.maps.map(|maps| maps.forget_after.as_micros()), Some(1_500_000));
+    assert_eq!(brief.laws.maps.map(|maps| maps.forget_after.as_micros()), Some(1_500_000));
     for (rest, expected) in [
         (
             "[maps]\nforget_after_s = 9\n",

@@ -152,7 +152,7 @@ impl Session {
 
     fn radio(&self) -> scene::Radio {
         let mut radio = scene::Radio::of(&self.scenario);
-        let planned = self.scenario.interventions.iter().filter(|(tick, _)| *tick < self.tick);
+        let planned = self.scenario.events.interventions.iter().filter(|(tick, _)| *tick < self.tick);
         for (_, what) in planned.chain(self.branch.done.iter().filter(|(tick, _)| *tick <= self.tick)) {
             if let Intervention::Radio { loss, range_m } = what {
                 radio.loss = loss.unwrap_or(radio.loss);
@@ -189,7 +189,7 @@ impl Session {
 
     /// The planned orders and those of pages.
     pub(super) fn orders(&self) -> String {
-        let orders = self.scenario.interventions.iter().chain(&self.branch.done).map(|(tick, what)| {
+        let orders = self.scenario.events.interventions.iter().chain(&self.branch.done).map(|(tick, what)| {
             let kind = serde_json::to_value(what).map(|mut what| what["kind"].take());
             json!({ "tick": tick, "order": { "kind": kind.unwrap_or_default() } })
         });

@@ -172,7 +172,7 @@ impl Session {
     }
 
     fn step(&mut self) {
-        self.has_new_land |= self.scenario.changes.iter().any(|rule| rule.is_due(self.tick));
+        self.has_new_land |= self.scenario.land.changes.iter().any(|rule| rule.is_due(self.tick));
         self.engine.step();
         self.tick += 1;
         self.repeat_orders();

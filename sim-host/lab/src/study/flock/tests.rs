@@ -174,7 +174,7 @@ fn groups_start_in_squares_that_face_each_other() {
     let text = std::fs::read_to_string(&path).unwrap();
     let given = Given { source: Source::new(&path, &text).unwrap(), measures: &[], seed: 2 };
     let run = Run::read(&given, given.parameters().unwrap()).unwrap();
-    let starts = run.scenario.plane.unwrap().starts;
+    let starts = &run.scenario.plane().unwrap().starts;
     for (west, east) in starts[..9].iter().zip(&starts[9..]) {
         let [dx, dy] = [0, 1].map(|axis| east.position_m[axis] - west.position_m[axis]);
         assert!((dx - 42.0).abs() <= 0.1 && dy.abs() <= 0.6, "{dx} {dy}");

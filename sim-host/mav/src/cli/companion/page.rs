@@ -76,7 +76,7 @@ pub struct Page {
 
 impl Page {
     pub fn new(mut watcher: Watcher, scenario: &Scenario) -> Result<Self> {
-        let radius_m = |index| scenario.plane.as_ref().map_or(0.0, |setup| setup.group(index).radius_m);
+        let radius_m = |index| scenario.plane().map_or(0.0, |setup| setup.group(index).radius_m);
         let robot = |(index, robot): (usize, &Robot)| RobotRow {
             id: robot.id.0,
             // NaN hides a robot of which no beacon has arrived.

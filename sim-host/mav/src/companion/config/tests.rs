@@ -32,7 +32,7 @@ fn defaults_are_cautious() {
 fn bodies_have_the_longer_lag_of_rules_and_scenario() {
     let lags = |rules: &str, scenario: &str| {
         let config = parse(&text(rules, "").replace(SCENARIO, scenario)).unwrap();
-        let plane = config.scenario.plane.as_ref().unwrap();
+        let plane = config.scenario.plane().unwrap();
         assert_eq!((&plane.general, &plane.groups), (&config.plane.general, &config.plane.groups));
         let groups = core::iter::once(&plane.general).chain(&plane.groups);
         groups.map(|group| group.abilities.lag_s).collect::<Vec<_>>()
@@ -82,7 +82,7 @@ fn a_geographic_goal_is_converted_to_metres() {
     let config = parse(&text("", "goal_deg = [55.751, 37.62]")).unwrap();
     let goal = config.plane.starts[2].places[0].position_m;
     assert!(goal[0].abs() < 0.01 && (goal[1] - 111.34).abs() < 0.01, "{goal:?}");
-    assert_eq!(config.scenario.plane.unwrap().starts[2].places[0].position_m, goal);
+    assert_eq!(config.scenario.plane().unwrap().starts[2].places[0].position_m, goal);
 }
 
 #[test]

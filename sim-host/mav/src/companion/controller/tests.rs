@@ -14,9 +14,9 @@ fn controllers(count: usize) -> Vec<Controller<Postcard>> {
 fn lagging(count: usize, lag_s: f64) -> Vec<Controller<Postcard>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let mut scenario = Scenario::load(&path, &Overrides::default()).unwrap();
-    scenario.plausibility.max_radius_m += 10.0;
-    scenario.plane.as_mut().unwrap().general.raise_lag(lag_s);
-    let plane = scenario.plane.as_ref().unwrap();
+    scenario.trust.plausibility.max_radius_m += 10.0;
+    scenario.plane_mut().unwrap().general.raise_lag(lag_s);
+    let plane = scenario.plane().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
     let controller = |index| Controller::new(&scenario, &ground, index, 1, 10.0, Postcard);
     (0..count).map(controller).collect()

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let to = std::env::args().nth(1);
     let mut recording = match &to {
         Some(to) => {
-            let output = Files::reading(&scenario.files).create(Path::new(to))?;
+            let output = Files::reading(&scenario.origin.files).create(Path::new(to))?;
             Some(RunRecorder::new(output, Path::new(to), &scenario, 1)?)
         }
         None => None,

@@ -1,6 +1,7 @@
 //! Diagonal moves of robots on the grid across each other.
 
 use super::*;
+use crate::scenario::Movement;
 use staya_controller::grid::BLOCKED;
 
 /// Robots 1 and 2 (or 2 and 1) on their way to the opposite corners of a square. The second one
@@ -11,7 +12,7 @@ fn two(is_reversed: bool, classes: [u8; 2], behind: i16) -> Scenario {
     let list = format!("list = [{{ start = {a:?}, goal = {to_a:?} }}, {{ start = {b:?}, goal = {to_b:?} }}]");
     let mut scenario = scenario(&list, "");
     for (x, y) in (0..20).flat_map(|x| (0..20).map(move |y| (x, y))) {
-        scenario.terrain.set(Cell::new(x, y), classes[usize::from(x > 9)]);
+        scenario.land.terrain.set(Cell::new(x, y), classes[usize::from(x > 9)]);
     }
     scenario
 }
@@ -26,7 +27,7 @@ fn swarm(seed: u64, [walls, hard]: [u32; 2], loss: f64) -> Scenario {
     for (x, y) in (0..20).flat_map(|x| (0..20).map(move |y| (x, y))) {
         let (draw, cell) = (draws.below(100), Cell::new(x, y));
         let class = if draw < walls && !used.contains(&cell) { BLOCKED } else { 1 + 4 * u8::from(draw > 99 - hard) };
-        scenario.terrain.set(cell, class);
+        scenario.land.terrain.set(cell, class);
     }
     scenario
 }
@@ -99,7 +100,8 @@ fn the_laws_alone_avoid_diagonals_under_way_and_the_world_counts_the_others() {
         let mut sums = [0; 2];
         for seed in 1..=20 {
             let mut scenario = swarm(seed, [10, 20], loss);
-            scenario.rules.crossing = true;
+            let Movement::Cells(rules) = &mut scenario.movement else { panic!("robots in cells") };
+            rules.crossing = true;
             let [crossed, counted, late] = crossings(&scenario);
             assert_eq!(crossed, counted, "seed {seed}");
             sums = [sums[0] + crossed, sums[1] + late];

@@ -116,7 +116,7 @@ fn a_controller_that_lost_its_state_restarts_and_arrives() {
 #[test]
 fn a_fault_restarts_an_external_controller_too() {
     let mut scenario = shipped("swap-circle", 200);
-    scenario.faults = vec![Fault { robot: scenario.robots[2].id, from_tick: 10, to_tick: 30 }];
+    scenario.events.faults = vec![Fault { robot: scenario.robots[2].id, from_tick: 10, to_tick: 30 }];
     let here = outcome(&scenario, None);
     assert_eq!(outcome(&scenario, Some(Nearby::of(&[2]))), here);
 }

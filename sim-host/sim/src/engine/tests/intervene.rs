@@ -38,7 +38,7 @@ fn by_hand_and_again(text: &str, done: &[(u32, Intervention)]) -> [Outcome; 2] {
         swarm.step();
     }
     let saved = parse(&with_interventions(text, scenario.tick_us, done));
-    assert_eq!(saved.interventions, done);
+    assert_eq!(saved.events.interventions, done);
     let again = simulate(&saved, |_, _| ControlFlow::Continue(()));
     [swarm.outcome(), again.expect("they can be placed")]
 }
@@ -146,8 +146,8 @@ fn inspection_does_not_change_the_run() {
                 known += seen.known.len();
                 receptions += swarm.receptions(index).len();
                 assert!(!seen.parameters.is_empty());
-                assert_eq!(seen.land.is_some(), scenario.plane.is_none());
-                assert_eq!(seen.choice.is_some(), scenario.plane.is_some());
+                assert_eq!(seen.land.is_some(), scenario.plane().is_none());
+                assert_eq!(seen.choice.is_some(), scenario.plane().is_some());
             }
             swarm.step();
         }

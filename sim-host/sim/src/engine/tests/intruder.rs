@@ -36,7 +36,7 @@ fn a_silent_intruder_is_grazed_when_seen_and_hit_when_unseen() {
     // The robot sees its position but not its speed: overlap is at most its motion in one tick.
     assert!(clearance.intruders_m > -0.5 * 0.1, "{clearance:?}");
     let mut blind = met_by(0.5, silent);
-    blind.plane.as_mut().expect("a plane").general.sight_m = 0.0;
+    blind.plane_mut().expect("a plane").general.sight_m = 0.0;
     let unseen = outcome(&blind);
     let clearance = unseen.clearance.expect("bodies have sizes");
     assert!(clearance.intruders_m < -1.5 * 0.5 * 0.1 && clearance.intruder_overlaps > 5, "{clearance:?}");

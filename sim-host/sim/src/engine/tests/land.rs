@@ -253,7 +253,7 @@ fn a_wrong_map_only_costs_time() {
     for replan in [Replan::EachCell, Replan::UntilChanged] {
         let [right, wrong] = [&WALL, &NO_DOOR_IN_THE_NORTH].map(|old| {
             let mut scenario = with_maps(&WALL, old, "[scouting]\nmap = \"old.map\"\n");
-            scenario.route.replan = replan;
+            scenario.laws.route.replan = replan;
             run(&scenario).0
         });
         assert_eq!((right.arrived, wrong.arrived), (1, 1), "{replan:?}");

@@ -1,6 +1,7 @@
 use super::*;
 use crate::engine::{StartError, simulate};
-use crate::scenario::Overrides;
+use crate::scenario::{Movement, Overrides};
+use crate::world::MoveRules;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     Action, BadInput, Decision, InPlane, Law, OnGrid, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
@@ -92,7 +93,7 @@ fn lost_payloads_are_repeated() {
 fn a_built_in_law_given_by_the_caller_gives_the_identical_run() {
     let scenario = line("");
     let ours = simulate(&scenario, |_, _| ControlFlow::Continue(())).unwrap();
-    let setup = scenario.plane.clone().unwrap();
+    let setup = scenario.plane().cloned().unwrap();
     let [speed_mps, tolerance_m] = [setup.general.cruise_mps, setup.general.tolerance_m].map(|x| x as f32);
     let law = move |_| WaypointGuidance::new(speed_mps, tolerance_m);
     let own = simulate_own(&scenario, law, |_, _| ControlFlow::Continue(())).unwrap();
@@ -121,7 +122,7 @@ fn a_run_resumed_from_a_checkpoint_ends_identically() {
 
 #[test]
 fn a_scenario_of_the_grid_is_refused() {
-    let scenario = Scenario { plane: None, ..line("") };
+    let scenario = Scenario { movement: Movement::Cells(MoveRules::default()), ..line("") };
     let refused = simulate_own(&scenario, |_| Highest::default(), |_, _| ControlFlow::Continue(()));
     assert_eq!(refused.err(), Some(StartError::World(WrongWorld::Grid)));
     assert!(WrongWorld::Grid.to_string().contains("give it one"));

@@ -130,7 +130,7 @@ fn the_configured_latency_matches_the_radio_delay() {
     let robots = "[plane.robots]\nlist = [{ start_m = [0, 0] }]\n";
     for (delay_ms, ticks) in [(0.0, 1), (99.9, 1), (100.0, 1), (100.1, 2), (200.0, 2), (250.0, 3)] {
         let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
-        let setup = scenario.plane.as_ref().expect("robots in the plane");
+        let setup = scenario.plane().expect("robots in the plane");
         let ground = PlaneGround::new(&scenario, setup);
         let (config, _) = ground.setup(0, 0);
         assert_eq!(config.latency, Duration::from_millis(100 * ticks), "{delay_ms} ms");

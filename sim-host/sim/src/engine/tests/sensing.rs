@@ -1,5 +1,4 @@
 use super::*;
-use crate::scenario::Sensing;
 
 fn circle(count: u32, sensing: &str, radio: &str) -> Scenario {
     seeded(count, sensing, radio, 11)
@@ -27,14 +26,16 @@ fn robots_swap_places_by_sensors_alone_without_collisions() {
     assert!(blind.collisions > 0);
 }
 
-fn with_range(scenario: Scenario, range_m: f64) -> Scenario {
-    Scenario { sensing: scenario.sensing.map(|sensing| Sensing { range_m, ..sensing }), ..scenario }
+fn with_range(mut scenario: Scenario, range_m: f64) -> Scenario {
+    scenario.plane_mut().unwrap().sensing.as_mut().unwrap().range_m = range_m;
+    scenario
 }
 
 #[test]
 fn sensors_without_detections_do_not_change_the_run() {
     let blind = with_range(circle(8, "", "loss = 0.2"), 0.01);
-    let without = Scenario { sensing: None, ..blind.clone() };
+    let mut without = blind.clone();
+    without.plane_mut().unwrap().sensing = None;
     assert_eq!(run(&blind).trace_hash, run(&without).trace_hash);
 }
 

@@ -1,10 +1,11 @@
+use super::super::ranges::{micros, tick};
 use super::*;
 
 #[test]
 fn multiples_of_a_tick_convert_exactly() {
     for tick_s in [0.1, 0.05, 0.3, 1.0, 0.007, 60.0] {
         for number in [0_u32, 1, 3, 7, 1001, 70_000] {
-            let micros = u64::from(number) * u64::from(super::micros(tick_s));
+            let micros = u64::from(number) * u64::from(micros(tick_s));
             assert_eq!(tick(micros as f64 / 1e6, tick_s), number, "{tick_s} {number}");
         }
     }

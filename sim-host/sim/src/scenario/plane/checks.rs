@@ -1,44 +1,28 @@
 //! Checks of `[plane]`: positions, speeds, and combinations of tables.
 
-use super::super::ScenarioError;
+use super::super::Draft;
 use super::super::ranges::short;
-use super::super::source::Source;
-use super::fields::Group;
-use super::table::{CloudEntry, FAR_M, MAX_ROBOTS, Place, PlaneRobotEntry};
-use super::{PlaneSetup, Start, within};
+use super::super::source::{Checked, Section};
+use super::group::Group;
+use super::table::{CloudEntry, MAX_ROBOTS, Place, PlaneRobotEntry};
+use super::{PlaneSetup, Start};
 use crate::nearby::{Cells, Query, Search};
 use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
 
-/// Highest speed along each axis, m/s: beacons encode velocities as 16-bit millimetres per second.
-const FAST_MPS: f64 = 32.0;
-
-pub(super) fn place(source: &Source<'_>, field: &str, place: Place) -> Result<(), ScenarioError> {
-    if place.0.iter().all(|x| x.abs() <= FAR_M) {
-        return Ok(());
-    }
-    let remedy = "stay within 2000 km of the origin";
-    Err(source.error(field, "this is too far away", remedy))
-}
-
-pub(super) fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Result<(), ScenarioError> {
-    if velocity.0.iter().all(|v| v.abs() <= FAST_MPS) {
-        return Ok(());
-    }
-    let remedy = "give at most 32 m/s along each axis";
-    Err(source.error(field, "this is too fast", remedy))
+pub(in super::super) fn norm(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Checks a velocity at the start of the run against the highest speed.
-fn start_velocity(source: &Source<'_>, field: &str, at: Place, most_mps: f64) -> Result<(), ScenarioError> {
-    velocity(source, field, at)?;
-    let speed_mps = at.0.iter().map(|v| v * v).sum::<f64>().sqrt();
+fn start_velocity(at: &Section<'_>, name: &str, start: Place, most_mps: f64) -> Checked {
+    let speed_mps = norm(start.0);
     if speed_mps <= most_mps * (1.0 + 1e-9) {
         return Ok(());
     }
     let what = format!("{} m/s exceeds the highest speed", short(speed_mps));
-    Err(source.error(field, what, format!("give at most {} m/s in all", short(most_mps))))
+    Err(at.error(name, what, format!("give at most {} m/s in all", short(most_mps))))
 }
 
 pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
@@ -50,37 +34,25 @@ pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
 }
 
 /// A robot on the grid starts with one goal, which an operator's order cannot move.
-fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: usize) -> Result<(), ScenarioError> {
+fn goal_count(group: &Group<'_>, at: &Section<'_>, name: &str, count: usize) -> Checked {
+    let guidance = group.body.guidance;
     let most = if guidance == GuidanceKind::Route { 1 } else { goals(guidance) };
     if count <= usize::from(most) {
         return Ok(());
     }
     let what = format!("{count} goals are too many for guidance \"{}\"", guidance.name());
-    Err(source.error(field, what, format!("give at most {most}, or another guidance")))
+    Err(at.error(name, what, format!("give at most {most}, or another guidance")))
 }
 
-/// The terrain for a law that moves from cell to cell; an error if one is given without the other.
-pub(super) fn land<'a>(
-    source: &Source<'_>,
-    group: &Group,
-    terrain: Option<&'a Terrain>,
-) -> Result<Option<&'a Terrain>, ScenarioError> {
-    match (group.body.guidance.is_on_grid(), terrain) {
-        (true, None) => {
-            let (what, remedy) = ("this guidance goes from cell to cell", "give [terrain], or another guidance");
-            Err(source.error(&group.field("guidance"), what, remedy))
-        }
-        (true, Some(land)) => Ok(Some(land)),
-        (false, _) => Ok(None),
-    }
+/// The terrain for a law that moves from cell to cell; an error if there is none.
+pub(super) fn land<'a>(group: &Group<'_>, terrain: Option<&'a Terrain>) -> Checked<Option<&'a Terrain>> {
+    let is_on_grid = group.body.guidance.is_on_grid();
+    let (what, remedy) = ("this guidance goes from cell to cell", "give [terrain], or another guidance");
+    group.at.require(!is_on_grid || terrain.is_some(), "guidance", what, remedy)?;
+    Ok(terrain.filter(|_| is_on_grid))
 }
 
-pub(super) fn in_cells(
-    source: &Source<'_>,
-    group: &Group,
-    land: &Terrain,
-    starts: &[Start],
-) -> Result<(), ScenarioError> {
+pub(super) fn in_cells(group: &Group<'_>, land: &Terrain, starts: &[Start]) -> Checked {
     let is_open = |[x, y, z]: [f64; 3]| {
         let cell = land.nearest_cell([x, y]);
         let [at_x, at_y] = land.center_m(cell);
@@ -95,69 +67,48 @@ pub(super) fn in_cells(
             _ => "has no goal",
         };
         let what = format!("robot {} of the group goes from cell to cell and {what}", index + 1);
-        let remedy = "give each one start and one goal on free land";
-        return Err(source.error(&format!("{}.robots", group.table), what, remedy));
+        return Err(group.at.error("robots", what, "give each one start and one goal on free land"));
     }
     Ok(())
 }
 
-pub(super) fn list(source: &Source<'_>, group: &Group, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
-    let field = format!("{}.robots.list", group.table);
-    if list.is_empty() {
-        return Err(source.error(&field, "there are no robots", "give one robot or more"));
-    }
-    within(source, &field, list.len() as f64, 1.0, MAX_ROBOTS, "robots")?;
+pub(super) fn list(group: &Group<'_>, list: &[PlaneRobotEntry]) -> Checked {
+    let what = "robots.list";
+    group.at.within(what, list.len() as f64, 1.0..=MAX_ROBOTS, "robots")?;
     for (index, robot) in list.iter().enumerate() {
-        let field = |name| format!("{field}[{index}].{name}");
-        place(source, &field("start_m"), robot.start_m)?;
+        let at = group.at.at(format!("robots.list[{index}]"));
         let most_mps = robot.max_speed_mps.unwrap_or(group.body.max_speed_mps);
-        start_velocity(source, &field("velocity_mps"), robot.velocity_mps, most_mps)?;
-        if let Some(goal_m) = robot.goal_m {
-            goal_count(source, &field("goal_m"), group.body.guidance, 1)?;
-            place(source, &field("goal_m"), goal_m)?;
+        start_velocity(&at, "velocity_mps", robot.velocity_mps, most_mps)?;
+        if robot.goal_m.is_some() {
+            goal_count(group, &at, "goal_m", 1)?;
         }
-        via(source, &field("via_m"), group.body.guidance, robot)?;
+        if !robot.via_m.is_empty() {
+            via(group.body.guidance, &at, robot)?;
+        }
     }
     Ok(())
 }
 
-fn via(source: &Source<'_>, field: &str, guidance: GuidanceKind, robot: &PlaneRobotEntry) -> Result<(), ScenarioError> {
+fn via(guidance: GuidanceKind, at: &Section<'_>, robot: &PlaneRobotEntry) -> Checked {
     let (count, most) = (robot.via_m.len(), WAYPOINTS - 1);
-    if count == 0 {
-        return Ok(());
-    }
-    if guidance != GuidanceKind::Waypoint {
-        let what = format!("robots with guidance \"{}\" go by no places", guidance.name());
-        return Err(source.error(field, what, "give guidance \"waypoint\", or leave it out"));
-    }
-    if robot.goal_m.is_none() {
-        return Err(source.error(field, "a way needs an end", "give goal_m too"));
-    }
-    if count > most {
-        let what = format!("{count} places on the way are too many");
-        return Err(source.error(field, what, format!("give at most {most}")));
-    }
-    let mut places = robot.via_m.iter().enumerate();
-    places.try_for_each(|(index, &at)| place(source, &format!("{field}[{index}]"), at))
+    let what = format!("robots with guidance \"{}\" go by no places", guidance.name());
+    let remedy = "give guidance \"waypoint\", or leave it out";
+    at.require(guidance == GuidanceKind::Waypoint, "via_m", what, remedy)?;
+    at.require(robot.goal_m.is_some(), "via_m", "a way needs an end", "give goal_m too")?;
+    let what = format!("{count} places on the way are too many");
+    at.require(count <= most, "via_m", what, format!("give at most {most}"))
 }
 
-pub(super) fn cloud(source: &Source<'_>, group: &Group, cloud: &CloudEntry) -> Result<(), ScenarioError> {
-    let field = |name| format!("{}.robots.cloud.{name}", group.table);
-    place(source, &field("from_m"), cloud.from_m)?;
-    place(source, &field("to_m"), cloud.to_m)?;
+pub(super) fn cloud(group: &Group<'_>, cloud: &CloudEntry) -> Checked {
+    let at = group.at.at("robots.cloud");
     let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
-    velocity(source, &field("velocity_from_mps"), from)?;
     let fastest = Place(std::array::from_fn(|axis| from.0[axis].abs().max(to.0[axis].abs())));
-    let name = if source.has(&field("velocity_to_mps")) { "velocity_to_mps" } else { "velocity_from_mps" };
-    start_velocity(source, &field(name), fastest, group.body.max_speed_mps)?;
-    goal_count(source, &field("goals_m"), group.body.guidance, cloud.goals_m.len())?;
-    for (index, goal) in cloud.goals_m.iter().enumerate() {
-        place(source, &format!("{}[{index}]", field("goals_m")), *goal)?;
-    }
-    velocity(source, &field("goal_velocity_mps"), cloud.goal_velocity_mps)
+    let name = if at.has("velocity_to_mps") { "velocity_to_mps" } else { "velocity_from_mps" };
+    start_velocity(&at, name, fastest, group.body.max_speed_mps)?;
+    goal_count(group, &at, "goals_m", cloud.goals_m.len())
 }
 
-pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
+pub(super) fn starts(draft: &Draft<'_>, setup: &PlaneSetup) -> Checked {
     let centers: Vec<_> = setup.starts.iter().map(|start| start.position_m).collect();
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
     let mut index = Cells::<f64, 3>::new(setup.space(), (2.0 * largest_m).max(1e-3));
@@ -174,14 +125,14 @@ pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Scen
                 let (one, two) = (number + 1, near.index + 1);
                 let what = format!("robots {one} and {two} overlap at the start");
                 let remedy = format!("put them {apart_m} m apart");
-                return Err(source.error("plane.robots", what, remedy));
+                return Err(draft.error("plane.robots", what, remedy));
             }
         }
     }
     Ok(())
 }
 
-pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
+pub(super) fn outside(draft: &Draft<'_>, setup: &PlaneSetup) -> Checked {
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
     let solids = Solids::new(setup.solids.clone(), largest_m);
     for (index, start) in setup.starts.iter().enumerate() {
@@ -198,7 +149,7 @@ pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Sce
             continue;
         };
         let remedy = format!("keep its start {radius_m} m away");
-        return Err(source.error("plane.robots", what, remedy));
+        return Err(draft.error("plane.robots", what, remedy));
     }
     Ok(())
 }

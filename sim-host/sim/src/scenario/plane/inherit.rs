@@ -1,6 +1,6 @@
 //! Groups inherit fields of `[plane]`.
 
-use super::super::read::Fields as _;
+use super::super::table::Fields as _;
 use super::table::BodyTable;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 /// text. It gets the table of a law or a safety layer only if its own is the same. O(groups).
 pub fn inherit(root: &mut DeTable<'_>) {
     let Some(DeValue::Table(plane)) = root.get_mut("plane").map(Spanned::get_mut) else { return };
-    let names = BodyTable::NAMES.concat();
+    let names = BodyTable::names();
     let general: Vec<_> = plane.iter().filter(|(key, _)| names.contains(&key.get_ref().as_ref())).collect();
     let general: Vec<_> = general.into_iter().map(|(key, value)| (key.clone(), value.clone())).collect();
     let general_of = |name: &str| general.iter().find(|(key, _)| key.get_ref() == name)?.1.get_ref().as_str();

@@ -1,7 +1,6 @@
 //! `[plane]`: robots that move in the plane or in space, and their choice of velocity.
 
 mod checks;
-mod fields;
 mod flocks;
 mod group;
 mod inherit;
@@ -14,33 +13,29 @@ mod table;
 mod torus;
 
 pub(crate) use checks::goals;
-pub(super) use flocks::remark;
+pub(super) use checks::norm;
 pub(super) use inherit::inherit;
 pub(super) use remarks::remarks;
-pub(super) use sensing::sensing;
 
 #[cfg(test)]
 mod tests;
 
 pub use group::RobotGroup;
 pub use place::{Start, Target};
-pub use starts::circle_starts;
 pub use table::*;
 
-use super::ranges::within;
-use super::source::Source;
-use super::{Formation, FormationSetup, Part, Robot, Scenario, ScenarioError, ScenarioFile};
+pub(super) use super::read::Limits;
+
+use super::robots;
+use super::source::{Checked, Section};
+use super::{Draft, Part, Placed, Robot, Scenario};
 use crate::nearby::Space;
-use crate::radio::RadioParams;
 use crate::terrain::Terrain;
-use crate::world::MoveRules;
-use crate::world::plane::Solid;
-use fields::Group;
+use crate::world::plane::{Sensing, Solid};
+use group::Group;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{GuidanceKind, RouteSetup};
-use staya_controller::formation::FormationParams;
+use staya_controller::agent::GuidanceKind;
 use staya_controller::grid::Cell;
-use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
 
 /// An operator's order to all robots.
@@ -86,24 +81,11 @@ pub struct PlaneSetup {
     pub starts: Vec<Start>,
     /// Operator's orders, sorted by tick.
     pub orders: Vec<Order>,
+    /// Sensing of other robots; `None`: disabled.
+    pub sensing: Option<Sensing>,
 }
 
 impl PlaneSetup {
-    /// Creates a plane with identical robots and without terrain or obstacles.
-    #[must_use]
-    pub const fn new(general: RobotGroup, starts: Vec<Start>) -> Self {
-        Self {
-            general,
-            groups: Vec::new(),
-            has_terrain: false,
-            torus_m: None,
-            solids: Vec::new(),
-            intruders: Vec::new(),
-            starts,
-            orders: Vec::new(),
-        }
-    }
-
     /// Geometry of the plane: open or a torus.
     #[must_use]
     pub fn space(&self) -> Space<f64, 3> {
@@ -150,254 +132,166 @@ impl Scenario {
     /// Side lengths of the torus, metres; `None`: an open plane.
     #[must_use]
     pub fn torus_m(&self) -> Option<[f64; 2]> {
-        self.plane.as_ref()?.torus_m
-    }
-
-    /// Builds a scenario in the plane without a file. It lasts `ticks` of `setup.abilities.step_s`;
-    /// robots have ids from 1 in the order of their starts.
-    #[must_use]
-    pub fn in_plane(name: &str, seed: u64, ticks: u32, radio: RadioParams, setup: PlaneSetup) -> Self {
-        let mut scenario = Self {
-            name: name.to_owned(),
-            seed,
-            ticks,
-            tick_us: super::ranges::micros(setup.general.abilities.step_s),
-            terrain: Terrain::flat(1, 1),
-            changes: Vec::new(),
-            scouting: None,
-            rules: MoveRules::default(),
-            radio,
-            files: Vec::new(),
-            robots: setup.robots(&[], None),
-            formations: Vec::new(),
-            parts: Vec::new(),
-            plane: Some(setup),
-            route: RouteSetup::default(),
-            formation_law: FormationSetup::Staya(FormationParams::default()),
-            law: None,
-            sensing: None,
-            faults: Vec::new(),
-            interventions: Vec::new(),
-            misnumbered: Vec::new(),
-            keys: None,
-            plausibility: PlausibilityLimits::ANY,
-            maps: None,
-            attacks: Vec::new(),
-            parameters: serde_json::Value::Null,
-        };
-        scenario.plausibility = scenario.usual_claims();
-        scenario
+        self.plane()?.torus_m
     }
 }
 
-pub(super) struct Placed {
-    pub setup: PlaneSetup,
-    pub robots: Vec<Robot>,
-    pub formations: Vec<Formation>,
-    pub parts: Vec<Part>,
-}
-
-pub(super) fn build(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    table: &PlaneTable,
-    terrain: Option<&Terrain>,
-    cells: Option<(Vec<Robot>, Vec<Formation>)>,
-) -> Result<Placed, ScenarioError> {
-    if table.body.guidance.is_on_grid() && (terrain.is_none() || cells.is_none()) {
-        let remedy = "give [terrain] and the top-level [robots], or another guidance";
-        return Err(source.error("plane.guidance", "this guidance goes from cell to cell", remedy));
-    }
-    if (table.body.guidance == GuidanceKind::Formation) != file.cells_in_formation() && cells.is_some() {
-        let remedy = "give both or none of them";
-        return Err(source.error("plane.guidance", "robots.formation and guidance \"formation\" go together", remedy));
-    }
-    if table.robots.as_ref().is_some_and(|robots| robots.formation.is_some()) {
-        let remedy = "give it as the top-level robots.formation, or to a plane.group";
-        return Err(source.error("plane.robots.formation", "a formation stands in cells", remedy));
-    }
-    let places = flocks::places(file);
-    let kind = Group::general(&table.body, places);
-    let mut general = kind.build(source, file)?;
-    let solids = solids(source, file, table)?;
+pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terrain>) -> Checked<(Placed, PlaneSetup)> {
+    let file = &draft.file;
+    let cells = match (&file.robots, terrain) {
+        (Some(_), Some(land)) => Some(robots::build(draft, land)?),
+        (Some(_), None) => {
+            return Err(draft.error("robots", "there are no cells", "give [terrain], or plane.robots in metres"));
+        }
+        (None, _) => None,
+    };
+    let (has_cells, guidance) = (cells.is_some(), table.body.guidance);
+    let remedy = "give [terrain] and the top-level [robots], or another guidance";
+    let fits = has_cells || !guidance.is_on_grid();
+    draft.require(fits, "plane.guidance", "this guidance goes from cell to cell", remedy)?;
+    let go_together = !has_cells || (guidance == GuidanceKind::Formation) == file.cells_in_formation();
+    let what = "robots.formation and guidance \"formation\" go together";
+    draft.require(go_together, "plane.guidance", what, "give both or none of them")?;
+    let in_metres = table.robots.as_ref();
+    let is_formation = in_metres.is_some_and(|given| matches!(given.robots, RobotsSource::Formation(_)));
+    let remedy = "give it as the top-level robots.formation, or to a plane.group";
+    draft.require(!is_formation, "plane.robots.formation", "a formation stands in cells", remedy)?;
     let has_groups = !table.group.is_empty();
-    if cells.is_some() == table.robots.is_some() && (cells.is_some() || !has_groups) {
-        return Err(source.error(
-            "plane.robots",
-            "the robots are not defined exactly once",
-            "give either plane.robots in metres or the top-level robots in cells, with plane.group if you like",
-        ));
-    }
+    let is_defined = has_cells != in_metres.is_some() || (!has_cells && has_groups);
+    let what = "the robots are not defined exactly once";
+    let remedy = "give either plane.robots in metres or the top-level robots in cells, with plane.group if you like";
+    draft.require(is_defined, "plane.robots", what, remedy)?;
+
+    let places = flocks::places(file);
+    let kind = Group::general(draft, &table.body, places);
+    let mut general = kind.build()?;
+    let solids = solids(draft, table)?;
     let (cells, mut formations) = cells.unwrap_or_default();
-    let mut starts = terrain.map_or_else(Vec::new, |land| starts::on_land(&cells, land));
     let last = cells.last().map_or(0, |robot| robot.id.0);
-    let mut groups = Vec::new();
     let mut placing = starts::Placing {
-        source,
-        file,
+        draft,
         general_m: general.radius_m,
         solids: &solids,
-        groups: &mut groups,
-        starts: &mut starts,
+        groups: Vec::new(),
+        starts: terrain.map_or_else(Vec::new, |land| starts::on_land(&cells, land)),
     };
-    if let Some(robots) = &table.robots {
+    if let Some(robots) = in_metres {
         placing.place(&kind, None, robots)?;
     }
     let mut parts = vec![Part { table: "plane".to_owned(), members: 0..placing.starts.len() }];
     for (index, entry) in table.group.iter().enumerate() {
-        let (group, before) = (Group::numbered(index, entry, places), placing.starts.len());
-        let land = checks::land(source, &group, terrain)?;
-        flocks::number(source, &group, entry.flock, places)?;
+        let (group, before) = (Group::numbered(draft, index, entry, places), placing.starts.len());
+        let land = checks::land(&group, terrain)?;
+        flocks::number(&group, entry.flock, places)?;
         let number = placing.add(&group)?;
-        match (group.body.guidance == GuidanceKind::Formation, &entry.robots, land) {
-            (
-                true,
-                PlaneRobots {
-                    formation: Some(formation), list: None, circle: None, cloud: None, scattered: None, ..
-                },
-                Some(land),
-            ) => {
-                let field = format!("{}.robots.formation", group.table);
-                let (robots, formation) = super::robots::of_group(source, &field, formation, file, land)?;
-                let mut members = starts::on_land(&robots, land);
-                members.iter_mut().for_each(|start| start.group = Some(number));
-                placing.starts.append(&mut members);
+        match (group.body.guidance == GuidanceKind::Formation, &entry.robots.robots, land) {
+            (true, RobotsSource::Formation(formation), Some(land)) => {
+                let at = group.at.at("robots.formation");
+                let (robots, formation) = robots::of_group(draft, &at, formation, land)?;
+                let members = starts::on_land(&robots, land).into_iter();
+                placing.starts.extend(members.map(|start| Start { group: Some(number), ..start }));
                 let id = last.saturating_add(u32::try_from(before - cells.len()).unwrap_or(u32::MAX)).saturating_add(1);
                 formations.push(formation.of(before, id));
             }
-            (false, PlaneRobots { formation: None, .. }, land) => {
+            (true, ..) | (false, RobotsSource::Formation(_), _) => {
+                let what = "guidance \"formation\" and robots.formation go together, without other robots";
+                return Err(group.at.error("guidance", what, "give both or none of them"));
+            }
+            (false, _, land) => {
                 placing.place(&group, Some(number), &entry.robots)?;
                 if let Some(land) = land {
-                    checks::in_cells(source, &group, land, &placing.starts[before..])?;
+                    checks::in_cells(&group, land, &placing.starts[before..])?;
                 }
             }
-            _ => {
-                let what = "guidance \"formation\" and robots.formation go together, without other robots";
-                return Err(source.error(&group.field("guidance"), what, "give both or none of them"));
-            }
         }
-        parts.push(Part { table: group.table.clone(), members: before..placing.starts.len() });
+        parts.push(Part { table: group.at.path, members: before..placing.starts.len() });
     }
+    let starts::Placing { mut groups, starts, .. } = placing;
     parts.retain(|part| has_groups && !part.members.is_empty());
     group::grow_as_the_fastest(&mut general, &mut groups);
-    let setup = PlaneSetup {
+    let mut setup = PlaneSetup {
         general,
         groups,
         has_terrain: terrain.is_some(),
         torus_m: table.torus_m,
+        intruders: intruders(draft, table)?,
         solids,
-        intruders: intruders(source, table)?,
         starts,
         orders: Vec::new(),
+        sensing: None,
     };
-    torus::check(source, file, table, &setup)?;
-    checks::starts(source, &setup)?;
-    checks::outside(source, &setup)?;
-    let setup = PlaneSetup { orders: orders(source, file, table, &setup)?, ..setup };
-    let robots = setup.robots(&cells, terrain);
-    Ok(Placed { setup, robots, formations, parts })
+    torus::check(draft, table, &setup)?;
+    checks::starts(draft, &setup)?;
+    checks::outside(draft, &setup)?;
+    setup.orders = orders(draft, table, &setup)?;
+    setup.sensing = sensing::sensing(draft, table, &setup)?;
+    Ok((Placed { robots: setup.robots(&cells, terrain), formations, parts }, setup))
 }
 
-fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, ScenarioError> {
-    let mut intruders = Vec::new();
-    for (index, entry) in table.intruder.iter().enumerate() {
-        let field = |name| format!("plane.intruder[{index}].{name}");
-        checks::place(source, &field("start_m"), entry.start_m)?;
-        checks::velocity(source, &field("velocity_mps"), entry.velocity_mps)?;
-        if entry.heard && source.has("authentication") {
-            let remedy = "give heard = false, or leave [authentication] out";
-            let what = "an intruder does not have the key, so robots reject its beacons";
-            return Err(source.error(&field("heard"), what, remedy));
-        }
-        intruders.push(Intruder {
+fn intruders(draft: &Draft<'_>, table: &PlaneTable) -> Checked<Vec<Intruder>> {
+    let intruder = |(index, entry): (usize, &IntruderEntry)| {
+        let at = draft.at(format!("plane.intruder[{index}]"));
+        let has_key = !entry.heard || !draft.has("authentication");
+        let what = "an intruder does not have the key, so robots reject its beacons";
+        at.require(has_key, "heard", what, "give heard = false, or leave [authentication] out")?;
+        Ok(Intruder {
             position_m: entry.start_m.0,
             velocity_mps: entry.velocity_mps.0,
             radius_m: entry.radius_m,
             is_heard: entry.heard,
-        });
-    }
-    Ok(intruders)
+        })
+    };
+    table.intruder.iter().enumerate().map(intruder).collect()
 }
 
-fn wall_with_door(
-    source: &Source<'_>,
-    field: &str,
-    wall: &WallEntry,
-    door_m: f64,
-) -> Result<[Solid; 2], ScenarioError> {
-    let [from, to] = wall.points_m[..] else {
-        return Err(source.error(field, "only a wall of two points has a door", "give two points in points_m"));
+fn wall(at: &Section<'_>, wall: &WallEntry) -> Checked<Vec<Solid>> {
+    let points = &wall.points_m[..];
+    at.require(points.len() >= 2, "points_m", "this is not a wall", "give two or more points in metres")?;
+    let Some(door_m) = wall.door_m else {
+        let closing = wall.closed.then(|| [points[points.len() - 1], points[0]]);
+        return Ok(points.windows(2).map(|pair| [pair[0], pair[1]]).chain(closing).map(Solid::Wall).collect());
+    };
+    let [from, to] = *points else {
+        return Err(at.error("door_m", "only a wall of two points has a door", "give two points in points_m"));
     };
     let length_m = libm::hypot(to[0] - from[0], to[1] - from[1]);
-    within(source, field, door_m, 0.0, length_m, "metres, the length of the wall")?;
-    let at =
+    at.within("door_m", door_m, 0.0..=length_m, "metres, the length of the wall")?;
+    let side =
         |along_m: f64| [0, 1].map(|axis| (from[axis] + to[axis] + (to[axis] - from[axis]) / length_m * along_m) / 2.0);
-    Ok([Solid::Wall([from, at(-door_m)]), Solid::Wall([at(door_m), to])])
+    Ok(vec![Solid::Wall([from, side(-door_m)]), Solid::Wall([side(door_m), to])])
 }
 
-fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Result<Vec<Solid>, ScenarioError> {
+fn solids(draft: &Draft<'_>, table: &PlaneTable) -> Checked<Vec<Solid>> {
     let mut solids = Vec::new();
-    for (index, wall) in table.wall.iter().enumerate() {
-        let is_sound = wall.points_m.iter().flatten().all(|x| x.abs() <= table::FAR_M);
-        if wall.points_m.len() < 2 || !is_sound {
-            let field = format!("plane.wall[{index}].points_m");
-            return Err(source.error(&field, "this is not a wall", "give two or more points in metres"));
-        }
-        if let Some(door_m) = wall.door_m {
-            solids.extend(wall_with_door(source, &format!("plane.wall[{index}].door_m"), wall, door_m)?);
-            continue;
-        }
-        let pairs = wall.points_m.windows(2).map(|pair| [pair[0], pair[1]]);
-        solids.extend(pairs.map(Solid::Wall));
-        if wall.closed {
-            let ends = [wall.points_m[wall.points_m.len() - 1], wall.points_m[0]];
-            solids.push(Solid::Wall(ends));
-        }
+    for (index, entry) in table.wall.iter().enumerate() {
+        solids.extend(wall(&draft.at(format!("plane.wall[{index}]")), entry)?);
     }
-    for (index, ball) in table.ball.iter().enumerate() {
-        let field = format!("plane.ball[{index}].center_m");
-        checks::place(source, &field, ball.center_m)?;
-        solids.push(Solid::Ball { center_m: ball.center_m.0, radius_m: ball.radius_m });
-    }
-    solids.extend(scattered::balls(source, &table.balls, file.seed)?);
+    let balls = table.ball.iter();
+    solids.extend(balls.map(|ball| Solid::Ball { center_m: ball.center_m.0, radius_m: ball.radius_m }));
+    solids.extend(scattered::balls(draft, &table.balls)?);
     for (index, entry) in table.half_space.iter().enumerate() {
-        let field = format!("plane.half_space[{index}].point_m");
-        checks::place(source, &field, entry.point_m)?;
-        let length = entry.normal.0.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if !(length > 0.0 && length.is_finite()) {
-            let field = format!("plane.half_space[{index}].normal");
-            return Err(source.error(&field, "this is not a direction", "give a vector that is not zero"));
-        }
+        let at = draft.at(format!("plane.half_space[{index}]"));
+        let length = checks::norm(entry.normal.0);
+        let is_direction = length > 0.0 && length.is_finite();
+        at.require(is_direction, "normal", "this is not a direction", "give a vector that is not zero")?;
         solids.push(Solid::Plane { point_m: entry.point_m.0, normal: entry.normal.0.map(|x| x / length) });
     }
     Ok(solids)
 }
 
-fn orders(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    table: &PlaneTable,
-    setup: &PlaneSetup,
-) -> Result<Vec<Order>, ScenarioError> {
+fn orders(draft: &Draft<'_>, table: &PlaneTable, setup: &PlaneSetup) -> Checked<Vec<Order>> {
     let mut guidances: Vec<_> = setup.kinds().map(|group| group.guidance.kind()).collect();
     guidances.dedup();
-    let mut orders = Vec::new();
-    for (index, order) in table.order.iter().enumerate() {
-        if guidances.iter().all(|&guidance| order.goal >= checks::goals(guidance)) {
-            let field = format!("plane.order[{index}].goal");
-            let names: Vec<_> = guidances.iter().map(|guidance| format!("\"{}\"", guidance.name())).collect();
-            let what = format!("robots with guidance {} have no goal {}", names.join(" or "), order.goal);
-            let remedy = "give one that they have, from 0, or another guidance";
-            return Err(source.error(&field, what, remedy));
-        }
-        checks::place(source, &format!("plane.order[{index}].place_m"), order.place_m)?;
-        checks::velocity(source, &format!("plane.order[{index}].velocity_mps"), order.velocity_mps)?;
-        orders.push(Order {
-            tick: libm::ceil(order.at_s / file.tick_s) as u32,
-            index: order.goal,
-            target: Target { position_m: order.place_m.0, velocity_mps: order.velocity_mps.0 },
-        });
-    }
+    let names: Vec<_> = guidances.iter().map(|guidance| format!("\"{}\"", guidance.name())).collect();
+    let order = |(index, order): (usize, &OrderEntry)| {
+        let at = draft.at(format!("plane.order[{index}]"));
+        let what = format!("robots with guidance {} have no goal {}", names.join(" or "), order.goal);
+        let has_goal = guidances.iter().any(|&guidance| order.goal < checks::goals(guidance));
+        at.require(has_goal, "goal", what, "give one that they have, from 0, or another guidance")?;
+        let target = Target { position_m: order.place_m.0, velocity_mps: order.velocity_mps.0 };
+        Ok(Order { tick: draft.tick(order.at_s), index: order.goal, target })
+    };
+    let mut orders = table.order.iter().enumerate().map(order).collect::<Checked<Vec<_>>>()?;
     orders.sort_by_key(|order| order.tick);
     Ok(orders)
 }

@@ -23,3 +23,10 @@ pub struct Target {
     /// Velocity, m/s.
     pub velocity_mps: [f64; 3],
 }
+
+impl Target {
+    /// A goal at rest, metres.
+    pub(super) const fn fixed(position_m: [f64; 3]) -> Self {
+        Self { position_m, velocity_mps: [0.0; 3] }
+    }
+}

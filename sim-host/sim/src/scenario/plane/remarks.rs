@@ -1,17 +1,23 @@
 //! Warnings about valid but probably unintended settings in `[plane]`.
 
-use super::{PlaneSetup, RobotGroup, Start};
+use super::super::Scenario;
+use super::{PlaneSetup, RobotGroup, Start, flocks};
 use crate::world::plane::{Solid, Solids, contains};
-use staya_controller::agent::{GuidanceKind, SafetySetup};
+use staya_controller::agent::{GuidanceKind, GuidanceSetup, SafetySetup};
 
 const NAMED: usize = 3;
 
 type Loop = Vec<[f64; 2]>;
 
 /// O(robots x walls + sides of a closed wall squared).
-pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> {
-    let loops = loops(&setup.solids);
-    let mut remarks: Vec<_> = setup.kinds().filter_map(|group| long_tick(group, tick_s)).collect();
+pub(in super::super) fn remarks(scenario: &Scenario, setup: &PlaneSetup) -> Vec<String> {
+    let (loops, tick_s) = (loops(&setup.solids), scenario.tick_s());
+    let gains = |group: &RobotGroup| match &group.guidance {
+        GuidanceSetup::Lattice { params, .. } => flocks::remark(params, &scenario.radio, tick_s),
+        _ => None,
+    };
+    let mut remarks: Vec<_> = setup.kinds().filter_map(gains).collect();
+    remarks.extend(setup.kinds().filter_map(|group| long_tick(group, tick_s)));
     remarks.extend(loops.iter().filter_map(|corners| crossing(corners)));
     let robots = || setup.starts.iter().enumerate();
     let is = |trouble: &dyn Fn(&RobotGroup, &Start, [f64; 3]) -> bool| {

@@ -1,11 +1,10 @@
 //! Random placement of robots with goals, and of balls.
 
-use super::super::ScenarioError;
-use super::super::source::Source;
-use super::fields::Group;
+use super::super::Draft;
+use super::super::source::Checked;
+use super::group::Group;
 use super::place::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
-use super::{checks, within};
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::GuidanceKind;
 use staya_controller::rand::Rng;
@@ -76,61 +75,57 @@ impl Taken {
 
 /// Places are two radii or more from solids; starts are also clear of `others` (place, radius).
 pub(super) fn starts(
-    source: &Source<'_>,
-    group: &Group,
+    group: &Group<'_>,
     entry: &ScatteredDiscs,
     others: &[([f64; 3], f64)],
     solids: &[Solid],
-    seed: u64,
-) -> Result<Vec<Start>, ScenarioError> {
-    let table = format!("{}.robots.scattered", group.table);
-    let field = |name: &str| format!("{table}.{name}");
-    if !matches!(group.body.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
-        let what = format!("robots with guidance \"{}\" have no goals", group.body.guidance.name());
-        return Err(source.error(&table, what, "give a cloud, or guidance \"waypoint\""));
+) -> Checked<Vec<Start>> {
+    let (body, at) = (&group.body, group.at.at("robots.scattered"));
+    if !matches!(body.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
+        let what = format!("robots with guidance \"{}\" have no goals", body.guidance.name());
+        return Err(at.unfit(what, "give a cloud, or guidance \"waypoint\""));
     }
-    let (least_m, spacing_m) = (2.0 * group.body.radius_m, entry.spacing_m.unwrap_or(3.0 * group.body.radius_m));
-    within(source, &field("spacing_m"), spacing_m, least_m, 1e6, "metres")?;
-    let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
+    let (least_m, spacing_m) = (2.0 * body.radius_m, entry.spacing_m.unwrap_or(3.0 * body.radius_m));
+    at.within("spacing_m", spacing_m, least_m..=1e6, "metres")?;
+    let [low, high] = corners(entry.from_m, entry.to_m);
     let solids = Solids::new(solids.to_vec(), least_m);
     let is_outside = |place| solids.near(place, least_m).all(|solid| solid.distance_m(place) >= least_m);
-    let downwash = group.body.orca.and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
+    let downwash = body.orca.as_ref().and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
     let (mut taken, mut aims) = (Taken::new(spacing_m, downwash), Taken::new(spacing_m, downwash));
     let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
     for index in 0..entry.count {
-        let mut rng = Rng::keyed(seed, SCATTERED, first + index, 0);
+        let mut rng = Rng::keyed(group.draft.file.seed, SCATTERED, first + index, 0);
         let mut draw = |low, high, taken: &mut Taken, is_start: bool| {
             let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
-            let place = places.find(|&at| {
-                taken.is_free(at) && is_outside(at) && (!is_start || is_clear(at, group.body.radius_m, others))
-            });
+            let place = places
+                .find(|&at| taken.is_free(at) && is_outside(at) && (!is_start || is_clear(at, body.radius_m, others)));
             place.inspect(|&place| taken.take(place)).ok_or_else(|| {
                 let what =
                     format!("robot {} finds no free {}", first + index + 1, if is_start { "start" } else { "goal" });
-                source.error(&table, what, "give fewer robots, less spacing_m, more travel_m or corners farther apart")
+                at.unfit(what, "give fewer robots, less spacing_m, more travel_m or corners farther apart")
             })
         };
         let position_m = draw(low, high, &mut taken, true)?;
         let from_m = std::array::from_fn(|axis| low[axis].max(position_m[axis] - entry.travel_m));
         let to_m = std::array::from_fn(|axis| high[axis].min(position_m[axis] + entry.travel_m));
-        let goal = Target { position_m: draw(from_m, to_m, &mut aims, false)?, velocity_mps: [0.0; 3] };
+        let goal = Target::fixed(draw(from_m, to_m, &mut aims, false)?);
         starts.push(Start { position_m, velocity_mps: [0.0; 3], places: vec![goal], group: None });
     }
     Ok(starts)
 }
 
-pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> Result<Vec<Solid>, ScenarioError> {
+pub(super) fn balls(draft: &Draft<'_>, entries: &[BallsEntry]) -> Checked<Vec<Solid>> {
     let mut balls = Vec::new();
     for (number, entry) in (0..).zip(entries) {
-        let table = format!("plane.balls[{number}]");
-        let [low, high] = corners(source, &table, entry.from_m, entry.to_m)?;
+        let at = draft.at(format!("plane.balls[{number}]"));
+        let [low, high] = corners(entry.from_m, entry.to_m);
         let mut taken = Taken::new(2.0 * entry.radius_m + entry.gap_m, 1.0);
         for index in 0..entry.count {
-            let mut rng = Rng::keyed(seed, BALLS, number, index);
+            let mut rng = Rng::keyed(draft.file.seed, BALLS, number, index);
             let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
             let center_m = places.find(|&place| taken.is_free(place)).ok_or_else(|| {
                 let what = format!("ball {index} of {} finds no room", entry.count);
-                source.error(&table, what, "give fewer balls, less gap_m or corners farther apart")
+                at.unfit(what, "give fewer balls, less gap_m or corners farther apart")
             })?;
             taken.take(center_m);
             balls.push(Solid::Ball { center_m, radius_m: entry.radius_m });
@@ -139,9 +134,8 @@ pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> R
     Ok(balls)
 }
 
-fn corners(source: &Source<'_>, table: &str, from: Place, to: Place) -> Result<[[f64; 3]; 2], ScenarioError> {
-    checks::place(source, &format!("{table}.from_m"), from)?;
-    checks::place(source, &format!("{table}.to_m"), to)?;
+/// The least and the greatest corner of a box.
+fn corners(from: Place, to: Place) -> [[f64; 3]; 2] {
     let axes = |pick: fn(f64, f64) -> f64| std::array::from_fn(|axis| pick(from.0[axis], to.0[axis]));
-    Ok([axes(f64::min), axes(f64::max)])
+    [axes(f64::min), axes(f64::max)]
 }

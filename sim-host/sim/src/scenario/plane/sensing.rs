@@ -1,42 +1,30 @@
 //! `[plane.sensing]`: detection of other robots by sensors.
 
-use super::super::source::Source;
-use super::super::{ScenarioError, ScenarioFile};
+use super::super::Draft;
+use super::super::ranges::duration;
+use super::super::source::Checked;
+use super::PlaneSetup;
 use super::table::PlaneTable;
-use super::{PlaneSetup, within};
 use crate::world::plane::Sensing;
 use staya_controller::neighbor::TrackParams;
-use staya_controller::time::Duration;
 
 /// Beacons round to millimetres, and simulated robots know their exact position.
 const HEARD_M: f64 = 0.002;
 const HEARD_MPS: f64 = 0.01;
 
-pub(in super::super) fn sensing(
-    source: &Source<'_>,
-    file: &ScenarioFile,
-    table: &PlaneTable,
-    setup: &PlaneSetup,
-) -> Result<Option<Sensing>, ScenarioError> {
-    let Some(sensing) = table.sensing else {
-        return Ok(None);
-    };
-    let refuse = |what: String, remedy: &str| Err(source.error("plane.sensing", what, remedy));
-    if setup.torus_m.is_some() {
-        return refuse(
-            "sensors do not see across the edges of a torus".into(),
-            "leave out plane.sensing or plane.torus_m",
-        );
-    }
+pub(super) fn sensing(draft: &Draft<'_>, table: &PlaneTable, setup: &PlaneSetup) -> Checked<Option<Sensing>> {
+    let Some(sensing) = table.sensing else { return Ok(None) };
+    let (field, what) = ("plane.sensing", "sensors do not see across the edges of a torus");
+    draft.require(setup.torus_m.is_none(), field, what, "leave out plane.sensing or plane.torus_m")?;
     if let Some(group) = setup.kinds().find(|group| group.guidance.kind().is_on_grid()) {
-        let what =
-            format!("guidance \"{}\" moves between cells, which sensors do not observe", group.guidance.kind().name());
-        return refuse(what, "give a guidance that goes by velocities, or leave it out");
+        let name = group.guidance.kind().name();
+        let what = format!("guidance \"{name}\" moves between cells, which sensors do not observe");
+        return Err(draft.error(field, what, "give a guidance that goes by velocities, or leave it out"));
     }
     // At least the age at which a beacon is stale, and at least three detections.
-    let usual_s = f64::from((3 * sensing.every_ticks + sensing.delay_ticks).max(4)) * file.tick_s;
+    let usual_s = f64::from((3 * sensing.every_ticks + sensing.delay_ticks).max(4)) * draft.file.tick_s;
     let forget_s = sensing.forget_s.unwrap_or(usual_s);
-    within(source, "plane.sensing.forget_s", forget_s, file.tick_s, 1000.0, "seconds")?;
+    draft.within("plane.sensing.forget_s", forget_s, draft.file.tick_s..=1000.0, "seconds")?;
     let abilities = setup.kinds().map(|group| group.abilities);
     let (speed_mps, most_mps2) = abilities.fold((0.0, 0.0), |(speed, most): (f64, f64), can| {
         (speed.max(can.max_speed_mps), most.max(can.max_acceleration_mps2))
@@ -58,7 +46,7 @@ pub(in super::super) fn sensing(
             heard_mps: HEARD_MPS as f32,
             gate: sensing.gate as f32,
             margin: sensing.margin as f32,
-            forget: Duration::from_micros((forget_s * 1e6) as i32),
+            forget: duration(forget_s),
         },
     }))
 }

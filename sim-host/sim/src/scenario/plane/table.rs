@@ -1,13 +1,23 @@
 //! `[plane]` as written in a scenario file, with the documentation of its fields.
 
 use super::super::formation::FormationEntry;
+use super::super::given::Given;
 use super::super::read::{Field, Node, Wrong};
-use crate::{defaults, names, table};
+use crate::{defaults, names, one_of, table};
 use staya_controller::agent::{GuidanceKind, SafetyKind};
-use staya_controller::push_out::Model;
+use staya_controller::boids::BoidsParams;
+use staya_controller::goal_flock::GoalParams;
+use staya_controller::lattice::LatticeParams;
+use staya_controller::orca::AvoidParams;
+use staya_controller::parameters::{RADIUS, TOLERANCE};
+use staya_controller::push_out::{Model, PushOutParams};
+use std::ops::RangeInclusive;
 
-/// Largest coordinate along each axis, metres: beacons encode positions as 32-bit millimetres.
-pub(super) const FAR_M: f64 = 2_000_000.0;
+/// Coordinates along each axis, metres: beacons encode positions as 32-bit millimetres.
+const FAR: RangeInclusive<f64> = -2e6..=2e6;
+
+/// Velocity along each axis, m/s: beacons encode velocities as 16-bit millimetres per second.
+const FAST: RangeInclusive<f64> = -32.0..=32.0;
 
 pub(super) const MAX_ROBOTS: f64 = 1_000_000.0;
 
@@ -19,19 +29,19 @@ table! {
     /// lacks, and the tables of a law or a safety layer if it has the same one.
     pub struct BodyTable {
         /// Radius of each body, metres.
-        pub radius_m: f64, 0.001..=65.0, "metres";
+        pub radius_m: f64, RADIUS;
         /// Highest speed on easy land, m/s.
         pub max_speed_mps: f64, 0.001..=32.0, "m/s";
         /// Highest acceleration, m/s^2. Default: no limit.
-        pub max_acceleration_mps2: f64 = f64::INFINITY;
+        pub max_acceleration_mps2: f64 = f64::INFINITY, 1e-6..=f64::INFINITY, "m/s^2";
         /// Time constant with which the velocity follows a command, seconds. Default: 0, at once.
         pub lag_s: f64 = 0.0, 0.0..=10.0, "seconds";
         /// Preferred speed, m/s. Default: the highest.
         pub cruise_mps: Option<f64>;
         /// Distance at which a goal counts as reached, metres. Default: a tenth of the radius.
-        pub tolerance_m: Option<f64>;
+        pub tolerance_m: Option<f64>, TOLERANCE;
         /// Range of obstacle detection, metres. Default: 10.
-        pub sight_m: f64 = 10.0, 0.0..=FAR_M, "metres";
+        pub sight_m: f64 = 10.0, 0.0..=2e6, "metres";
         /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs a formation too.
         pub guidance: GuidanceKind = GuidanceKind::Waypoint;
         /// Safety layer.
@@ -109,21 +119,28 @@ table! {
     }
 }
 
-table! {
-    /// `[plane.robots]`: exactly one of these.
-    pub struct PlaneRobots {
+one_of! {
+    /// How the robots are given.
+    pub enum RobotsSource {
         /// Individual robots.
-        pub list: Option<Vec<PlaneRobotEntry>>;
+        List(Vec<PlaneRobotEntry>) = "list";
+        /// Robots evenly spaced on a circle, with goals on the opposite side.
+        Circle(CircleEntry) = "circle";
+        /// Robots at random places with the same goals.
+        Cloud(CloudEntry) = "cloud";
+        /// Robots at random places with individual goals.
+        Scattered(ScatteredDiscs) = "scattered";
+        /// A formation, in cells of the terrain; only in a group with guidance `"formation"`.
+        Formation(FormationEntry) = "formation";
+    }
+}
+
+table! {
+    /// `[plane.robots]`.
+    pub struct PlaneRobots {
+        part robots: RobotsSource;
         /// Largest random offset of a listed start along each axis, metres. Default: 0.
         pub noise_m: f64 = 0.0, 0.0..=1e6, "metres";
-        /// Robots evenly spaced on a circle, with goals on the opposite side.
-        pub circle: Option<CircleEntry>;
-        /// Robots at random places with the same goals.
-        pub cloud: Option<CloudEntry>;
-        /// Robots at random places with individual goals.
-        pub scattered: Option<ScatteredDiscs>;
-        /// A formation, in cells of the terrain; only in a group with guidance `"formation"`.
-        pub formation: Option<FormationEntry>;
     }
 }
 
@@ -131,15 +148,15 @@ table! {
     /// One robot of `plane.robots.list`.
     pub struct PlaneRobotEntry {
         /// Start: x, y, z in metres.
-        pub start_m: Place;
+        pub start_m: Place, FAR, "metres";
         /// Goal. Default: none; the robot stays where its law leaves it.
-        pub goal_m: Option<Place>;
+        pub goal_m: Option<Place>, FAR, "metres";
         /// Waypoints on the way to the goal, at most three.
-        pub via_m: Vec<Place> = Vec::new();
+        pub via_m: Vec<Place> = Vec::new(), FAR, "metres";
         /// Initial velocity, m/s. Default: at rest.
-        pub velocity_mps: Place = Default::default();
+        pub velocity_mps: Place = Default::default(), FAST, "m/s";
         /// Radius of the body, metres. Default: that of its group.
-        pub radius_m: Option<f64>, 0.001..=65.0, "metres";
+        pub radius_m: Option<f64>, RADIUS;
         /// Highest speed on easy land, m/s. Default: that of its group.
         pub max_speed_mps: Option<f64>, 0.001..=32.0, "m/s";
     }
@@ -162,11 +179,11 @@ table! {
     #[derive(Copy)]
     pub struct IntruderEntry {
         /// Start, metres.
-        pub start_m: Place;
+        pub start_m: Place, FAR, "metres";
         /// Constant velocity, m/s.
-        pub velocity_mps: Place;
+        pub velocity_mps: Place, FAST, "m/s";
         /// Radius of the body, metres.
-        pub radius_m: f64, 0.001..=65.0, "metres";
+        pub radius_m: f64, RADIUS;
         /// Whether it sends beacons; if not, robots detect its place but not its speed. Default:
         /// true.
         pub heard: bool = true;
@@ -208,17 +225,17 @@ table! {
         /// Number of robots.
         pub count: u32, 1.0..=MAX_ROBOTS, "robots";
         /// Corner of the box of uniform random starts, metres; overlapping starts are redrawn.
-        pub from_m: Place;
+        pub from_m: Place, FAR, "metres";
         /// Opposite corner.
-        pub to_m: Place;
+        pub to_m: Place, FAR, "metres";
         /// Corner of the box of uniform random initial velocities, m/s. Default: at rest.
-        pub velocity_from_mps: Place = Default::default();
+        pub velocity_from_mps: Place = Default::default(), FAST, "m/s";
         /// Opposite corner.
-        pub velocity_to_mps: Place = Default::default();
+        pub velocity_to_mps: Place = Default::default(), FAST, "m/s";
         /// Goals of all robots.
-        pub goals_m: Vec<Place> = Vec::new();
+        pub goals_m: Vec<Place> = Vec::new(), FAR, "metres";
         /// Velocity of the goals, m/s. Default: at rest.
-        pub goal_velocity_mps: Place = Default::default();
+        pub goal_velocity_mps: Place = Default::default(), FAST, "m/s";
     }
 }
 
@@ -229,9 +246,9 @@ table! {
         /// Number of robots.
         pub count: u32, 1.0..=MAX_ROBOTS, "robots";
         /// Corner of the box of uniform starts and goals, metres; those too close are redrawn.
-        pub from_m: Place;
+        pub from_m: Place, FAR, "metres";
         /// Opposite corner.
-        pub to_m: Place;
+        pub to_m: Place, FAR, "metres";
         /// Farthest distance of a goal from its start along each axis, metres. Default: the whole
         /// box.
         pub travel_m: f64 = f64::INFINITY, 0.001..=f64::INFINITY, "metres";
@@ -244,7 +261,7 @@ table! {
     /// `[[plane.wall]]`.
     pub struct WallEntry {
         /// Two or more points, each joined to the next.
-        pub points_m: Vec<[f64; 2]>;
+        pub points_m: Vec<[f64; 2]>, FAR, "metres";
         /// Whether the last point is joined to the first: a polygon. Default: false.
         pub closed: bool = false;
         /// Width of a door in the middle of a wall of two points, metres. Default: no door.
@@ -257,7 +274,7 @@ table! {
     #[derive(Copy)]
     pub struct BallEntry {
         /// Centre, metres.
-        pub center_m: Place;
+        pub center_m: Place, FAR, "metres";
         /// Radius, metres.
         pub radius_m: f64, 0.001..=1e6, "metres";
     }
@@ -272,9 +289,9 @@ table! {
         /// Radius of each, metres.
         pub radius_m: f64, 0.001..=1e6, "metres";
         /// Corner of the box of uniform random centres, metres.
-        pub from_m: Place;
+        pub from_m: Place, FAR, "metres";
         /// Opposite corner.
-        pub to_m: Place;
+        pub to_m: Place, FAR, "metres";
         /// Smallest distance between two surfaces, metres. Default: 0.
         pub gap_m: f64 = 0.0, 0.0..=1e6, "metres";
     }
@@ -285,7 +302,7 @@ table! {
     #[derive(Copy)]
     pub struct HalfSpaceEntry {
         /// A point on its border, metres.
-        pub point_m: Place;
+        pub point_m: Place, FAR, "metres";
         /// A vector out of it, of any length.
         pub normal: Place;
     }
@@ -300,25 +317,18 @@ table! {
         /// Index of the goal, from 0. Default: 0.
         pub goal: u8 = 0;
         /// Position of the goal, metres.
-        pub place_m: Place;
+        pub place_m: Place, FAR, "metres";
         /// Velocity of the goal, m/s. Default: at rest.
-        pub velocity_mps: Place = Default::default();
+        pub velocity_mps: Place = Default::default(), FAST, "m/s";
     }
 }
 
 table! {
-    /// `[plane.orca]`. All fields are optional; the defaults are the controller's.
-    #[derive(Copy)]
+    /// `[plane.orca]`. All fields are optional.
     pub struct OrcaTable {
-        /// Time ahead in which robots must not meet, seconds; at least twice the braking time, to
-        /// which the default grows.
-        pub horizon_s: Option<f64>;
-        /// Time ahead in which a robot must not meet an obstacle, seconds.
-        pub wall_horizon_s: Option<f64>;
-        /// Own share of a correction.
-        pub share: Option<f64>;
-        /// Distance kept in addition to the radii, metres.
-        pub margin_m: Option<f64>;
+        // Parameters of the layer; `horizon_s` is at least twice the braking time, to which the
+        // default grows.
+        part params: Given<AvoidParams<f32>>;
         /// Growth rate of the ball around a silent robot, m/s. Default: the highest speed.
         pub inflation_mps: Option<f64>, 0.0..=1000.0, "m/s";
         /// Largest growth of the ball around a lost robot, metres. Default: the radius.
@@ -331,7 +341,7 @@ table! {
         /// periods and the delay of the radio.
         pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
         /// Whether a robot that has not heard another one stands. Default: false.
-        pub expects_others: Option<bool>;
+        pub expects_others: bool = false;
         /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
         pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
     }
@@ -339,10 +349,9 @@ table! {
 
 table! {
     /// `[plane.push_out]` (PAV).
-    #[derive(Copy)]
     pub struct PushOutTable {
-        /// Smallest distance of a centre from others and from obstacles (R_MinDist), metres.
-        pub min_distance_m: f64;
+        // Parameters of the layer.
+        part params: Given<PushOutParams<f32>>;
         /// `"radial"` (model 1, along the radius; default) or `"tangential"` (2, along the border).
         pub model: Model = Default::default();
         /// Whether only the nearest robot in the way is avoided. Default: false, all are.
@@ -352,62 +361,37 @@ table! {
 
 table! {
     /// `[plane.lattice]` (OLF).
-    #[derive(Copy)]
     pub struct LatticeTable {
-        /// Distance of neighbours (d), metres.
-        pub spacing_m: f64;
+        // Distances and gains. Default of `c_alpha`: stable with the delay of the radio.
+        part params: Given<LatticeParams<f32>>;
         /// Algorithm 1: other robots only; 2: also the goal; 3: also obstacles. Default: 3.
-        pub algorithm: Option<u8>;
-        /// Gain on positions of robots relative to each other (c1 of the alpha-agents), 1/s^2.
-        pub c_alpha: Option<f64>;
-        /// Gain on positions relative to obstacles (c1 of the beta-agents), 1/s^2.
-        pub c_beta: Option<f64>;
-        /// Gain on positions relative to the goal (c1 of the gamma-agent), 1/s^2.
-        pub c_gamma: Option<f64>;
+        pub algorithm: u8 = 3, 1.0..=3.0, "";
         /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays. Default:
         /// true.
-        pub goal_moves: Option<bool>;
+        pub goal_moves: bool = true;
         /// Distance behind a stationary goal over which its velocity fades, metres. Default: never.
-        pub goal_rest_m: Option<f64>;
+        pub goal_rest_m: Option<f64>, 0.01..=1e6, "metres";
         /// Whether robots in algorithm 3 do not push neighbours that are nearer to the goal, so
         /// that they pass gaps one by one. Default: false.
-        pub takes_turns: Option<bool>;
-        /// Distance from obstacles over spacing (d' / d). Default: 0.6.
-        pub obstacle_ratio: Option<f64>;
+        pub takes_turns: bool = false;
     }
 }
 
 table! {
     /// `[plane.goal_flock]` (PAV).
-    #[derive(Copy)]
     pub struct GoalFlockTable {
-        /// Smallest distance of two robots' centres (R_MinDist), metres.
-        pub min_distance_m: f64;
-        /// Range of neighbours (R_nbh), metres. Default: four times `min_distance_m`.
-        pub neighborhood_m: Option<f64>;
-        /// Weight of the pull towards the goal.
-        pub k1: Option<f64>;
-        /// Weight of the pull towards the neighbours' centre.
-        pub k2: Option<f64>;
-        /// Weight of the push from neighbours that are too near.
-        pub k3: Option<f64>;
+        // Distances and gains. Default of `neighborhood_m`: four times `min_distance_m`.
+        part params: Given<GoalParams<f32>>;
         /// Distance at which a goal counts as reached, metres. Default: `neighborhood_m`.
-        pub arrival_m: Option<f64>;
+        pub arrival_m: Option<f64>, TOLERANCE;
     }
 }
 
 table! {
     /// `[plane.boids]` (STA).
-    #[derive(Copy)]
     pub struct BoidsTable {
-        /// Distance below which a boid turns away, metres.
-        pub crowded_m: f64;
-        /// Range of neighbours, metres.
-        pub closest_m: f64;
-        /// Largest turn per tick towards the others, radians. Default: 0.05.
-        pub max_turn: Option<f64>;
-        /// Largest turn per tick away from a boid that is too near, radians. Default: 0.02.
-        pub max_turn_away: Option<f64>;
+        // Distances and turns.
+        part params: Given<BoidsParams<f32>>;
     }
 }
 

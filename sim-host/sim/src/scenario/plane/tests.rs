@@ -4,6 +4,7 @@ mod remarks;
 mod sensing;
 
 use super::super::Overrides;
+use super::super::ScenarioError;
 use super::*;
 use proptest::prelude::*;
 use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceSetup, SafetyKind, SafetySetup};
@@ -23,7 +24,7 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
 
 fn setup(text: &str) -> PlaneSetup {
     let scenario = parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    scenario.plane.expect("robots in the plane")
+    scenario.plane().expect("robots in the plane").clone()
 }
 
 #[test]
@@ -56,7 +57,7 @@ fn a_raised_lag_is_as_one_in_the_file() {
 fn the_smallest_plane_has_the_documented_defaults() {
     let scenario = parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good");
     assert_eq!(scenario.robots.len(), 2);
-    let plane = scenario.plane.expect("robots in the plane");
+    let plane = scenario.plane().expect("robots in the plane").clone();
     let group = &plane.general;
     assert_eq!(group.abilities.max_acceleration_mps2, f64::INFINITY);
     assert_eq!((group.cruise_mps, group.sight_m), (1.0, 10.0));
@@ -146,7 +147,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             robots("scattered = { count = 2, from_m = [0, 0], to_m = [9e9, 9] }"),
-            "s.toml:7:50: plane.robots.scattered.to_m: this is too far away",
+            "s.toml:7:51: plane.robots.scattered.to_m[0]: 9000000000 is out of range",
         ),
         (
             after("[[plane.balls]]\ncount = 50\nradius_m = 1\nfrom_m = [9, 9]\nto_m = [12, 12]\n"),
@@ -160,8 +161,8 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             format!("{HEAD}{PLANE}"),
             "s.toml:3:1: plane.robots: the robots are not defined exactly once; give either plane.robots",
         ),
-        (robots(""), "s.toml:6:1: plane.robots: the robots are not defined exactly once; give exactly one of"),
-        (robots("list = []"), "s.toml:7:8: plane.robots.list: there are no robots"),
+        (robots(""), "s.toml:6:1: plane.robots: a field is missing; give exactly one of `list`"),
+        (robots("list = []"), "s.toml:7:8: plane.robots.list: 0 is out of range; give 1 to 1000000 robots"),
         (robots("circle = { count = 0, radius_m = 3 }"), "s.toml:7:20: plane.robots.circle.count: 0 is out of range"),
         (
             robots("circle = { count = 3, radius_m = nan }"),
@@ -173,7 +174,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             robots("circle = { count = 3, radius_m = 3 }\nlist = []"),
-            "s.toml:6:1: plane.robots: the robots are not defined exactly once",
+            "s.toml:8:1: plane.robots.list: `circle` is given, too; give exactly one of `list`",
         ),
         (
             robots("cloud = { count = 100, from_m = [0, 0], to_m = [1, 1] }"),
@@ -181,15 +182,15 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             robots("cloud = { count = 1, from_m = [-inf, 0], to_m = [inf, 1] }"),
-            "s.toml:7:31: plane.robots.cloud.from_m: this is too far away",
+            "s.toml:7:32: plane.robots.cloud.from_m[0]: -inf is out of range",
         ),
         (
             robots("cloud = { count = 1, from_m = [0, 0], to_m = [nan, 1] }"),
-            "s.toml:7:46: plane.robots.cloud.to_m: this is too far away",
+            "s.toml:7:47: plane.robots.cloud.to_m[0]: NaN is out of range",
         ),
         (
             robots("cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], velocity_to_mps = [99, 0] }"),
-            "s.toml:7:72: plane.robots.cloud.velocity_to_mps: this is too fast",
+            "s.toml:7:73: plane.robots.cloud.velocity_to_mps[0]: 99 is out of range",
         ),
         (
             robots("cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], goals_m = [[1, 2], [3, 4]] }"),
@@ -205,15 +206,15 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             robots("list = [{ start_m = [0, 0] }, { start_m = [2000001, 0] }]"),
-            "s.toml:7:43: plane.robots.list[1].start_m: this is too far away; stay within 2000 km",
+            "s.toml:7:44: plane.robots.list[1].start_m[0]: 2000001 is out of range",
         ),
         (
             robots("list = [{ start_m = [0, 0], goal_m = [0, nan] }]"),
-            "s.toml:7:38: plane.robots.list[0].goal_m: this is too far away",
+            "s.toml:7:42: plane.robots.list[0].goal_m[1]: NaN is out of range",
         ),
         (
             robots("list = [{ start_m = [0, 0], velocity_mps = [0, -32.5] }]"),
-            "s.toml:7:44: plane.robots.list[0].velocity_mps: this is too fast; give at most 32 m/s",
+            "s.toml:7:48: plane.robots.list[0].velocity_mps[1]: -32.5 is out of range",
         ),
         (
             robots("list = [{ start_m = [0, 0] }, { start_m = [4, 0] }, { start_m = [0, 0.39] }]"),
@@ -258,7 +259,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             after("[[plane.wall]]\npoints_m = [[1, 2], [3, 1e300]]\n"),
-            "s.toml:9:12: plane.wall[0].points_m: this is not a wall",
+            "s.toml:9:25: plane.wall[0].points_m[1][1]: 1e300 is out of range",
         ),
         (
             after("[[plane.wall]]\npoints_m = [[1, 2], [3, 2], [3, 4]]\ndoor_m = 1\n"),
@@ -274,11 +275,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             after("[[plane.ball]]\ncenter_m = [nan, 2]\nradius_m = 1\n"),
-            "s.toml:9:12: plane.ball[0].center_m: this is too far away",
+            "s.toml:9:13: plane.ball[0].center_m[0]: NaN is out of range",
         ),
         (
             after("[[plane.half_space]]\npoint_m = [0, inf]\nnormal = [1, 0]\n"),
-            "s.toml:9:11: plane.half_space[0].point_m: this is too far away",
+            "s.toml:9:15: plane.half_space[0].point_m[1]: inf is out of range",
         ),
         (
             after("[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 0]\n"),
@@ -310,7 +311,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (after("[plane.orca]\ninflation_m = -1\n"), "s.toml:9:15: plane.orca.inflation_m: -1 is out of range"),
         (
             flock("lattice", "spacing_m = 1\nalgorithm = 4", ""),
-            "s.toml:11:13: plane.lattice.algorithm: there is no algorithm 4; give 1, 2 or 3",
+            "s.toml:11:13: plane.lattice.algorithm: 4 is out of range; give 1 to 3",
         ),
         (flock("lattice", "spacing_m = nan", ""), "s.toml:10:13: plane.lattice.spacing_m: NaN is out of range"),
         (
@@ -323,7 +324,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             flock("goal_flock", "min_distance_m = 1", ", goals_m = [[1, 1]], goal_velocity_mps = [33, 0]"),
-            "s.toml:8:94: plane.robots.cloud.goal_velocity_mps: this is too fast",
+            "s.toml:8:95: plane.robots.cloud.goal_velocity_mps[0]: 33 is out of range",
         ),
         (
             flock("boids", "crowded_m = 1\nclosest_m = 3", ", goals_m = [[1, 1]]"),
@@ -343,11 +344,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             after("[[plane.order]]\nat_s = 1\nplace_m = [1, 9e6]\n"),
-            "s.toml:10:11: plane.order[0].place_m: this is too far away",
+            "s.toml:10:15: plane.order[0].place_m[1]: 9000000 is out of range",
         ),
         (
             after("[[plane.order]]\nat_s = 1\nplace_m = [1, 9]\nvelocity_mps = [33, 0]\n"),
-            "s.toml:11:16: plane.order[0].velocity_mps: this is too fast",
+            "s.toml:11:17: plane.order[0].velocity_mps[0]: 33 is out of range",
         ),
         (
             flock("boids", "crowded_m = 1\nclosest_m = 3\n[[plane.order]]\nat_s = 1\nplace_m = [1, 1]", ""),
@@ -462,7 +463,7 @@ proptest! {
              radius_m = 2\n[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 1]\n[plane.orca]\nhorizon_s = 3\nmargin_m = 0.01\n\
              [[plane.order]]\nat_s = 2\nplace_m = [3, 4]\nvelocity_mps = [0.1, 0.1]\n"
         );
-        prop_assert!(parse(&text).is_ok_and(|scenario| scenario.plane.is_some()), "{text}");
+        prop_assert!(parse(&text).is_ok_and(|scenario| scenario.plane().is_some()), "{text}");
         let mut text: Vec<char> = text.chars().collect();
         for (at, change) in changes {
             let at = at % text.len();
@@ -480,7 +481,7 @@ fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
     );
     let scenario = Scenario::parse(&text, Path::new("s.toml"), &Overrides::default()).unwrap();
     let remarks = scenario.remarks();
-    match scenario.plane.unwrap().general.guidance {
+    match &scenario.plane().unwrap().general.guidance {
         GuidanceSetup::Lattice { params, .. } => (params.alpha.position, params.gamma.position, remarks),
         other => panic!("{other:?}"),
     }

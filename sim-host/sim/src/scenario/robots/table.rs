@@ -1,20 +1,20 @@
 //! Fields of the `[robots]` table.
 
 use super::super::formation::FormationEntries;
-use crate::table;
+use crate::{one_of, table};
 use std::path::PathBuf;
 
-table! {
-    /// `[robots]`: exactly one of these fields.
-    pub struct RobotsTable {
+one_of! {
+    /// `[robots]`.
+    pub enum RobotsTable {
         /// Individual robots.
-        pub list: Option<Vec<RobotEntry>>;
+        List(Vec<RobotEntry>) = "list";
         /// A formation that travels together, or several: `[[robots.formation]]`.
-        pub formation: FormationEntries = FormationEntries::default();
+        Formation(FormationEntries) = "formation";
         /// The first robots of a Moving AI multi-agent scenario.
-        pub scen: Option<ScenEntry>;
+        Scen(ScenEntry) = "scen";
         /// Robots at random cells.
-        pub scattered: Option<ScatteredEntry>;
+        Scattered(ScatteredEntry) = "scattered";
     }
 }
 

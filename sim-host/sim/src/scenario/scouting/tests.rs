@@ -11,12 +11,12 @@ fn parse(rest: &str) -> Result<Scenario, String> {
 #[test]
 fn scouting_extends_planning_but_not_sight() {
     let scenario = parse(&format!("{LAND}[route]\nradius = 4\n[scouting]\nradius = 9\n")).expect("good");
-    let scouting = scenario.scouting.as_ref().expect("scouted");
-    assert_eq!((scouting.sight, scenario.route.params.radius), (4, 9));
-    assert_eq!(*scouting.map, scenario.terrain, "nothing is unknown or wrong unless said");
+    let scouting = scenario.land.scouting.as_ref().expect("scouted");
+    assert_eq!((scouting.sight, scenario.laws.route.params.radius), (4, 9));
+    assert_eq!(*scouting.map, scenario.land.terrain, "nothing is unknown or wrong unless said");
     let scenario = parse(&format!("{LAND}[scouting]\n")).expect("good");
-    assert_eq!((scenario.scouting.map(|known| known.sight), scenario.route.params.radius), (Some(5), 16));
-    assert!(parse(LAND).expect("good").scouting.is_none());
+    assert_eq!((scenario.land.scouting.map(|known| known.sight), scenario.laws.route.params.radius), (Some(5), 16));
+    assert!(parse(LAND).expect("good").land.scouting.is_none());
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn an_old_map_must_have_the_size_of_the_land() {
         );
         Scenario::parse(&text, &dir.path().join("t.toml"), &Overrides::default()).map_err(|error| error.to_string())
     };
-    assert_eq!(with("good.map").expect("good").scouting.expect("scouted").map.cells(), [1, 0, 1, 1]);
+    assert_eq!(with("good.map").expect("good").land.scouting.expect("scouted").map.cells(), [1, 0, 1, 1]);
     let message = with("old.map").unwrap_err();
     assert!(message.contains("it has 5 x 1 cells, the land has 4 x 1 cells; give a map of the same"), "{message}");
 }

@@ -101,7 +101,7 @@ fn attacks_end_after_they_begin() {
         assert!(refusal.starts_with(expected), "{refusal}");
     }
     let scenario = parse(&attack("from_s = 3\nto_s = 4")).expect("good");
-    assert_eq!((scenario.attacks[0].from_tick, scenario.attacks[0].to_tick), (3, 4));
+    assert_eq!((scenario.events.attacks[0].from_tick, scenario.events.attacks[0].to_tick), (3, 4));
 }
 
 #[test]

@@ -76,9 +76,8 @@ fn the_range_of_bodies_is_that_of_the_parameter() {
     let parameter = parameters().find(|row| row.name == "radius_m").expect("a parameter");
     for field in ["plane.radius_m", "plane.group.radius_m", "plane.intruder.radius_m"] {
         let (_, line) = fields.iter().find(|(path, _)| path == field).unwrap_or_else(|| panic!("no {field}"));
-        let (range, unit) = line.range.as_ref().expect("a range");
-        assert_eq!([range.start(), range.end()].map(f64::to_string), parameter.range.map(|end| end.to_string()));
-        assert_eq!(*unit, "metres");
+        assert_eq!(line.limits, Some(Limits::new(0.001..=65.0, "metres")));
+        assert_eq!(line.limits, Some(Limits::of(parameter)));
     }
 }
 

@@ -9,10 +9,10 @@ fn only_a_stationary_goal_may_have_a_rest_distance() {
              [plane.lattice]\nspacing_m = 1\n{fields}\n"
         );
         let scenario = Scenario::parse(&text, Path::new("s.toml"), &Overrides::default());
-        scenario.map(|scenario| match scenario.plane.unwrap().general.guidance {
+        scenario.map(|scenario| match &scenario.plane().unwrap().general.guidance {
             GuidanceSetup::Lattice { params, motion } => {
                 assert_eq!(params.algorithm == Algorithm::ThreeInTurn, fields.contains("takes_turns = true"));
-                (params.obstacle_ratio, motion)
+                (params.obstacle_ratio, *motion)
             }
             other => panic!("{other:?}"),
         })

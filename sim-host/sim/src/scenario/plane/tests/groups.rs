@@ -43,7 +43,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             in_formation("goal = [0, 8]"),
-            "s.toml:11:20: plane.group[0].robots.formation: it is not clear where they start; give start, of robot 1",
+            "s.toml:11:20: plane.group[0].robots.formation: a field is missing; give exactly one of `start`, `starts`",
         ),
         (
             in_formation("start = [0, 0], goal = [99, 9]"),
@@ -88,11 +88,11 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots = {{ }}\n"),
-            "s.toml:7:10: plane.group[0].robots: the robots are not defined exactly once; give exactly one of",
+            "s.toml:7:10: plane.group[0].robots: a field is missing; give exactly one of",
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots.list = [{{ start_m = [nan, 0] }}]\n"),
-            "s.toml:7:28: plane.group[0].robots.list[0].start_m: this is too far away",
+            "s.toml:7:29: plane.group[0].robots.list[0].start_m[0]: NaN is out of range",
         ),
         (
             format!("{HEAD}{PLANE}{TWO}[[plane.group]]\nradius_m = 3\nrobots.list = [{{ start_m = [6.0, 0] }}]\n"),
@@ -116,7 +116,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             robots("list = [{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0], [nan, 0]] }]"),
-            "s.toml:7:63: plane.robots.list[0].via_m[1]: this is too far away",
+            "s.toml:7:64: plane.robots.list[0].via_m[1][0]: NaN is out of range",
         ),
         (
             format!(
@@ -127,11 +127,11 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [33, 0]\nradius_m = 1\n"),
-            "s.toml:10:16: plane.intruder[0].velocity_mps: this is too fast",
+            "s.toml:10:17: plane.intruder[0].velocity_mps[0]: 33 is out of range",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, inf]\nvelocity_mps = [1, 0]\nradius_m = 1\n"),
-            "s.toml:9:11: plane.intruder[0].start_m: this is too far away",
+            "s.toml:9:15: plane.intruder[0].start_m[1]: inf is out of range",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [1, 0]\nradius_m = 0\n"),
@@ -228,12 +228,12 @@ fn formations_differ_by_ids_and_flock_numbers_are_not_places() {
     let templates: Vec<_> = (1..6).map(named).collect();
     let expected: [(u8, &[u32]); 5] = [(0, &[6]), (1, &[5]), (0, &[8, 9]), (1, &[7, 9]), (2, &[8, 7])];
     assert_eq!(templates, expected.map(|(slot, ids)| (slot, ids.to_vec())));
-    let plane = scenario.plane.as_ref().expect("a plane");
+    let plane = scenario.plane().expect("a plane");
     let flocks: Vec<_> = (0..7).map(|index| plane.group(index).flock).collect();
     assert_eq!(flocks, [3, 0, 0, 0, 0, 0, 6], "no number below 3 is a flock's");
     let safety: Vec<_> = (0..7).map(|index| scenario.safety(index).kind()).collect();
     assert_eq!((safety[1], safety[4], plane.group(4).radius_m), (SafetyKind::Orca, SafetyKind::None, 0.3));
-    let parts: Vec<_> = scenario.parts.iter().map(|part| (part.table.as_str(), part.members.clone())).collect();
+    let parts: Vec<_> = scenario.origin.parts.iter().map(|part| (part.table.as_str(), part.members.clone())).collect();
     let of = |index: usize| ["plane", "plane.group[0]", "plane.group[1]", "plane.group[2]"][index];
     assert_eq!(parts, [(of(0), 0..1), (of(1), 1..3), (of(2), 3..6), (of(3), 6..7)]);
     assert_eq!(scenario.numbered_edges(), [(5, 6), (7, 8), (8, 9)]);

@@ -74,7 +74,7 @@ fn scenarios_of_the_repository_cause_no_warnings() {
     let mut count = 0;
     for file in files.filter(|file| file.extension().is_some_and(|end| end == "toml")) {
         let scenario = Scenario::load(&file, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
-        let plane = scenario.plane.iter().flat_map(|setup| remarks::remarks(setup, scenario.tick_s()));
+        let plane = scenario.plane().into_iter().flat_map(|setup| remarks::remarks(&scenario, setup));
         assert_eq!(plane.collect::<Vec<_>>(), Vec::<String>::new(), "{}", file.display());
         count += 1;
     }

@@ -4,7 +4,7 @@ use crate::world::plane::Sensing;
 const SENSING: &str = "[plane.sensing]\nrange_m = 3\n";
 
 fn sensing(text: &str) -> Sensing {
-    parse(text).unwrap_or_else(|error| panic!("{error}\n{text}")).sensing.expect("sensing")
+    parse(text).unwrap_or_else(|error| panic!("{error}\n{text}")).sensing().expect("sensing")
 }
 
 #[test]
@@ -15,7 +15,7 @@ fn minimal_sensors_have_the_documented_defaults() {
     let tracking = found.tracking;
     assert_eq!((tracking.gate, tracking.margin, tracking.acceleration_mps2), (4.0, 2.0, 4.0));
     assert_eq!(tracking.forget, Duration::from_millis(200));
-    assert!(parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good").sensing.is_none());
+    assert!(parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good").sensing().is_none());
 }
 
 #[test]
