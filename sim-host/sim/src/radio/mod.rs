@@ -82,13 +82,13 @@ struct Inboxes {
     bytes: Vec<u8>,
 }
 
-/// What a robot received for its next step.
+/// Frames and bytes that a robot received for its next step.
 #[derive(Clone, Copy, Debug)]
 pub struct Inbox<'a> {
     medium: &'a Medium,
     packets: &'a [u32],
-    /// What came behind the decoded frames: from the first frame on that is damaged, late, sealed
-    /// or none.
+    /// The bytes behind the decoded frames: from the first piece on that is damaged, late, sealed
+    /// or no frame.
     pub bytes: &'a [u8],
 }
 
@@ -187,7 +187,7 @@ impl Radio {
         self
     }
 
-    /// What robot `index` (in the order given to [`Radio::new`]) received for its next step.
+    /// The inbox of robot `index` (in the order given to [`Radio::new`]) for its next step.
     #[must_use]
     pub fn inbox(&self, index: usize) -> Inbox<'_> {
         let (Receiver { packets, bytes, .. }, inboxes) = (&self.receivers[index], &self.inboxes[index / BLOCK]);

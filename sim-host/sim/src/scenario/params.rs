@@ -1,4 +1,4 @@
-//! `[grid]`, `[route]` and `[formation]`: route planning and formation keeping. The defaults are the
+//! `[grid]`, `[route]` and `[formation]`: route planning and formation keeping. Defaults are the
 //! controller's; a test compares them with the list in scenarios/README.md.
 
 use super::given::Given;

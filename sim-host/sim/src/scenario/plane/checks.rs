@@ -3,7 +3,7 @@
 use super::super::Draft;
 use super::super::ranges::short;
 use super::super::source::{Checked, Section};
-use super::group::Group;
+use super::body::Group;
 use super::table::{CloudEntry, MAX_ROBOTS, Place, PlaneRobotEntry};
 use super::{PlaneSetup, Start};
 use crate::nearby::{Cells, Query, Search};

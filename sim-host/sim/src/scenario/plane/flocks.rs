@@ -3,7 +3,7 @@
 use super::super::given::Given;
 use super::super::source::Checked;
 use super::super::{Draft, ScenarioFile};
-use super::group::Group;
+use super::body::Group;
 use super::table::{BoidsTable, GoalFlockTable, LatticeTable};
 use crate::radio::RadioParams;
 use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};

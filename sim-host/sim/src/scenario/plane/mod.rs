@@ -1,5 +1,6 @@
 //! `[plane]`: robots that move in the plane or in space, and their choice of velocity.
 
+mod body;
 mod checks;
 mod flocks;
 mod group;
@@ -32,7 +33,7 @@ use super::{Draft, Part, Placed, Robot, Scenario};
 use crate::nearby::Space;
 use crate::terrain::Terrain;
 use crate::world::plane::{Sensing, Solid};
-use group::Group;
+use body::Group;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::GuidanceKind;
 use staya_controller::grid::Cell;

@@ -2,7 +2,7 @@
 
 use super::super::Draft;
 use super::super::source::Checked;
-use super::group::Group;
+use super::body::Group;
 use super::place::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
 use crate::world::plane::{Solid, Solids};

@@ -2,8 +2,9 @@
 
 use super::super::source::Checked;
 use super::super::{Draft, Robot};
+use super::body::Group;
 use super::checks;
-use super::group::{Group, RobotGroup};
+use super::group::RobotGroup;
 use super::place::{Start, Target};
 use super::scattered::{self, TRIES, Taken, between, is_clear, unit};
 use super::table::{CircleEntry, CloudEntry, Place, PlaneRobotEntry, PlaneRobots, RobotsSource};
