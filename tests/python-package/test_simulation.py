@@ -61,7 +61,7 @@ def test_the_seed_and_other_fields_can_be_overridden(scenario, tmp_path):
 
 
 def test_errors_of_a_scenario_are_named(scenario):
-    with pytest.raises(staya.ScenarioError, match=r"six-robots.toml:\d+: radio.loss: .*by an argument"):
+    with pytest.raises(staya.ScenarioError, match=r"six-robots.toml:\d+:\d+: radio.loss: .*by an argument"):
         staya.Simulation(scenario("six-robots"), radio__loss=1.5)
     with pytest.raises(staya.ScenarioError, match="scenarios/README.md"):
         staya.Simulation(scenario("six-robots"), radio__lost=1)
