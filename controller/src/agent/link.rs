@@ -398,6 +398,8 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     }
 }
 
+// Not inlined: it has many callers.
+#[inline(never)]
 pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
 }
