@@ -1,6 +1,7 @@
 //! The configuration of the agent of one robot.
 
 use super::ContactLossPolicy;
+use crate::body::Body;
 use crate::neighbor::{Ages, PlausibilityLimits};
 use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
@@ -20,8 +21,12 @@ pub struct AgentConfig<S> {
     /// other robots ignore this robot for a time; see [`crate::wire::SequenceWindow`].
     pub boot: u8,
     /// Time base; above 0. On the grid, the time to cross a cell of impassability 1. In the plane,
-    /// the time between two steps, for which each command is planned: the caller must keep it.
+    /// the time between two steps and the time for which each command is carried out. A step may
+    /// come later, if the body stands meanwhile, but not earlier.
     pub tick: Duration,
+    /// Whether all robots decide at the same instants, as robots of a simulator may. Robots with
+    /// clocks of their own do not.
+    pub is_synchronous: bool,
     /// Time between two beacons. A longer period saves airtime but gives neighbours older states.
     pub beacon_period: Duration,
     /// Radius of the ball around the body, metres.
@@ -31,7 +36,9 @@ pub struct AgentConfig<S> {
     /// Time constant with which the body follows a velocity command (first order), seconds; 0 for a
     /// body that follows at once. A body has the same one in all directions.
     pub lag_s: S,
-    /// Age of a beacon when it arrives; at least 0. Neighbours are extrapolated over this time.
+    /// Greatest age of a beacon when it is first used; at least 0. Neighbours are extrapolated over
+    /// this time. A tick, if the radio takes less than half a tick and each step reads all packets
+    /// that have arrived; a tick more for each further tick that the radio may take.
     pub latency: Duration,
     /// Ages at which the state of a neighbour counts as stale and as expired.
     pub ages: Ages,
@@ -58,6 +65,7 @@ impl<S: Scalar> AgentConfig<S> {
             seed: self.seed,
             boot: self.boot,
             tick: self.tick,
+            is_synchronous: self.is_synchronous,
             beacon_period: self.beacon_period,
             radius_m: cast(self.radius_m),
             max_acceleration_mps2: cast(self.max_acceleration_mps2),
@@ -72,12 +80,22 @@ impl<S: Scalar> AgentConfig<S> {
         }
     }
 
+    /// The time for which a robot that dies drives on at most before it brakes, seconds.
+    pub(super) fn drives_on_s(&self, body: &Body<S>) -> S {
+        S::from_micro(self.beacon_period.as_micros()).max(body.step_s) + self.lag_s
+    }
+
+    /// The way on which a robot that dies at `speed_mps` may come to stand, metres.
+    pub(super) fn lost_way_m(&self, body: &Body<S>, speed_mps: S) -> S {
+        body.braking_m(speed_mps) + speed_mps * self.drives_on_s(body)
+    }
+
     /// Creates a configuration from the values that every robot needs (on the grid any `radius_m`).
     ///
     /// Defaults: seed 0, boot 0, flock 0, a beacon per tick, states stale after 4 ticks and expired
     /// after 30, messages resent every 3 ticks, valid for 12 ticks, no inertia, no lag, no
-    /// latency (set [`latency`](Self::latency) for a real radio in the plane), and no plausibility
-    /// limits.
+    /// latency (set [`latency`](Self::latency) for a real radio in the plane), steps at any instants,
+    /// and no plausibility limits.
     #[must_use]
     pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
         Self {
@@ -85,6 +103,7 @@ impl<S: Scalar> AgentConfig<S> {
             seed: 0,
             boot: 0,
             tick,
+            is_synchronous: false,
             beacon_period: tick,
             radius_m,
             max_acceleration_mps2: S::MAX,

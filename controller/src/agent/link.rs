@@ -151,12 +151,20 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         };
         let longest = Duration::from_micros(patience.as_micros().saturating_add(latency.as_micros()));
         let missed = patience.as_micros().checked_div(period.as_micros()).unwrap_or(0);
-        let on_s = S::from_micro(period.as_micros()).max(body.step_s) + config.lag_s;
+        let on_s = config.drives_on_s(body);
         self.table.expire((body, on_s), now, (longest, remembers), |lost| {
             loss.gave_up(u16::try_from(missed).unwrap_or(u16::MAX));
             windows.retain(|(id, _)| *id != lost);
             report(out, Event::NeighborLost(lost));
         });
+    }
+
+    /// How much later than a tick after the previous step this one comes; zero within a quarter of a
+    /// tick, and in the first step.
+    pub(super) fn lateness(&self, previous: Instant, now: Instant, tick: Duration) -> Duration {
+        let late = Duration::from_micros(now.since(previous).as_micros().saturating_sub(tick.as_micros()));
+        let is_late = self.has_sent && late.as_micros() > tick.as_micros() >> 2;
+        if is_late { late } else { Duration::ZERO }
     }
 
     pub(super) fn next_frame<'a>(&self, inbox: &mut &'a [u8]) -> Option<&'a [u8]> {

@@ -3,8 +3,8 @@
 use super::contact_loss::ContactState;
 use super::link::{ReceiveContext, Received, beacon, report};
 use super::{
-    Action, Agent, Command, Decision, Event, Inputs, KinematicState, Known, Last, Law, OrderOf, Outgoing, Outputs,
-    Perception, Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
+    Action, Agent, AgentConfig, Command, Decision, Event, Inputs, KinematicState, Known, Last, Law, OrderOf, Outgoing,
+    Outputs, Perception, Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
@@ -87,9 +87,11 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let mut nearby = self.look(inputs, now);
         let mut rng = Rng::keyed(self.config.seed, PURPOSE, self.config.id.0, self.decisions);
         let decision = self.decide(inputs, &nearby, now, &mut rng, workspace, out);
+        let before = self.mode;
         self.supervise(inputs, decision.as_ref(), out);
-        self.keep_clear(inputs, decision.as_ref(), &mut nearby, now, &mut rng, out);
-        self.speak(inputs, now, out);
+        self.keep_clear(inputs, decision.as_ref(), &mut nearby, (before, now), &mut rng, out);
+        self.speak(inputs, (before, now), out);
+        self.last.step = now;
     }
 
     #[inline(never)]
@@ -148,9 +150,14 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let Self { config, law, safety, link, last, .. } = self;
         let leader = law.report().leader;
         let mut outgoing = Outgoing::default();
-        let heard_at = now - config.latency;
         // Only a safety layer that tracks silent neighbours needs their last positions.
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
+        // Frames may have waited since the previous step, and other robots have decided since.
+        let late = if keeps_clear { link.lateness(last.step, now, config.tick) } else { Duration::ZERO };
+        if late > Duration::ZERO {
+            link.table.forget_gaps();
+        }
+        let heard_at = now - config.latency - late;
         let fastest_mps = safety.inflation().map(|inflation| inflation.growth_mps);
         let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
         let own = inputs.state.position;
@@ -318,14 +325,16 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         inputs: &Inputs<'_, S, L::Surroundings<'_>>,
         decision: Option<&Decision<S>>,
         nearby: &mut Vec<Nearby<S>, N>,
-        now: Instant,
+        (before, now): (Mode, Instant),
         rng: &mut Rng,
         out: &mut Outputs<S>,
     ) {
         let Some(plane) = inputs.surroundings.in_plane() else {
             return;
         };
-        if !self.mode.gives_way() {
+        // In the step after such a mode others may still take the whole gap.
+        let is_trusted = !before.gives_way() && self.safety.inflation().is_some();
+        if !self.mode.gives_way() || is_trusted {
             self.link.table.forget_gaps();
             self.commanded_mps = Vec3::ZERO;
             out.command = Command::Hold;
@@ -362,14 +371,17 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         if let Some(inflation) = inflation {
             let (stands_after, may_be_alone) = (config.contact_loss.stands_after, config.contact_loss.may_be_alone());
             let KinematicState { position: own, velocity_mps: own_mps } = inputs.state;
-            let (news, lag_s) = (config.tick, config.lag_s);
+            let AgentConfig { tick, latency, is_synchronous, lag_s, .. } = *config;
             let room = GapLimit {
                 body: &body,
                 own,
                 own_mps,
                 lag_s,
                 now,
-                news,
+                tick,
+                is_synchronous,
+                latency,
+                lost_m: config.lost_way_m(&body, inflation.growth_mps) * S::HALF,
                 inflation,
                 may_be_alone,
                 stands_after,
@@ -392,8 +404,21 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         out.command = Command::Velocity(self.commanded_mps);
     }
 
+    /// Whether a body that is commanded to hold stands at once.
+    fn stops_at_once(&self, before: Mode) -> bool {
+        let Self { config, mode, .. } = self;
+        let is_steered = matches!((before, *mode), (Mode::Passive, Mode::Passive));
+        !is_steered && config.max_acceleration_mps2 >= S::MAX && config.lag_s <= S::ZERO
+    }
+
     #[inline(never)]
-    fn speak(&mut self, inputs: &Inputs<'_, S, L::Surroundings<'_>>, now: Instant, out: &mut Outputs<S>) {
+    fn speak(
+        &mut self,
+        inputs: &Inputs<'_, S, L::Surroundings<'_>>,
+        (before, now): (Mode, Instant),
+        out: &mut Outputs<S>,
+    ) {
+        let is_standing = inputs.surroundings.in_plane().is_some() && self.stops_at_once(before);
         let Self { config, last, law, .. } = self;
         let mode = self.mode;
         // The velocity of the next step is more useful to other robots than the previous one.
@@ -405,7 +430,9 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 own_mps + (velocity_mps - own_mps) * part
             }
             Command::Velocity(velocity_mps) => velocity_mps,
-            Command::Hold | Command::Move(_) => inputs.state.velocity_mps,
+            // It stands from now on, unless it is steered by another controller.
+            Command::Hold if is_standing => Vec3::ZERO,
+            Command::Hold | Command::Move(_) => own_mps,
         };
         let heading = last.heading;
         let payload = |radio: &mut Radio<'_, L::Protocol>| law.payload(&inputs.surroundings, heading, radio);

@@ -11,32 +11,50 @@ use heapless::Vec;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 
-/// Gap that remains, millimetres: rounding of both positions along each axis, and [`TOLERANCE_UM`].
+/// Gap that remains, millimetres: [`OFFSET_ERROR_UM`], the rounded radius of the other robot, and
+/// twice [`TOLERANCE_UM`].
 const ROUNDING_MM: i32 = 3;
-const ROUNDS: u8 = 6;
+/// Greatest error of the offset of another robot, micrometres: both positions and its velocity are
+/// rounded to millimetres (per second) on each axis.
+const OFFSET_ERROR_UM: i32 = 2_100;
 /// Excess accepted in the last round, micrometres.
 const TOLERANCE_UM: i32 = 200;
+/// What a velocity that is turned aside takes less of a gap than it may, micrometres: more than the
+/// rounding of the operations.
+const GRAIN_UM: i32 = 20;
+const ROUNDS: u8 = 6;
+/// Stored bound of a robot that is taken to stand: none, should it turn out not to.
+const NO_BOUND_M: i32 = -1000;
 
 /// Limits a velocity by the gaps to the known robots, so that no two robots touch.
 ///
 /// | neighbour | where it may be |
 /// | --- | --- |
-/// | up to date | at its extrapolated position |
-/// | silent for t beyond a step | in a ball that grows at [`growth_mps`] |
+/// | up to date | on the path that it told, at the latest until the end of its step |
+/// | silent for t beyond a step | in a ball around that end, that grows at [`growth_mps`] |
 /// | lost | in that ball, at most [`max_m`] larger |
 ///
 /// [`growth_mps`]: StalenessInflation::growth_mps
 /// [`max_m`]: StalenessInflation::max_m
 ///
-/// In a step the robot takes at most half of the gap to a neighbour, or all of it if that neighbour
-/// does not give way, minus the neighbour's own approach. A robot inside such a ball stands still.
-/// The guarantee holds at any packet loss and in any blackout, as long as no robot is faster than
-/// `growth_mps` and bodies follow their commands.
+/// A command is carried out for one step; then a body without inertia stands. Gaps are measured from
+/// the end of the own path to the end of the other one. In a step the robot takes at most half of
+/// the gap to a neighbour, or all of it if that neighbour does not give way, minus the neighbour's
+/// own approach. A robot inside such a ball stands still. The guarantee holds at any packet loss and
+/// in any blackout, as long as no robot is faster than `growth_mps` and bodies follow their
+/// commands.
 ///
 /// *Why half:* two robots that both take at most half of the gap in a step cannot touch, however
 /// long the step is (D. Zhou, Z. Wang, S. Bandyopadhyay, M. Schwager, "Fast, on-line collision
 /// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017). The rule also
-/// limits the ball of a silent neighbour that gives way.
+/// limits the ball of a silent neighbour that gives way: of half of the last gap, what the own
+/// motion has not taken is left in any case.
+///
+/// *Direction:* a motion takes the largest approach to any place where the neighbour may be. Towards
+/// a ball that is the approach to the nearest direction of its cone.
+///
+/// *Out of phase:* robots decide at any instants. A neighbour that recedes may still be on its path,
+/// anywhere from its start on, so the own path also stays off the nearest point of that path.
 ///
 /// *Inertia:* the ball follows the last course of the body and grows by half of its acceleration
 /// times t^2, if that is less. The own robot takes no more of a gap than it can brake within.
@@ -67,11 +85,18 @@ pub struct GapLimit<'a, S> {
     pub lag_s: S,
     /// Current time.
     pub now: Instant,
-    /// Age of the latest states in normal operation: a step, or the latency of the radio if longer.
-    /// Neighbours are taken to keep their velocities for this time.
-    pub news: Duration,
+    /// Time between two decisions of a robot, the same for all.
+    pub tick: Duration,
+    /// Whether all robots decide at the same instants.
+    pub is_synchronous: bool,
+    /// Age of a beacon when it is first used. One that is a `tick` old at most tells where the path
+    /// of its sender ends; with each further tick the sender may have decided once more.
+    pub latency: Duration,
     /// Growth of the balls around silent robots.
     pub inflation: StalenessInflation<S>,
+    /// Greatest way from the last known end of the path of a lost robot to the centre of its ball,
+    /// metres: half of the way on which [`NeighborTable::expire`] expects it.
+    pub lost_m: S,
     /// Whether lost robots count as standing even when most robots are lost.
     pub may_be_alone: bool,
     /// Silence after which a lost robot counts as standing in any case.
@@ -89,6 +114,8 @@ struct Limit<S> {
     ahead: Vec3<S>,
     /// Sine of the angle by which `ahead` may be wrong.
     slant: S,
+    /// Its cosine; 1 if the angle is that of rounding only.
+    cos: S,
     /// Permitted approach until the robot stands, metres; negative, within tolerance, without a
     /// gap.
     left_m: S,
@@ -96,24 +123,47 @@ struct Limit<S> {
     growth_mps: S,
 }
 
+/// A velocity in the space with lowered heights, and its length, m/s.
+#[derive(Clone, Copy)]
+struct Pace<S> {
+    velocity_mps: Vec3<S>,
+    speed_mps: S,
+}
+
 impl<S: Scalar> Limit<S> {
-    /// The closing speed, and the largest additional one due to the uncertain direction, m/s.
-    fn closing(&self, velocity_mps: Vec3<S>) -> (S, S) {
-        let closing = velocity_mps.dot(self.ahead);
-        let side = if self.slant > S::ZERO { (velocity_mps - self.ahead * closing).norm() } else { S::ZERO };
-        (closing, side * self.slant)
+    /// The largest closing speed in any direction of the cone, m/s.
+    fn approach(&self, pace: &Pace<S>) -> S {
+        let closing = pace.velocity_mps.dot(self.ahead);
+        if self.cos >= S::ONE {
+            return (closing + pace.speed_mps * self.slant).min(pace.speed_mps);
+        }
+        let side = (pace.velocity_mps - self.ahead * closing).norm();
+        // Inside the cone, or towards its edge.
+        let is_inside = side * self.cos <= closing * self.slant;
+        if is_inside { pace.speed_mps } else { closing * self.cos + side * self.slant }
     }
 
-    fn taken(&self, velocity_mps: Vec3<S>, step_s: S) -> S {
-        let (closing, side) = self.closing(velocity_mps);
-        (closing + side) * step_s
+    /// The change of the closing speed after which the approach is `most_mps`, m/s, if nothing else
+    /// of the velocity changes; the opposite of its speed at most.
+    fn turn(&self, pace: &Pace<S>, most_mps: S) -> S {
+        let closing = pace.velocity_mps.dot(self.ahead);
+        let speed = pace.speed_mps;
+        let side = (pace.velocity_mps - self.ahead * closing).norm();
+        let wanted = if side <= most_mps * self.slant {
+            // Inside the cone the speed counts.
+            (most_mps * most_mps - side * side).max(S::ZERO).sqrt()
+        } else if self.cos < S::ONE {
+            (most_mps - side * self.slant).checked_div(self.cos).unwrap_or(-speed).max(-speed)
+        } else {
+            most_mps - (most_mps + side) * self.slant
+        };
+        wanted - closing
     }
 
-    /// The part of `velocity_mps`, from 0 to 1, from which the robot stops within the gap after
-    /// this step. `brake_s` is the time to brake from the whole velocity.
-    fn share(&self, velocity_mps: Vec3<S>, step_s: S, brake_s: S) -> S {
-        let (closing, side) = self.closing(velocity_mps);
-        let (closing, left_m) = (closing + side, self.left_m.max(S::ZERO));
+    /// The part of a velocity, from 0 to 1, from which the robot stops within the gap after this
+    /// step. `brake_s` is the time to brake from the whole velocity.
+    fn share(&self, pace: &Pace<S>, step_s: S, brake_s: S) -> S {
+        let (closing, left_m) = (self.approach(pace), self.left_m.max(S::ZERO));
         let (now, later) = (closing * step_s + self.growth_mps * brake_s, closing * brake_s * S::HALF);
         if closing <= S::ZERO || now + later - S::from_micro(TOLERANCE_UM) <= self.left_m {
             return S::ONE;
@@ -127,10 +177,17 @@ impl<S: Scalar> Limit<S> {
     }
 }
 
+/// The cosine of the angle with this sine: the least one that rounding leaves possible, below 1.
+fn cos_of<S: Scalar>(side_m: S, distance_m: S) -> S {
+    let squared = (distance_m - side_m) * (distance_m + side_m);
+    let cos = squared.max(S::ZERO).sqrt().checked_div(distance_m).unwrap_or(S::ZERO);
+    cos.min(S::ONE - S::from_micro(1))
+}
+
 impl<S: Scalar> GapLimit<'_, S> {
     /// Returns the part of `velocity_mps`, m/s, that the gaps allow: first turned aside, without
     /// running into `obstacles`, then shortened. `None` if a silent robot may be at the own
-    /// position: stand still. O(N + obstacles); 20 N bytes of stack (`f32`).
+    /// position: stand still. O(N + obstacles); 24 N bytes of stack (`f32`).
     #[must_use]
     #[inline(never)]
     pub fn limit<const N: usize, P: Copy>(
@@ -139,12 +196,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         obstacles: &[Obstacle<S>],
         velocity_mps: Vec3<S>,
     ) -> Option<Vec3<S>> {
-        let (known, lost, ages) = (table.as_slice(), table.lost(), table.ages());
-        let is_fresh = |other: &&Neighbor<S, P>| other.age(self.now).is_some_and(|age| age <= ages.stale_after);
-        let fresh = known.iter().filter(is_fresh).count();
-        let stands = |other: &&Neighbor<S, P>| other.age(self.now).is_none_or(|age| age > self.stands_after);
-        let lost = lost.len() - lost.iter().filter(stands).count();
-        let is_bad = !self.may_be_alone && fresh + fresh < known.len() + lost;
+        let is_bad = self.is_bad(table);
         let mut limits = Vec::<Limit<S>, N>::new();
         let mut is_hidden = false;
         for other in &mut table.entries {
@@ -156,16 +208,16 @@ impl<S: Scalar> GapLimit<'_, S> {
         let step_s = self.body.step_s;
         let brakes_for_walls = self.brakes_for_walls();
         let mut v = if is_hidden { Vec3::ZERO } else { velocity_mps };
-        let mut brake_s = self.brake_s(v);
+        let (mut pace, mut brake_s) = (self.pace(v), self.brake_s(v));
         for _ in 0..ROUNDS {
             let mut is_turned = false;
             for limit in &limits {
-                let (closing, side) = limit.closing(self.lowered(v));
-                let left_m = limit.left_m - limit.growth_mps * brake_s;
-                let most = left_m.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO) - side;
-                if closing > most && closing > S::ZERO {
-                    v -= self.along(limit.ahead) * (closing - most.max(S::ZERO));
-                    brake_s = self.brake_s(v);
+                let left_m = (limit.left_m - limit.growth_mps * brake_s).max(S::ZERO);
+                let per_s = S::ONE.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO);
+                if limit.approach(&pace) > left_m * per_s {
+                    let aim_m = left_m - S::from_micro(GRAIN_UM);
+                    v += self.along(limit.ahead) * limit.turn(&pace, aim_m * per_s);
+                    (pace, brake_s) = (self.pace(v), self.brake_s(v));
                     is_turned = true;
                 }
             }
@@ -173,13 +225,14 @@ impl<S: Scalar> GapLimit<'_, S> {
                 break;
             }
         }
+        v = v.clamp_norm(self.body.max_speed_mps);
         // The safety layer has considered obstacles for the original velocity, without braking.
         if brakes_for_walls || v != velocity_mps {
             v = self.before(obstacles, v);
         }
         let allowed = |v: Vec3<S>| {
-            let (brake_s, v) = (self.brake_s(v), self.lowered(v));
-            let shares = limits.iter().map(|limit| limit.share(v, step_s, brake_s));
+            let (brake_s, pace) = (self.brake_s(v), self.pace(v));
+            let shares = limits.iter().map(|limit| limit.share(&pace, step_s, brake_s));
             shares.fold(S::ONE, Scalar::min)
         };
         let mut v = v * allowed(v);
@@ -193,23 +246,48 @@ impl<S: Scalar> GapLimit<'_, S> {
                 reached = self.body.reach(v);
             }
         }
+        let (pace, own) = (self.pace(reached), self.pace(self.own_mps));
         for (other, limit) in table.entries.iter_mut().zip(&limits) {
-            let mut taken_m = limit.taken(self.lowered(reached), step_s);
+            let mut taken_mps = limit.approach(&pace);
             if self.lag_s > S::ZERO {
                 // The body moves at a velocity between the present one and the commanded one.
-                taken_m = taken_m.max(limit.taken(self.lowered(self.own_mps), step_s));
+                taken_mps = taken_mps.max(limit.approach(&own));
             }
-            other.gap_m = other.gap_m * S::HALF - taken_m;
+            if !self.is_synchronous {
+                // The other robot may decide after this motion, and take half of what it adds.
+                taken_mps = taken_mps.max(S::ZERO);
+            }
+            other.gap_m = other.gap_m * S::HALF - taken_mps * step_s;
         }
         (!is_hidden).then_some(v)
+    }
+
+    /// Whether lost robots may be moving: their silence may be that of the own radio.
+    fn is_bad<const N: usize, P: Copy>(&self, table: &NeighborTable<S, N, P>) -> bool {
+        let (known, lost, ages) = (table.as_slice(), table.lost(), table.ages());
+        let is_fresh = |other: &&Neighbor<S, P>| other.age(self.now).is_some_and(|age| age <= ages.stale_after);
+        let fresh = known.iter().filter(is_fresh).count();
+        let stands = |other: &&Neighbor<S, P>| other.age(self.now).is_none_or(|age| age > self.stands_after);
+        let lost = lost.len() - lost.iter().filter(stands).count();
+        !self.may_be_alone && fresh + fresh < known.len() + lost
+    }
+
+    /// The time in which the other robot may have decided without being heard: whole steps.
+    fn silence(&self, age: Duration) -> Duration {
+        let (tick_us, news_us) = (self.tick.as_micros(), self.latency.min(self.tick).as_micros());
+        let silent_us = age.as_micros().saturating_sub(news_us);
+        // Within a quarter of a step, decisions that do not know of each other count as one.
+        let late_us = tick_us - (tick_us >> 2) - 1;
+        let steps = silent_us.saturating_add(late_us).checked_div(tick_us).unwrap_or(silent_us);
+        if silent_us <= 0 { Duration::ZERO } else { self.tick.saturating_mul(steps) }
     }
 
     /// Returns the limit, and whether the robot can be at the own position. Stores the gap bound.
     fn limit_of<P>(&self, other: &mut Neighbor<S, P>, is_bad: bool) -> (Limit<S>, bool) {
         let GapLimit { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
-        let silent = age.as_micros().saturating_sub(self.news.as_micros()).max(0);
-        let silent_s = S::from_micro(silent);
+        let silent = self.silence(age);
+        let (is_silent, silent_s) = (silent > Duration::ZERO, S::from_micro(silent.as_micros()));
         let is_parked = other.is_lost() && (!is_bad || age > self.stands_after);
         let mut grown = inflation.growth_mps * silent_s;
         if is_parked {
@@ -219,28 +297,32 @@ impl<S: Scalar> GapLimit<'_, S> {
         let most = body.max_acceleration_mps2;
         let swerve_mps = most * (silent_s + body.step_s);
         let swerves = !is_parked && swerve_mps * S::HALF < inflation.growth_mps;
-        let offset_m = self.lowered(other.offset_at(self.own, self.now, if swerves { age } else { self.news }));
+        let told_mps = self.lowered(other.velocity_mps);
+        let ahead_s = if swerves { silent_s + body.step_s } else { body.step_s };
+        let offset_m = self.lowered(other.position.since::<S>(self.own)) + told_mps * ahead_s;
         let distance = offset_m.norm();
         let ahead = offset_m.normalized().unwrap_or(Vec3::ZERO);
-        let told_mps = -self.lowered(other.velocity_mps).dot(ahead);
+        let told_mps = -told_mps.dot(ahead);
         if swerves {
             grown = swerve_mps * S::HALF * silent_s;
         }
-        let mut gap = distance - body.radius_m - other.radius_m - S::from_milli(ROUNDING_MM) - grown;
+        let radii_m = body.radius_m + other.radius_m + S::from_milli(ROUNDING_MM);
+        let mut gap = distance - radii_m - grown;
         // A neighbour that does not give way need not keep to half of the gap.
-        if silent > 0 && !is_parked && other.mode.gives_way() {
-            gap = gap.max(other.gap_m);
+        if is_silent && !is_parked && other.mode.gives_way() {
+            // Both may have taken the tolerance since.
+            gap = gap.max(other.gap_m - S::from_micro(TOLERANCE_UM) * S::TWO);
         }
-        other.gap_m = gap;
-        let comes_mps = match silent {
-            0 => told_mps,
+        other.gap_m = if is_parked { S::from_i32(NO_BOUND_M) } else { gap };
+        let comes_mps = match is_silent {
+            false => told_mps,
             _ if is_parked => S::ZERO,
             _ if swerves => told_mps + swerve_mps,
             _ => inflation.growth_mps,
         };
         let (left_m, growth_mps) = if !other.mode.gives_way() {
             (gap - comes_mps * body.step_s, comes_mps.max(S::ZERO))
-        } else if silent > 0 {
+        } else if is_silent {
             (gap * S::HALF, comes_mps.max(S::ZERO) * S::HALF)
         } else {
             let other_s = self.brake_s(other.velocity_mps) * S::HALF + self.lag_s;
@@ -248,14 +330,37 @@ impl<S: Scalar> GapLimit<'_, S> {
             ((gap * S::HALF).min(gap - other_m), S::ZERO)
         };
         let left_m = if self.is_agreed { left_m + body.braking_m(-comes_mps) } else { left_m };
-        let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
-        let mut limit = Limit { ahead, slant, left_m, growth_mps };
+        let mut reach_m = S::from_micro(OFFSET_ERROR_UM);
+        if is_silent {
+            reach_m += grown + if other.is_lost() { self.lost_m } else { S::ZERO };
+        }
+        let slant = reach_m.checked_div(distance).unwrap_or(S::ONE);
+        let cos = if is_silent { cos_of(reach_m, distance) } else { S::ONE };
+        let mut limit = Limit { ahead, slant, cos, left_m, growth_mps };
+        if !is_silent && !self.is_synchronous && told_mps < S::ZERO {
+            self.keep_off_path(&mut limit, offset_m, self.lowered(other.velocity_mps), radii_m);
+        }
         if self.lag_s > S::ZERO {
             // Distance that the body still covers, if it is commanded to stand.
-            limit.left_m -= limit.taken(self.lowered(self.own_mps), self.lag_s);
+            limit.left_m -= limit.approach(&self.pace(self.own_mps)) * self.lag_s;
         }
         limit.left_m = limit.left_m.max(-S::from_micro(TOLERANCE_UM));
-        (limit, silent > 0 && grown >= distance)
+        (limit, is_silent && reach_m >= distance)
+    }
+
+    /// Limits the approach to the nearest point of the path that a receding robot may still be on,
+    /// which ends at `end_m`: the whole gap, since that path does not change.
+    fn keep_off_path(&self, limit: &mut Limit<S>, end_m: Vec3<S>, velocity_mps: Vec3<S>, radii_m: S) {
+        let back_s = end_m.dot(velocity_mps).checked_div(velocity_mps.norm_squared()).unwrap_or(S::ZERO);
+        let nearest_m = end_m - velocity_mps * back_s.min(self.body.step_s);
+        let gap_m = nearest_m.norm() - radii_m;
+        if gap_m >= self.body.max_speed_mps * self.body.step_s {
+            return;
+        }
+        limit.left_m = limit.left_m.min(gap_m);
+        let cos = nearest_m.normalized().map_or(S::ZERO, |ahead| ahead.dot(limit.ahead)).max(S::ZERO);
+        limit.slant = (limit.slant + cos_of(cos, S::ONE)).min(S::ONE);
+        limit.cos = cos_of(limit.slant, S::ONE);
     }
 
     /// Turns a velocity aside so that a step with it ends before the obstacles; a body with a
@@ -279,6 +384,11 @@ impl<S: Scalar> GapLimit<'_, S> {
     /// Whether the body must be able to brake before obstacles after this step.
     fn brakes_for_walls(&self) -> bool {
         self.lag_s > S::ZERO || self.is_agreed || self.body.has_inertia()
+    }
+
+    fn pace(&self, v: Vec3<S>) -> Pace<S> {
+        let velocity_mps = self.lowered(v);
+        Pace { velocity_mps, speed_mps: velocity_mps.norm() }
     }
 
     /// The vector with its height divided by the downwash.

@@ -150,7 +150,12 @@ fn lost_robots_are_told_and_errors_corrected() {
         frames.filter_map(|said| if let Message::Lost(lost) = said { Some(lost) } else { None }).next()
     };
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
+    let mut next = 0;
     let mut hear = |n: u16, messages: &[Message]| {
+        for silent in next..n {
+            let _ = robot.step(step_number(silent.into()), &[]);
+        }
+        next = n + 1;
         let out = robot.step(step_number(n.into()), &bytes(2, 0, n, messages));
         (lost_in(&out.outbox), robot.agent.link.table.lost().iter().map(|lost| lost.id.0).collect::<Vec<_>>())
     };

@@ -185,9 +185,10 @@ proptest! {
                 },
                 inbox: &step.inbox,
             };
+            let before = agent.mode();
             let out = agent.step(&inputs, step.now, &mut ws);
             let Command::Velocity(v) = out.command else {
-                prop_assert!(out.command == Command::Hold && agent.mode() == Mode::Fault);
+                prop_assert!(out.command == Command::Hold && [before, agent.mode()].contains(&Mode::Fault));
                 continue;
             };
             prop_assert!(v.is_finite(), "{v:?}");

@@ -7,6 +7,10 @@ use crate::wire::{Beacon, ProtocolId};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
+mod clocks;
+mod counterexamples;
+mod duel;
+mod hypotheses;
 mod passive;
 
 const STEP: Duration = Duration::from_millis(100);
@@ -25,7 +29,10 @@ fn still<S: Scalar>(body: &Body<S>, own: Position, now: Instant) -> GapLimit<'_,
         own_mps: Vec3::ZERO,
         lag_s: S::ZERO,
         now,
-        news: STEP,
+        tick: STEP,
+        is_synchronous: true,
+        latency: STEP,
+        lost_m: S::from_milli(50),
         inflation: StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(100) },
         may_be_alone: false,
         stands_after: STANDS_AFTER,

@@ -187,6 +187,7 @@ impl PlaneGround {
         AgentConfig {
             max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
             lag_s: group.abilities.lag_s as f32,
+            is_synchronous: true,
             latency: Duration::from_micros(micros),
             contact_loss: ContactLossPolicy {
                 listen: group.listen.unwrap_or(Duration::from_micros(micros.saturating_add(2 * tick.as_micros()))),
