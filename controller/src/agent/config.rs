@@ -1,7 +1,6 @@
 //! The configuration of the agent of one robot.
 
 use super::ContactLossPolicy;
-use crate::body::Body;
 use crate::neighbor::{Ages, PlausibilityLimits};
 use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
@@ -78,16 +77,6 @@ impl<S: Scalar> AgentConfig<S> {
             plausibility: self.plausibility.cast(),
             flock: self.flock,
         }
-    }
-
-    /// The time for which a robot that dies drives on at most before it brakes, seconds.
-    pub(super) fn drives_on_s(&self, body: &Body<S>) -> S {
-        S::from_micro(self.beacon_period.as_micros()).max(body.step_s) + self.lag_s
-    }
-
-    /// The way on which a robot that dies at `speed_mps` may come to stand, metres.
-    pub(super) fn lost_way_m(&self, body: &Body<S>, speed_mps: S) -> S {
-        body.braking_m(speed_mps) + speed_mps * self.drives_on_s(body)
     }
 
     /// Creates a configuration from the values that every robot needs (on the grid any `radius_m`).

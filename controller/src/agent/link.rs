@@ -151,7 +151,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         };
         let longest = Duration::from_micros(patience.as_micros().saturating_add(latency.as_micros()));
         let missed = patience.as_micros().checked_div(period.as_micros()).unwrap_or(0);
-        let on_s = config.drives_on_s(body);
+        let on_s = S::from_micro(period.as_micros()).max(body.step_s) + config.lag_s;
         self.table.expire((body, on_s), now, (longest, remembers), |lost| {
             loss.gave_up(u16::try_from(missed).unwrap_or(u16::MAX));
             windows.retain(|(id, _)| *id != lost);

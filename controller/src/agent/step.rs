@@ -381,7 +381,6 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 tick,
                 is_synchronous,
                 latency,
-                lost_m: config.lost_way_m(&body, inflation.growth_mps) * S::HALF,
                 inflation,
                 may_be_alone,
                 stands_after,

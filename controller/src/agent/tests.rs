@@ -457,4 +457,5 @@ mod setup;
 mod sighted;
 mod silence;
 mod stops;
+mod trust;
 mod waits;

@@ -23,8 +23,6 @@ const TOLERANCE_UM: i32 = 200;
 /// rounding of the operations.
 const GRAIN_UM: i32 = 20;
 const ROUNDS: u8 = 6;
-/// Stored bound of a robot that is taken to stand: none, should it turn out not to.
-const NO_BOUND_M: i32 = -1000;
 
 /// Limits a velocity by the gaps to the known robots, so that no two robots touch.
 ///
@@ -94,9 +92,6 @@ pub struct GapLimit<'a, S> {
     pub latency: Duration,
     /// Growth of the balls around silent robots.
     pub inflation: StalenessInflation<S>,
-    /// Greatest way from the last known end of the path of a lost robot to the centre of its ball,
-    /// metres: half of the way on which [`NeighborTable::expire`] expects it.
-    pub lost_m: S,
     /// Whether lost robots count as standing even when most robots are lost.
     pub may_be_alone: bool,
     /// Silence after which a lost robot counts as standing in any case.
@@ -257,7 +252,9 @@ impl<S: Scalar> GapLimit<'_, S> {
                 // The other robot may decide after this motion, and take half of what it adds.
                 taken_mps = taken_mps.max(S::ZERO);
             }
-            other.gap_m = other.gap_m * S::HALF - taken_mps * step_s;
+            if !other.is_lost() {
+                other.gap_m = other.gap_m * S::HALF - taken_mps * step_s;
+            }
         }
         (!is_hidden).then_some(v)
     }
@@ -309,11 +306,10 @@ impl<S: Scalar> GapLimit<'_, S> {
         let radii_m = body.radius_m + other.radius_m + S::from_milli(ROUNDING_MM);
         let mut gap = distance - radii_m - grown;
         // A neighbour that does not give way need not keep to half of the gap.
-        if is_silent && !is_parked && other.mode.gives_way() {
+        if is_silent && !other.is_lost() && other.mode.gives_way() {
             // Both may have taken the tolerance since.
             gap = gap.max(other.gap_m - S::from_micro(TOLERANCE_UM) * S::TWO);
         }
-        other.gap_m = if is_parked { S::from_i32(NO_BOUND_M) } else { gap };
         let comes_mps = match is_silent {
             false => told_mps,
             _ if is_parked => S::ZERO,
@@ -332,7 +328,10 @@ impl<S: Scalar> GapLimit<'_, S> {
         let left_m = if self.is_agreed { left_m + body.braking_m(-comes_mps) } else { left_m };
         let mut reach_m = S::from_micro(OFFSET_ERROR_UM);
         if is_silent {
-            reach_m += grown + if other.is_lost() { self.lost_m } else { S::ZERO };
+            reach_m += grown + if other.is_lost() { other.gap_m } else { S::ZERO };
+        }
+        if !other.is_lost() {
+            other.gap_m = gap;
         }
         let slant = reach_m.checked_div(distance).unwrap_or(S::ONE);
         let cos = if is_silent { cos_of(reach_m, distance) } else { S::ONE };

@@ -59,7 +59,8 @@ pub struct Neighbor<S, P = ()> {
     pub mode: Mode,
     /// How its last beacon was received.
     pub trace: Trace,
-    /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`].
+    /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`]. Of a
+    /// [lost](Trace::Lost) robot: how far it may have been from `position` when it fell silent.
     pub gap_m: S,
     /// The last payload of its law; `None` for a law with another protocol.
     pub payload: Option<P>,
@@ -324,13 +325,15 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             };
             if remembers && silent.trace == Trace::Heard && !is_moved() {
                 let speed_mps = silent.velocity_mps.norm();
-                let half_m = (body.braking_m(speed_mps) + speed_mps * on_s) * S::HALF;
+                let on_m = speed_mps * on_s * S::HALF;
+                let half_m = body.braking_m(speed_mps) * S::HALF + on_m;
                 let ahead_m = silent.velocity_mps.normalized().unwrap_or(Vec3::ZERO) * half_m;
                 let _ = self.entries.push(Neighbor {
                     trace: Trace::Lost,
                     position: silent.position.moved(ahead_m).unwrap_or(silent.position),
                     velocity_mps: Vec3::ZERO,
                     radius_m: silent.radius_m + half_m,
+                    gap_m: on_m,
                     ..silent
                 });
                 self.sort_last();
@@ -364,7 +367,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
 
     /// Resets all gap bounds. Call it in a step in which [`GapLimit`] is not used. O(N).
     pub fn forget_gaps(&mut self) {
-        for entry in &mut self.entries {
+        for entry in self.entries.iter_mut().filter(|entry| !entry.is_lost()) {
             entry.gap_m = S::ZERO;
         }
     }

@@ -133,7 +133,7 @@ pub(super) fn body_at(position_mm: [i32; 2], velocity_mmps: [i16; 2], mode: Mode
     })
 }
 
-fn said<S: Scalar>(outputs: &Outputs<S>) -> Beacon {
+pub(super) fn said<S: Scalar>(outputs: &Outputs<S>) -> Beacon {
     let mut beacons = frames(&outputs.outbox).filter_map(|f| match decode(f).unwrap().message {
         Message::Beacon(beacon) => Some(beacon),
         _ => None,

@@ -10,6 +10,7 @@ use std::vec::Vec as StdVec;
 mod clocks;
 mod counterexamples;
 mod duel;
+mod exhaustive;
 mod hypotheses;
 mod passive;
 
@@ -32,7 +33,6 @@ fn still<S: Scalar>(body: &Body<S>, own: Position, now: Instant) -> GapLimit<'_,
         tick: STEP,
         is_synchronous: true,
         latency: STEP,
-        lost_m: S::from_milli(50),
         inflation: StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(100) },
         may_be_alone: false,
         stands_after: STANDS_AFTER,

@@ -41,7 +41,6 @@ impl Rules {
             is_synchronous: self.is_synchronous,
             latency: self.step(),
             inflation: StalenessInflation { growth_mps: self.fastest_mps as f32, max_m: self.radius_m as f32 },
-            lost_m: (self.fastest_mps * self.step_s() / 2.0) as f32,
             may_be_alone: false,
             // No silent robot counts as standing: all of them may move.
             stands_after: Duration::from_millis(2_000_000),
@@ -212,6 +211,9 @@ impl Duel {
             robot.has_decided = true;
             let news = beacon(robot, now_us);
             robot.said.push((now_us + delay_us.max(1), news));
+            // Earlier ones have arrived, or are superseded.
+            let old = robot.said.len().saturating_sub(2);
+            robot.said.drain(..old);
         }
     }
 }

@@ -21,6 +21,7 @@ struct Known {
     silent: i32,
     is_lost: bool,
     gives_way: bool,
+    /// The stored bound, or how far a lost robot may have been from its place.
     kept_m: f64,
 }
 
@@ -55,13 +56,13 @@ impl Case {
         let distance_m = known.seen_m.norm();
         let ahead = known.seen_m * (1.0 / distance_m);
         let grown_m = self.fastest_m * f64::from(known.silent);
-        let lost_m = if known.is_lost { self.fastest_m / 2.0 } else { 0.0 };
+        let lost_m = if known.is_lost { known.kept_m } else { 0.0 };
         let reach_m = if known.silent > 0 { grown_m + lost_m + ERROR_M } else { 0.0 };
         if reach_m >= distance_m {
             return Excess { taken_m: 0.0, kept_m: 0.0, hidden_m: motion.norm() };
         }
         let mut gap_m = distance_m - self.keep_m - grown_m;
-        if known.silent > 0 && known.gives_way {
+        if known.silent > 0 && known.gives_way && !known.is_lost {
             gap_m = gap_m.max(known.kept_m - 2.0 * SLACK_M);
         }
         // The direction of an exactly known place is wrong by rounding only.
@@ -78,7 +79,8 @@ impl Case {
             over_m = over_m.max(toward_m - (room_m + SLACK_M).max(0.0));
         }
         let counted_m = if self.is_synchronous { taken_m } else { taken_m.max(0.0) };
-        Excess { taken_m: over_m, kept_m: kept_m - (gap_m / 2.0 - counted_m), hidden_m: 0.0 }
+        let left_m = if known.is_lost { known.kept_m } else { gap_m / 2.0 - counted_m };
+        Excess { taken_m: over_m, kept_m: kept_m - left_m, hidden_m: 0.0 }
     }
 }
 
@@ -136,7 +138,8 @@ fn decision(number: u32) -> (StdVec<Excess>, bool) {
         let [x, y] = [offset.x, offset.y].map(|at: f64| libm::round(at * 1e3) as i32);
         let mmps = |at: f64| libm::round(at * 1e3) as i32;
         let told_mmps = if is_lost { [0; 3] } else { [mmps(told.x), mmps(told.y), 0] };
-        let kept_m = if draw.is(50) { 0.0 } else { draw.within(-0.0005, 2.0 * case.fastest_m) as f32 };
+        let least_m = if is_lost { 0.0 } else { -0.0005 };
+        let kept_m = if draw.is(50) { 0.0 } else { draw.within(least_m, 2.0 * case.fastest_m) as f32 };
         // Late by less than a quarter of a step is not late.
         let jitter_us = if silent > 0 { draw.0.below(250 * step_ms as u32) as i32 } else { 0 };
         let heard = now - step.saturating_mul(silent + 1) - Duration::from_micros(jitter_us);
@@ -161,7 +164,6 @@ fn decision(number: u32) -> (StdVec<Excess>, bool) {
         latency: step,
         is_synchronous: case.is_synchronous,
         inflation: StalenessInflation { growth_mps: fastest_mps as f32, max_m: 0.0 },
-        lost_m: (case.fastest_m / 2.0) as f32,
         // All lost robots may be moving.
         stands_after: Duration::MAX,
         ..still(&body, own, now)
