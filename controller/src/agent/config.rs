@@ -36,8 +36,8 @@ pub struct AgentConfig<S> {
     /// body that follows at once. A body has the same one in all directions.
     pub lag_s: S,
     /// Greatest age of a beacon when it is first used; at least 0. Neighbours are extrapolated over
-    /// this time. A tick, if the radio takes less than half a tick and each step reads all packets
-    /// that have arrived; a tick more for each further tick that the radio may take.
+    /// this time. In the plane, a tick for a radio that takes less than a quarter of a tick, if each
+    /// step reads all packets that have arrived; a tick more for each further tick that it may take.
     pub latency: Duration,
     /// Ages at which the state of a neighbour counts as stale and as expired.
     pub ages: Ages,

@@ -159,12 +159,9 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         });
     }
 
-    /// How much later than a tick after the previous step this one comes; zero within a quarter of a
-    /// tick, and in the first step.
-    pub(super) fn lateness(&self, previous: Instant, now: Instant, tick: Duration) -> Duration {
-        let late = Duration::from_micros(now.since(previous).as_micros().saturating_sub(tick.as_micros()));
-        let is_late = self.has_sent && late.as_micros() > tick.as_micros() >> 2;
-        if is_late { late } else { Duration::ZERO }
+    /// The time since the previous step; a tick for the first one.
+    pub(super) fn elapsed(&self, previous: Instant, now: Instant, tick: Duration) -> Duration {
+        if self.has_sent { now.since(previous).max(tick) } else { tick }
     }
 
     pub(super) fn next_frame<'a>(&self, inbox: &mut &'a [u8]) -> Option<&'a [u8]> {

@@ -152,12 +152,11 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let mut outgoing = Outgoing::default();
         // Only a safety layer that tracks silent neighbours needs their last positions.
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
-        // Frames may have waited since the previous step, and other robots have decided since.
-        let late = if keeps_clear { link.lateness(last.step, now, config.tick) } else { Duration::ZERO };
-        if late > Duration::ZERO {
-            link.table.forget_gaps();
-        }
-        let heard_at = now - config.latency - late;
+        // Frames may have waited since the previous step, and their senders have decided since.
+        let tick_us = config.tick.as_micros();
+        let late_us = link.elapsed(last.step, now, config.tick).as_micros() - tick_us;
+        let is_late = keeps_clear && late_us > tick_us >> 3;
+        let heard_at = now - config.latency - Duration::from_micros(if is_late { late_us } else { 0 });
         let fastest_mps = safety.inflation().map(|inflation| inflation.growth_mps);
         let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
         let own = inputs.state.position;
@@ -346,7 +345,8 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             _ => (Vec3::ZERO, None),
         };
         let (body, steered) = (self.body(inputs), self.steered(inputs).position);
-        let Self { link, safety, config, .. } = self;
+        let Self { link, safety, config, last, .. } = self;
+        let elapsed = link.elapsed(last.step, now, config.tick);
         let (table, inflation) = (&mut link.table, safety.inflation());
         let mut wish_mps = wish_mps;
         if let Some(inflation) = inflation {
@@ -379,6 +379,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 lag_s,
                 now,
                 tick,
+                elapsed,
                 is_synchronous,
                 latency,
                 inflation,

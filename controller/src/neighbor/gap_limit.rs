@@ -85,6 +85,8 @@ pub struct GapLimit<'a, S> {
     pub now: Instant,
     /// Time between two decisions of a robot, the same for all.
     pub tick: Duration,
+    /// Time since the own last decision: a tick, or more if this one is late.
+    pub elapsed: Duration,
     /// Whether all robots decide at the same instants.
     pub is_synchronous: bool,
     /// Age of a beacon when it is first used. One that is a `tick` old at most tells where the path
@@ -269,22 +271,23 @@ impl<S: Scalar> GapLimit<'_, S> {
         !self.may_be_alone && fresh + fresh < known.len() + lost
     }
 
-    /// The time in which the other robot may have decided without being heard: whole steps.
-    fn silence(&self, age: Duration) -> Duration {
-        let (tick_us, news_us) = (self.tick.as_micros(), self.latency.min(self.tick).as_micros());
-        let silent_us = age.as_micros().saturating_sub(news_us);
-        // Within a quarter of a step, decisions that do not know of each other count as one.
-        let late_us = tick_us - (tick_us >> 2) - 1;
-        let steps = silent_us.saturating_add(late_us).checked_div(tick_us).unwrap_or(silent_us);
-        if silent_us <= 0 { Duration::ZERO } else { self.tick.saturating_mul(steps) }
+    /// How often a robot may have decided since a state of this age, without being heard.
+    fn silent_steps(&self, age_us: i32) -> i32 {
+        let (tick_us, first_us) = (self.tick.as_micros(), self.latency.min(self.tick).as_micros());
+        let silent_us = age_us.saturating_sub(first_us);
+        // Half of a step is left for delays that cannot be known exactly: a quarter for the radio, and
+        // an eighth each for the step that received the beacon and for this one.
+        let late_us = tick_us - (tick_us >> 3) - 1;
+        let steps = silent_us.saturating_add(late_us).checked_div(tick_us).unwrap_or(0);
+        if silent_us > 0 { steps } else { 0 }
     }
 
     /// Returns the limit, and whether the robot can be at the own position. Stores the gap bound.
     fn limit_of<P>(&self, other: &mut Neighbor<S, P>, is_bad: bool) -> (Limit<S>, bool) {
         let GapLimit { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
-        let silent = self.silence(age);
-        let (is_silent, silent_s) = (silent > Duration::ZERO, S::from_micro(silent.as_micros()));
+        let steps = self.silent_steps(age.as_micros());
+        let (is_silent, silent_s) = (steps > 0, S::from_micro(self.tick.saturating_mul(steps).as_micros()));
         let is_parked = other.is_lost() && (!is_bad || age > self.stands_after);
         let mut grown = inflation.growth_mps * silent_s;
         if is_parked {
@@ -307,8 +310,12 @@ impl<S: Scalar> GapLimit<'_, S> {
         let mut gap = distance - radii_m - grown;
         // A neighbour that does not give way need not keep to half of the gap.
         if is_silent && !other.is_lost() && other.mode.gives_way() {
+            // It may have decided once since the own last decision; if more often, nothing is left.
+            let before_us = age.as_micros().saturating_sub(self.elapsed.as_micros());
+            let is_kept = steps <= self.silent_steps(before_us).saturating_add(1);
+            let kept_m = if is_kept { other.gap_m } else { S::ZERO };
             // Both may have taken the tolerance since.
-            gap = gap.max(other.gap_m - S::from_micro(TOLERANCE_UM) * S::TWO);
+            gap = gap.max(kept_m - S::from_micro(TOLERANCE_UM) * S::TWO);
         }
         let comes_mps = match is_silent {
             false => told_mps,

@@ -30,7 +30,7 @@ impl Rules {
         f64::from(self.step_ms) / 1e3
     }
 
-    fn limit<'a>(&self, body: &'a Body<f32>, own: Position, now: Instant) -> GapLimit<'a, f32> {
+    fn limit<'a>(&self, body: &'a Body<f32>, own: Position, now: Instant, elapsed: Duration) -> GapLimit<'a, f32> {
         GapLimit {
             body,
             own,
@@ -38,6 +38,7 @@ impl Rules {
             lag_s: 0.0,
             now,
             tick: self.step(),
+            elapsed,
             is_synchronous: self.is_synchronous,
             latency: self.step(),
             inflation: StalenessInflation { growth_mps: self.fastest_mps as f32, max_m: self.radius_m as f32 },
@@ -189,11 +190,10 @@ impl Duel {
                 let longest = rules.step().saturating_mul(rules.expires);
                 robot.table.expire((&robot.body, robot.body.step_s), now, (longest, true), |_| {});
             }
-            let late_us_before = now_us - robot.since_us - rules.step_us();
-            let late = if robot.has_decided && late_us_before > rules.step_us() / 4 { late_us_before } else { 0 };
-            if late > 0 {
-                robot.table.forget_gaps();
-            }
+            let elapsed_us = if robot.has_decided { now_us - robot.since_us } else { rules.step_us() };
+            let late_us_before = elapsed_us - rules.step_us();
+            let late = if late_us_before > rules.step_us() / 8 { late_us_before } else { 0 };
+            let elapsed = Duration::from_micros(elapsed_us as i32);
             for news in heard {
                 // As an agent does: at its first use each beacon counts as one step old.
                 let heard = now - rules.step() - Duration::from_micros(late as i32);
@@ -201,7 +201,7 @@ impl Duel {
             }
             let wish: Vec3<f32> = wish.cast();
             let wish = wish.clamp_norm(robot.body.max_speed_mps);
-            let within = rules.limit(&robot.body, own, now).limit(&mut robot.table, &[], wish);
+            let within = rules.limit(&robot.body, own, now, elapsed).limit(&mut robot.table, &[], wish);
             let velocity_mps = robot.body.reach(within.unwrap_or(Vec3::ZERO));
             robot.body.velocity_mps = velocity_mps;
             robot.from_m = robot.to_m;

@@ -140,8 +140,8 @@ fn decision(number: u32) -> (StdVec<Excess>, bool) {
         let told_mmps = if is_lost { [0; 3] } else { [mmps(told.x), mmps(told.y), 0] };
         let least_m = if is_lost { 0.0 } else { -0.0005 };
         let kept_m = if draw.is(50) { 0.0 } else { draw.within(least_m, 2.0 * case.fastest_m) as f32 };
-        // Late by less than a quarter of a step is not late.
-        let jitter_us = if silent > 0 { draw.0.below(250 * step_ms as u32) as i32 } else { 0 };
+        // Late by less than an eighth of a step is not late.
+        let jitter_us = if silent > 0 { draw.0.below(125 * step_ms as u32) as i32 } else { 0 };
         let heard = now - step.saturating_mul(silent + 1) - Duration::from_micros(jitter_us);
         let news = Neighbor::from_beacon(RobotId(id), &Beacon::default(), ProtocolId::NONE, heard);
         let known = Neighbor {
@@ -161,6 +161,7 @@ fn decision(number: u32) -> (StdVec<Excess>, bool) {
     }
     let rule = GapLimit {
         tick: step,
+        elapsed: step,
         latency: step,
         is_synchronous: case.is_synchronous,
         inflation: StalenessInflation { growth_mps: fastest_mps as f32, max_m: 0.0 },
