@@ -307,7 +307,8 @@ impl<S: Scalar> GapLimit<'_, S> {
             grown = swerve_mps * S::HALF * silent_s;
         }
         let radii_m = body.radius_m + other.radius_m + S::from_milli(ROUNDING_MM);
-        let mut gap = distance - radii_m - grown;
+        let ball_m = distance - radii_m - grown;
+        let mut gap = ball_m;
         // A neighbour that does not give way need not keep to half of the gap.
         if is_silent && !other.is_lost() && other.mode.gives_way() {
             // It may have decided once since the own last decision; if more often, nothing is left.
@@ -338,13 +339,17 @@ impl<S: Scalar> GapLimit<'_, S> {
             reach_m += grown + if other.is_lost() { other.gap_m } else { S::ZERO };
         }
         if !other.is_lost() {
-            other.gap_m = gap;
+            // Out of phase it may decide twice until the own next decision, but not each time.
+            let is_first = !self.is_synchronous && gap <= ball_m;
+            other.gap_m = if is_first { gap * S::HALF } else { gap };
         }
-        let slant = reach_m.checked_div(distance).unwrap_or(S::ONE);
+        let rounded_m = if is_silent { S::ZERO } else { reach_m * S::HALF };
+        let slant = reach_m.checked_div(distance - rounded_m).unwrap_or(S::ONE);
         let cos = if is_silent { cos_of(reach_m, distance) } else { S::ONE };
         let mut limit = Limit { ahead, slant, cos, left_m, growth_mps };
-        if !is_silent && !self.is_synchronous && told_mps < S::ZERO {
-            self.keep_off_path(&mut limit, offset_m, self.lowered(other.velocity_mps), radii_m);
+        if !is_silent && !self.is_synchronous && (told_mps < S::ZERO || gap < S::ZERO) {
+            let told_m = self.lowered(other.velocity_mps) * body.step_s;
+            self.keep_off_path(&mut limit, offset_m, told_m, radii_m);
         }
         if self.lag_s > S::ZERO {
             // Distance that the body still covers, if it is commanded to stand.
@@ -354,18 +359,26 @@ impl<S: Scalar> GapLimit<'_, S> {
         (limit, is_silent && reach_m >= distance)
     }
 
-    /// Limits the approach to the nearest point of the path that a receding robot may still be on,
-    /// which ends at `end_m`: the whole gap, since that path does not change.
-    fn keep_off_path(&self, limit: &mut Limit<S>, end_m: Vec3<S>, velocity_mps: Vec3<S>, radii_m: S) {
-        let back_s = end_m.dot(velocity_mps).checked_div(velocity_mps.norm_squared()).unwrap_or(S::ZERO);
-        let nearest_m = end_m - velocity_mps * back_s.min(self.body.step_s);
-        let gap_m = nearest_m.norm() - radii_m;
+    /// Limits the approach to the nearest point of the path `told_m`, which ends at `end_m` and which
+    /// a robot may still be on: the whole gap, since that path does not change. Without a gap the
+    /// motion must lead away from all of the path.
+    fn keep_off_path(&self, limit: &mut Limit<S>, end_m: Vec3<S>, told_m: Vec3<S>, radii_m: S) {
+        let back = end_m.dot(told_m).checked_div(told_m.norm_squared()).unwrap_or(S::ZERO);
+        let nearest_m = end_m - told_m * back.max(S::ZERO).min(S::ONE);
+        let (distance, error_m) = (nearest_m.norm(), S::from_micro(OFFSET_ERROR_UM));
+        let gap_m = distance - radii_m;
         if gap_m >= self.body.max_speed_mps * self.body.step_s {
             return;
         }
         limit.left_m = limit.left_m.min(gap_m);
-        let cos = nearest_m.normalized().map_or(S::ZERO, |ahead| ahead.dot(limit.ahead)).max(S::ZERO);
-        limit.slant = (limit.slant + cos_of(cos, S::ONE)).min(S::ONE);
+        let far_m = if gap_m < S::ZERO { end_m - told_m } else { nearest_m };
+        let sin = far_m.cross(limit.ahead).norm().checked_div(far_m.norm()).unwrap_or(S::ONE);
+        let rounded = error_m.checked_div(distance - error_m).unwrap_or(S::ONE);
+        limit.slant = (sin + rounded).min(S::ONE);
+        if far_m.dot(limit.ahead) <= S::ZERO {
+            // The path leads past the own place: each motion counts whole.
+            (limit.ahead, limit.slant) = (Vec3::ZERO, S::ONE);
+        }
         limit.cos = cos_of(limit.slant, S::ONE);
     }
 

@@ -61,7 +61,8 @@ impl Case {
         if reach_m >= distance_m {
             return Excess { taken_m: 0.0, kept_m: 0.0, hidden_m: motion.norm() };
         }
-        let mut gap_m = distance_m - self.keep_m - grown_m;
+        let ball_m = distance_m - self.keep_m - grown_m;
+        let mut gap_m = ball_m;
         if known.silent > 0 && known.gives_way && !known.is_lost {
             gap_m = gap_m.max(known.kept_m - 2.0 * SLACK_M);
         }
@@ -73,13 +74,21 @@ impl Case {
         if known.silent == 0 && !self.is_synchronous {
             // The nearest point of the path that the other robot may still be on.
             let back = known.seen_m.dot(known.told_m) / known.told_m.dot(known.told_m).max(1e-12);
-            let nearest_m = known.seen_m - known.told_m * back.clamp(0.0, 1.0);
-            let room_m = nearest_m.norm() - self.keep_m;
+            let (begun_m, seen_m) = (known.seen_m - known.told_m, known.seen_m);
+            let nearest_m = seen_m - known.told_m * back.clamp(0.0, 1.0);
+            let beyond_m = nearest_m.norm() - self.keep_m;
             let toward_m = motion.dot(nearest_m) / nearest_m.norm();
-            over_m = over_m.max(toward_m - (room_m + SLACK_M).max(0.0));
+            let away = |from_m: Vec3<f64>| motion.dot(from_m) + ERROR_M * motion.norm();
+            let aside_m = toward_m - (beyond_m + SLACK_M).max(0.0);
+            let retreat_m = away(begun_m).max(away(seen_m)) / self.keep_m;
+            over_m = over_m.max(if beyond_m < -2.0 * SLACK_M { retreat_m } else { aside_m });
         }
-        let counted_m = if self.is_synchronous { taken_m } else { taken_m.max(0.0) };
-        let left_m = if known.is_lost { known.kept_m } else { gap_m / 2.0 - counted_m };
+        // Out of phase, receding does not count, and the first bound is halved twice.
+        let (counted_m, halved) = match self.is_synchronous {
+            true => (taken_m, 0.5),
+            false => (taken_m.max(0.0), if gap_m <= ball_m { 0.25 } else { 0.5 }),
+        };
+        let left_m = if known.is_lost { known.kept_m } else { gap_m * halved - counted_m };
         Excess { taken_m: over_m, kept_m: kept_m - left_m, hidden_m: 0.0 }
     }
 }
