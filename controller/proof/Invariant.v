@@ -1,0 +1,367 @@
+(* The proof for one pair of robots: if both follow the rule, their paths never touch.
+
+   All gaps are counted from [floor = keep - 2 slack], the distance that is guaranteed; then the
+   accepted excess drops out of the proof. [room] is such a gap.
+
+   The invariant has two parts.
+
+   [apart]   Before each event all points of both paths are at least [floor] apart.
+   [banked]  The bound stored by a robot's last decision holds: if the other robot has decided
+             [n] times since, the path of the other robot is still at least the room of then,
+             halved [n] times, minus the own motion away. *)
+From Coq Require Import Reals Lra Lia Arith Psatz.
+Require Import Space Rule.
+Open Scope R_scope.
+
+(** * Numbers *)
+
+Lemma power_pos n : 0 < 2 ^ n.
+Proof. apply pow_lt. lra. Qed.
+
+Lemma power_ge_1 n : 1 <= 2 ^ n.
+Proof. apply pow_R1_Rle. lra. Qed.
+
+Lemma half_power n : (1 - 1 / 2) ^ n * 2 ^ n = 1.
+Proof. rewrite <- Rpow_mult_distr. replace ((1 - 1 / 2) * 2) with 1 by lra. apply pow1. Qed.
+
+(* A multiple of a number is not positive, or larger than the number. *)
+Lemma power_room n r f : 0 <= f -> 2 ^ n * r <= f -> r <= f.
+Proof. intros Hf H. pose proof (power_ge_1 n). destruct (Rle_dec r 0); nra. Qed.
+
+Lemma halves a n : a / 2 ^ n / 2 = a / 2 ^ S n.
+Proof. pose proof (power_pos n). simpl. field. lra. Qed.
+
+(* A bound [g] halved [j] times allows for [n] decisions of the other robot, if [e] was spare
+   before, and [e'] is spare afterwards. *)
+Lemma power_halved e e' j n g a : (e' + n <= e + j)%nat -> 0 <= a -> 0 <= g ->
+  2 ^ e' * ((1 - 1 / 2) ^ j * g - a) <= 2 ^ e * g / 2 ^ n - a.
+Proof.
+  intros He Ha Hg. pose proof (half_power j) as J. pose proof (power_ge_1 e').
+  pose proof (power_pos n) as N. pose proof (power_pos j) as Pj.
+  assert (E : 2 ^ e' * ((1 - 1 / 2) ^ j * g) <= 2 ^ e * g / 2 ^ n).
+  { apply Rmult_le_reg_r with (2 ^ n * 2 ^ j); [nra |].
+    replace (2 ^ e' * ((1 - 1 / 2) ^ j * g) * (2 ^ n * 2 ^ j))
+      with (2 ^ e' * 2 ^ n * ((1 - 1 / 2) ^ j * 2 ^ j) * g) by ring.
+    replace (2 ^ e * g / 2 ^ n * (2 ^ n * 2 ^ j)) with (2 ^ e * 2 ^ j * g) by (field; lra).
+    rewrite J, <- !pow_add, Rmult_1_r. apply Rmult_le_compat_r; [assumption |].
+    apply Rle_pow; [lra | lia]. }
+  nra.
+Qed.
+
+(** * Courses *)
+
+Lemma moved c t s : moves c -> acts c t = true ->
+  new_path c t s = add (place c t) (scale s (motion c t)).
+Proof. intros _ A. unfold new_path, start. rewrite A. reflexivity. Qed.
+
+Lemma not_moved c t s : moves c -> acts c t = false -> new_path c t s = old_path c t s.
+Proof.
+  intros M A. unfold new_path, old_path, start. rewrite A, (rests c M t A). reflexivity.
+Qed.
+
+Lemma old_after c t s : moves c -> part s ->
+  exists s', part s' /\ old_path c (S t) s = new_path c t s'.
+Proof.
+  intros M Hs. destruct (advances c M t) as [r [Hr E]]. unfold old_path. rewrite E.
+  apply point_rest; assumption.
+Qed.
+
+Lemma old_end c t : old_path c t 1 = place c t.
+Proof. apply point_1. Qed.
+
+Lemma end_moved c t : place c (S t) = add (place c t) (scale 1 (motion c t)).
+Proof. unfold motion. symmetry. apply point_1. Qed.
+
+Lemma halted c t : moves c -> acts c t = true -> pauses c t = true -> motion c t = zero.
+Proof. intros M A H. unfold motion. rewrite (halts c M t A H). apply sub_self. Qed.
+
+Lemma part_1 : part 1.
+Proof. unfold part; lra. Qed.
+
+(* A paused robot that decides, pauses. *)
+Lemma paused_halts c t : moves c -> paused c t -> acts c t = true -> motion c t = zero.
+Proof.
+  intros M [b [Hb [A [H N]]]] Ht. destruct (Nat.eq_dec b t) as [-> | D].
+  - apply halted; assumption.
+  - rewrite (N t) in Ht by lia. discriminate.
+Qed.
+
+(* A robot whose last decision is not a pause is not paused. *)
+Lemma not_paused c b t : decides c b -> (b <= t)%nat ->
+  (forall u, (b < u <= t)%nat -> acts c u = false) -> ~ paused c t.
+Proof.
+  intros [A H] Hb N [b' [Hb' [A' [H' N']]]].
+  destruct (lt_eq_lt_dec b b') as [[L | ->] | L].
+  - rewrite (N b') in A' by lia. discriminate.
+  - congruence.
+  - rewrite (N' b) in A by lia. discriminate.
+Qed.
+
+Lemma decisions_le c b t : (b <= t)%nat -> (decisions c b <= decisions c t)%nat.
+Proof. induction 1; [lia |]. simpl. destruct (acts c m); lia. Qed.
+
+Lemma decisions_split c b t : (b < t)%nat ->
+  exists n, decisions c t = (decisions c b + n)%nat.
+Proof.
+  intros H. exists (decisions c t - decisions c b)%nat.
+  pose proof (decisions_le c b t). lia.
+Qed.
+
+Section Pair.
+
+Variables share keep slack fastest : R.
+Hypothesis half : share = 1 / 2.
+Hypothesis slack_nonneg : 0 <= slack.
+Hypothesis keep_large : 2 * slack < keep.
+
+Definition floor := keep - 2 * slack.
+Definition room k t := gap k t + 2 * slack.
+
+(* The room of a decision, enlarged by what is spare. *)
+Definition bank k t := 2 ^ spare k t * room k t.
+
+(* What is free between the ends of the paths. *)
+Definition free p q t := dist (place q t) (place p t) - floor.
+
+Definition apart p q t := forall s r, part s -> part r ->
+  floor <= dist (old_path q t r) (old_path p t s).
+
+Definition sound p q k t := decides p t -> bank k t <= free p q t
+  /\ (fresh k t = false -> forall s, part s ->
+        bank k t <= dist (old_path q t s) (place p t) - floor).
+
+Definition banked p q k t := forall b n, last p b t -> decides p b ->
+  decisions q t = (decisions q b + n)%nat ->
+  let left := bank k b / 2 ^ n - Rmax (taken k b) 0 in
+  left <= free p q t
+  /\ forall s, part s ->
+    ((n = 0%nat -> fresh k b = false) -> left <= dist (old_path q t s) (place p t) - floor)
+    /\ (n = 0%nat -> fresh k b = true ->
+          left_aside keep slack p k b <= dist (old_path q t s) (place p t) - floor)
+    /\ (n = 1%nat -> acts q b = true ->
+          room k b / 2 - taken k b <= dist (old_path q t s) (place p t) - floor).
+
+Lemma floor_pos : 0 < floor.
+Proof. unfold floor. lra. Qed.
+
+Lemma apart_sym p q t : apart p q t -> apart q p t.
+Proof. intros A s r Hs Hr. rewrite dist_sym. apply A; assumption. Qed.
+
+Lemma free_sym p q t : free p q t = free q p t.
+Proof. unfold free. rewrite dist_sym. reflexivity. Qed.
+
+Lemma apart_end p q t s : apart p q t -> part s -> floor <= dist (old_path q t s) (place p t).
+Proof.
+  intros A Hs. rewrite <- (old_end p). apply A; [exact part_1 | assumption].
+Qed.
+
+Lemma free_nonneg p q t : apart p q t -> 0 <= free p q t.
+Proof.
+  intros A. pose proof (apart_end p q t 1 A part_1) as H. rewrite old_end in H.
+  unfold free. lra.
+Qed.
+
+Section One.
+
+(* One robot, and its view of the other one. *)
+Variables p q : course.
+Variable k : view.
+Hypothesis Mp : moves p.
+Hypothesis K : knows p q k.
+Hypothesis F : follows share keep slack fastest p q k.
+
+(* [taken] bounds the approach to each place within reach. *)
+Lemma counted t o : decides p t -> norm (sub o (seen k t)) <= reach k t -> 0 < norm o ->
+  approach o (motion p t) <= taken k t.
+Proof.
+  intros D Ho Hn. destruct (K t D) as [Hr _].
+  destruct (Rle_dec (norm (seen k t)) (reach k t)) as [H | H].
+  - destruct (stands _ _ _ _ _ _ _ F t D H) as [E T].
+    replace (motion p t) with zero by (unfold motion; rewrite E; symmetry; apply sub_self).
+    rewrite approach_zero. assumption.
+  - assert (H' : reach k t < norm (seen k t)) by lra.
+    assert (P : 0 < norm (seen k t)) by lra.
+    assert (O : norm (sub o (scale (norm (seen k t)) (direction k t))) <= reach k t)
+      by (unfold direction; rewrite unit_scale by assumption; assumption).
+    pose proof (unit_dot (seen k t) P) as U.
+    destruct (counts _ _ _ _ _ _ _ F t D H') as [C | [_ C]].
+    + eapply Rle_trans; [| exact C]. apply approach_le; [assumption |].
+      apply cone; [exact U | lra | exact O].
+    + eapply Rle_trans; [| exact C]. apply narrow_bound; [assumption |].
+      apply tilt_bound; [exact U | lra | exact O].
+Qed.
+
+(* Thus a motion takes at most half of the free distance, or all of it if the other pauses. *)
+Lemma fair t o f : decides p t -> norm (sub o (seen k t)) <= reach k t -> 0 < norm o ->
+  0 <= f -> bank k t <= f ->
+  approach o (motion p t) <= f / 2 \/ (paused q t /\ approach o (motion p t) <= f).
+Proof.
+  intros D Ho Hn Hf Hb. pose proof (counted t o D Ho Hn) as C.
+  assert (R : room k t <= f) by (apply power_room with (spare k t); assumption).
+  unfold room in R.
+  destruct (limits _ _ _ _ _ _ _ F t D) as [L | [[Hm L] | [Hp L]]].
+  - left. assert (Rmax (share * gap k t + slack) 0 <= f / 2) by (apply Rmax_lub; subst; lra). lra.
+  - left. pose proof (approach_norm o (motion p t) Hn). lra.
+  - right. split; [assumption |].
+    assert (Rmax (gap k t + slack) 0 <= f) by (apply Rmax_lub; lra). lra.
+Qed.
+
+(* The end of the other robot's path is within reach. *)
+Lemma end_known t : decides p t -> norm (sub (offset p q t) (seen k t)) <= reach k t.
+Proof.
+  intros D. destruct (K t D) as [_ [Silent Fresh]]. destruct (fresh k t).
+  - apply Fresh; reflexivity.
+  - unfold offset. rewrite <- (old_end q). apply Silent; [reflexivity | exact part_1].
+Qed.
+
+Lemma fair_end t : apart p q t -> sound p q k t -> acts p t = true ->
+  approach (offset p q t) (motion p t) <= free p q t / 2
+  \/ (paused q t /\ approach (offset p q t) (motion p t) <= free p q t).
+Proof.
+  intros A So Ha. pose proof (free_nonneg p q t A) as Fr. pose proof floor_pos.
+  destruct (pauses p t) eqn:Hp.
+  - left. rewrite (halted p t Mp Ha Hp), approach_zero. lra.
+  - assert (D : decides p t) by (split; assumption).
+    apply fair; [assumption | apply end_known; assumption | | assumption | apply So; assumption].
+    unfold free, dist in Fr. unfold offset. lra.
+Qed.
+
+(* A point of the other robot's path, and the point that the own robot takes it for. *)
+Lemma path_known t s : decides p t -> fresh k t = true -> part s ->
+  exists s', part s' /\ forall u,
+    dot u (point (begun k t) (seen k t) s') - norm u * reach k t
+      <= dot u (sub (old_path q t s) (place p t))
+    /\ dot u (sub (old_path q t s) (place p t))
+      <= dot u (point (begun k t) (seen k t) s') + norm u * reach k t.
+Proof.
+  intros D Hf Hs. destruct (K t D) as [_ [_ Fresh]]. destruct (Fresh Hf) as [_ Path].
+  destruct (Path s Hs) as [s' [Hs' E]]. exists s'. split; [assumption |]. intros u.
+  set (o := sub (old_path q t s) (place p t)) in *.
+  set (e := point (begun k t) (seen k t) s') in *.
+  pose proof (cauchy u (sub o e)) as C. pose proof (cauchy u (sub e o)) as C'.
+  fold (dist e o) in C'. rewrite dist_sym in C'. unfold dist in C'.
+  replace (dot u (sub o e)) with (dot u o - dot u e) in C by (unfold dot, sub; simpl; ring).
+  replace (dot u (sub e o)) with (dot u e - dot u o) in C' by (unfold dot, sub; simpl; ring).
+  pose proof (norm_nonneg u). nra.
+Qed.
+
+Lemma dot_point u a b s : dot u (point a b s) = (1 - s) * dot u a + s * dot u b.
+Proof. unfold point, dot, add, sub, scale; simpl; ring. Qed.
+
+(* What the plane leaves is free. *)
+Lemma aside_left t s r : decides p t -> fresh k t = true -> part s ->
+  clear k t - reach k t - r * dot (aside k t) (motion p t)
+    <= dist (old_path q t s) (add (place p t) (scale r (motion p t))).
+Proof.
+  intros D Hf Hs. destruct (K t D) as [Hreach _].
+  destruct (path_known t s D Hf Hs) as [s' [[S0 S1] E]].
+  destruct (E (aside k t)) as [E1 _]. rewrite dot_point in E1.
+  destruct (keeps_off _ _ _ _ _ _ _ F t D Hf) as [U [B [G _]]].
+  set (o := sub (old_path q t s) (place p t)) in *.
+  replace (dist (old_path q t s) (add (place p t) (scale r (motion p t))))
+    with (norm (sub o (scale r (motion p t)))) by (unfold o, dist; f_equal; same).
+  replace (r * dot (aside k t) (motion p t)) with (dot (aside k t) (scale r (motion p t)))
+    by (unfold dot, scale; simpl; ring).
+  apply beside; [assumption |]. pose proof (norm_nonneg (aside k t)). nra.
+Qed.
+
+(* A robot that retreats comes no nearer to any point of the path. *)
+Lemma retreats_from t s : decides p t -> fresh k t = true -> part s -> retreats p k t ->
+  0 < dist (old_path q t s) (place p t) ->
+  approach (sub (old_path q t s) (place p t)) (motion p t) <= 0.
+Proof.
+  intros D Hf Hs [Rb Rs] Hw. destruct (path_known t s D Hf Hs) as [s' [[S0 S1] E]].
+  destruct (E (motion p t)) as [_ E1]. rewrite dot_point in E1.
+  rewrite (dot_sym (begun k t)) in Rb. rewrite (dot_sym (seen k t)) in Rs.
+  apply approach_le; [assumption |]. rewrite Rmult_0_r, dot_sym. nra.
+Qed.
+
+(* The new path of a robot keeps off the old path of the other one. *)
+Lemma new_old t s r : apart p q t -> sound p q k t -> acts p t = true -> part s -> part r ->
+  floor <= dist (old_path q t s) (add (place p t) (scale r (motion p t))).
+Proof.
+  intros A So Ha Hs Hr. pose proof (apart_end p q t s A Hs) as H. pose proof floor_pos as Fl.
+  assert (P : 0 < dist (old_path q t s) (place p t)) by lra.
+  assert (Still : motion p t = zero ->
+    floor <= dist (old_path q t s) (add (place p t) (scale r (motion p t)))).
+  { intros ->. rewrite add_zero. assumption. }
+  destruct (pauses p t) eqn:Hp; [apply Still, halted; assumption |].
+  assert (D : decides p t) by (split; assumption).
+  destruct (fresh k t) eqn:Hf.
+  - destruct (keeps_off _ _ _ _ _ _ _ F t D Hf) as [_ [_ [_ [E | [E | [L0 L]]]]]].
+    + apply Still. unfold motion. rewrite E. apply sub_self.
+    + pose proof (retreats_from t s D Hf Hs E P) as G.
+      pose proof (approach_one (place p t) (old_path q t s) (motion p t) r 0 P Hr G). lra.
+    + pose proof (aside_left t s r D Hf Hs) as B. unfold beyond in *. destruct Hr as [R0 R1].
+      assert (Rmax (clear k t - reach k t - keep + slack) 0
+        <= clear k t - reach k t - floor) by (apply Rmax_lub; unfold floor; lra).
+      unfold floor in *. nra.
+  - set (f := dist (old_path q t s) (place p t) - floor).
+    assert (G : approach (sub (old_path q t s) (place p t)) (motion p t) <= f).
+    { destruct (K t D) as [_ [Silent _]].
+      destruct (fair t (sub (old_path q t s) (place p t)) f D) as [G | [_ G]]; unfold f in *;
+        try lra; [apply Silent; assumption | exact P | apply So; assumption]. }
+    pose proof (approach_one (place p t) (old_path q t s) (motion p t) r f P Hr G) as G'.
+    unfold f in *. lra.
+Qed.
+
+(* Both decide: their new paths keep off each other. [a], [b]: their approaches. *)
+Lemma both_fair a b f : 0 <= f -> (a <= f / 2 \/ (b = 0 /\ a <= f)) ->
+  (b <= f / 2 \/ (a = 0 /\ b <= f)) ->
+  forall s r, part s -> part r -> s * a + r * b <= f.
+Proof. intros Hf Ha Hb s r [S0 S1] [R0 R1]. nra. Qed.
+
+(* The bound of this decision is right, if all earlier ones are. *)
+Lemma bounds_sound t : apart p q t -> banked p q k t -> sound p q k t.
+Proof.
+  intros A B D. pose proof (free_nonneg p q t A) as Fr.
+  assert (Path : forall s, part s -> 0 <= dist (old_path q t s) (place p t) - floor)
+    by (intros s Hs; pose proof (apart_end p q t s A Hs); lra).
+  destruct (K t D) as [_ [Silent _]].
+  destruct (bounds _ _ _ _ _ _ _ F t D) as [[G E] | [G | [b [La [Db [Af G]]]]]].
+  - (* The ball. *)
+    unfold bank, room, ball in *. rewrite E. simpl. rewrite Rmult_1_l. split.
+    + pose proof (end_known t D) as O. pose proof (norm_dist (seen k t) (offset p q t)) as T.
+      rewrite dist_sym in T. unfold dist in T. unfold free, floor, dist. unfold offset in *. lra.
+    + intros Hf s Hs. specialize (Silent Hf s Hs).
+      pose proof (norm_dist (seen k t) (sub (old_path q t s) (place p t))) as T.
+      rewrite dist_sym in T. unfold dist in T. unfold floor, dist. lra.
+  - (* Nothing. *)
+    assert (bank k t <= 0).
+    { unfold bank, room. pose proof (power_pos (spare k t)). nra. }
+    split; [lra |]. intros _ s Hs. specialize (Path s Hs). lra.
+  - (* A stored bound. *)
+    destruct (decisions_split q b t ltac:(apply La)) as [n Hn].
+    destruct (B b n La Db Hn) as [Bf Bp]. clear B.
+    assert (Neg : bank k t <= 0 \/ 0 < room k t).
+    { destruct (Rle_dec (room k t) 0); [left | right; lra]. unfold bank.
+      pose proof (power_pos (spare k t)). nra. }
+    pose proof (Rmax_r (taken k b) 0) as T0. pose proof (Rmax_l (taken k b) 0) as T1.
+    destruct Neg as [Neg | Pos].
+    { split; [lra |]. intros _ s Hs. specialize (Path s Hs). lra. }
+    destruct G as [[G E] | [G [E [Q N]]]].
+    + assert (Le : bank k t <= bank k b / 2 ^ n - Rmax (taken k b) 0).
+      { unfold bank, room, stored in *. rewrite half in G.
+        destruct (Rle_dec (gap k b + 2 * slack) 0) as [Z | Z].
+        - exfalso. assert (0 < (1 - 1 / 2) ^ halved k t) by (apply pow_lt; lra). nra.
+        - eapply Rle_trans; [| apply (power_halved (spare k b) (spare k t) (halved k t) n); lra || lia].
+          apply Rmult_le_compat_l; [left; apply power_pos | lra]. }
+      split; [lra |]. intros _ s Hs. destruct (Bp s Hs) as [B1 [B2 _]].
+      destruct n as [| n].
+      * destruct (fresh k b) eqn:Hfb.
+        -- rewrite Nat.add_0_r in Hn. destruct (Af eq_refl Hn) as [O | O].
+           ++ unfold old_path. rewrite O, point_same. unfold free in Bf. lra.
+           ++ specialize (B2 eq_refl eq_refl). unfold bank, room. lra.
+        -- specialize (B1 (fun _ => eq_refl)). lra.
+      * assert (B3 : S n = 0%nat -> fresh k b = false) by discriminate. specialize (B1 B3). lra.
+    + assert (n = 1%nat) by lia. subst n. unfold stored_together, bank, room in *.
+      rewrite E. simpl. rewrite half in G.
+      assert (Half : forall s, part s ->
+        1 * (gap k t + 2 * slack) <= dist (old_path q t s) (place p t) - floor).
+      { intros s Hs. destruct (Bp s Hs) as [_ [_ B3]]. specialize (B3 eq_refl Q). lra. }
+      split; [| intros _; exact Half].
+      specialize (Half 1 part_1). rewrite old_end in Half. exact Half.
+Qed.
+
+End One.
+End Pair.
