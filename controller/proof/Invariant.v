@@ -184,7 +184,7 @@ Proof.
     assert (O : norm (sub o (scale (norm (seen k t)) (direction k t))) <= reach k t)
       by (unfold direction; rewrite unit_scale by assumption; assumption).
     pose proof (unit_dot (seen k t) P) as U.
-    destruct (counts _ _ _ _ _ _ _ F t D H') as [C | [_ C]].
+    destruct (counts _ _ _ _ _ _ _ F t D H') as [C | C].
     + eapply Rle_trans; [| exact C]. apply approach_le; [assumption |].
       apply cone; [exact U | lra | exact O].
     + eapply Rle_trans; [| exact C]. apply narrow_bound; [assumption |].
@@ -364,4 +364,238 @@ Proof.
 Qed.
 
 End One.
+
+Section Both.
+
+Variables p q : course.
+Variables kp kq : view.
+Hypothesis Mp : moves p.
+Hypothesis Mq : moves q.
+Hypothesis Kp : knows p q kp.
+Hypothesis Kq : knows q p kq.
+Hypothesis Fp : follows share keep slack fastest p q kp.
+Hypothesis Fq : follows share keep slack fastest q p kq.
+
+(* The approaches of both motions along the line between the ends of the old paths. *)
+Definition own t := approach (offset p q t) (motion p t).
+Definition other t := approach (offset q p t) (motion q t).
+
+Lemma both_move t s r : apart p q t ->
+  free p q t - s * own t - r * other t
+    <= dist (add (place q t) (scale r (motion q t))) (add (place p t) (scale s (motion p t)))
+       - floor.
+Proof.
+  intros A. pose proof (free_nonneg p q t A) as Fr. pose proof floor_pos.
+  assert (P : 0 < dist (place q t) (place p t)) by (unfold free in Fr; lra).
+  pose proof (approach_both (place p t) (place q t) (motion p t) (motion q t) s r P) as B.
+  unfold free, own, other, offset. lra.
+Qed.
+
+(* The new paths of two robots that both decide keep off each other. *)
+Lemma new_new t s r : apart p q t -> sound p q kp t -> sound q p kq t ->
+  acts p t = true -> acts q t = true -> part s -> part r ->
+  floor <= dist (add (place q t) (scale r (motion q t))) (add (place p t) (scale s (motion p t))).
+Proof.
+  intros A Sp Sq Ap Aq Hs Hr. pose proof (both_move t s r A) as B.
+  pose proof (free_nonneg p q t A) as Fr.
+  assert (Ho : own t <= free p q t / 2 \/ (other t = 0 /\ own t <= free p q t)).
+  { destruct (fair_end p q kp Mp Kp Fp t A Sp Ap) as [G | [G0 G]]; [left; exact G | right].
+    split; [| exact G]. unfold other. rewrite (paused_halts q t Mq G0 Aq). apply approach_zero. }
+  assert (Ht : other t <= free p q t / 2 \/ (own t = 0 /\ other t <= free p q t)).
+  { pose proof (fair_end q p kq Mq Kq Fq t (apart_sym p q t A) Sq Aq) as G.
+    rewrite (free_sym q p) in G. destruct G as [G | [G0 G]]; [left; exact G | right].
+    split; [| exact G]. unfold own. rewrite (paused_halts p t Mp G0 Ap). apply approach_zero. }
+  pose proof (both_fair (own t) (other t) (free p q t) Fr Ho Ht s r Hs Hr). lra.
+Qed.
+
+(* The other robot takes at most half, since this one's last decision is not a pause. *)
+Lemma other_half t b : apart p q t -> sound q p kq t -> acts q t = true ->
+  decides p b -> (b <= t)%nat -> (forall u, (b < u <= t)%nat -> acts p u = false) ->
+  other t <= free p q t / 2.
+Proof.
+  intros A Sq Aq Db Hb N.
+  pose proof (fair_end q p kq Mq Kq Fq t (apart_sym p q t A) Sq Aq) as G.
+  rewrite (free_sym q p) in G. destruct G as [G | [G _]]; [exact G |].
+  exfalso. exact (not_paused p b t Db Hb N G).
+Qed.
+
+(* The decision of event t stores a right bound: the other robot decides at event t, too. *)
+Lemma banked_together t : apart p q t -> sound p q kp t -> sound q p kq t ->
+  decides p t -> acts q t = true -> forall s, part s ->
+  bank kp t / 2 - Rmax (taken kp t) 0 <= dist (old_path q (S t) s) (place p (S t)) - floor
+  /\ room kp t / 2 - taken kp t <= dist (old_path q (S t) s) (place p (S t)) - floor.
+Proof.
+  intros A Sp Sq D Aq s Hs. destruct (old_after q t s Mq Hs) as [r [[R0 R1] E]].
+  rewrite E, (moved q t r Mq Aq), (end_moved p t).
+  pose proof (both_move t 1 r A) as B. pose proof (free_nonneg p q t A) as Fr.
+  assert (H : other t <= free p q t / 2)
+    by (apply (other_half t t); auto; intros; lia).
+  assert (C : own t <= taken kp t).
+  { apply (counted p q kp Kp Fp t (offset p q t) D).
+    - apply (end_known p q kp Kp t D).
+    - pose proof floor_pos. unfold free, dist in Fr. unfold offset. lra. }
+  destruct (Sp D) as [Bk _].
+  pose proof (power_room (spare kp t) (room kp t) (free p q t) Fr Bk).
+  pose proof (Rmax_l (taken kp t) 0). split; nra.
+Qed.
+
+(* Only this robot decides at event t. *)
+Lemma banked_alone t : apart p q t -> sound p q kp t -> decides p t -> acts q t = false ->
+  bank kp t - Rmax (taken kp t) 0 <= free p q (S t)
+  /\ forall s, part s ->
+    (fresh kp t = false ->
+      bank kp t - Rmax (taken kp t) 0 <= dist (old_path q (S t) s) (place p (S t)) - floor)
+    /\ (fresh kp t = true ->
+      left_aside keep slack p kp t <= dist (old_path q (S t) s) (place p (S t)) - floor).
+Proof.
+  intros A Sp D Aq. destruct (Sp D) as [Bk Bs]. pose proof floor_pos as Fl.
+  pose proof (Rmax_l (taken kp t) 0) as T0. pose proof (Rmax_r (taken kp t) 0) as T1.
+  assert (One : forall o, 0 < dist o (place p t) ->
+    norm (sub (sub o (place p t)) (seen kp t)) <= reach kp t ->
+    dist o (place p t) - Rmax (taken kp t) 0 <= dist o (place p (S t))).
+  { intros o Ho Hr. rewrite (end_moved p t).
+    apply approach_one; [assumption | exact part_1 | | assumption].
+    pose proof (counted p q kp Kp Fp t _ D Hr Ho). lra. }
+  split.
+  - unfold free. rewrite (rests q Mq t Aq).
+    pose proof (free_nonneg p q t A) as Fr. unfold free in *.
+    assert (P : 0 < dist (place q t) (place p t)) by lra.
+    pose proof (One (place q t) P (end_known p q kp Kp t D)). lra.
+  - intros s Hs. destruct (old_after q t s Mq Hs) as [r [Hr E]].
+    rewrite E, (not_moved q t r Mq Aq). split; intros Hf.
+    + pose proof (apart_end p q t r A Hr). specialize (Bs Hf r Hr).
+      destruct (Kp t D) as [_ [Silent _]].
+      assert (P : 0 < dist (old_path q t r) (place p t)) by lra.
+      pose proof (One (old_path q t r) P (Silent Hf r Hr)). lra.
+    + pose proof (aside_left p q kp Kp Fp t r 1 D Hf Hr) as B. rewrite <- end_moved in B.
+      unfold left_aside, beyond, floor. lra.
+Qed.
+
+(* An older bound, if the other robot decides at event t. *)
+Lemma banked_other t b : apart p q t -> sound q p kq t -> last p b (S t) -> (b < t)%nat ->
+  decides p b -> acts q t = true -> forall s, part s ->
+  free p q t / 2 <= dist (old_path q (S t) s) (place p (S t)) - floor.
+Proof.
+  intros A Sq [_ N] Hb Db Aq s Hs. destruct (old_after q t s Mq Hs) as [r [[R0 R1] E]].
+  rewrite E, (moved q t r Mq Aq).
+  rewrite (rests p Mp t) by (apply N; lia).
+  pose proof (both_move t 0 r A) as B. pose proof (free_nonneg p q t A) as Fr.
+  assert (H : other t <= free p q t / 2).
+  { apply (other_half t b); auto; [lia |]. intros u Hu. apply N. lia. }
+  replace (add (place p t) (scale 0 (motion p t))) with (place p t) in B
+    by (destruct (place p t); same).
+  nra.
+Qed.
+
+Lemma banked_step t : apart p q t -> sound p q kp t -> sound q p kq t ->
+  banked p q kp t -> banked p q kp (S t).
+Proof.
+  intros A Sp Sq B b n La Db Hn. cbv zeta. destruct La as [Hb N].
+  pose proof (Rmax_r (taken kp b) 0) as T0. simpl in Hn.
+  destruct (Nat.eq_dec b t) as [-> | Ne].
+  - destruct (acts q t) eqn:Aq.
+    + assert (n = 1%nat) by lia. subst n.
+      pose proof (banked_together t A Sp Sq Db Aq) as G. simpl (2 ^ 1). rewrite Rmult_1_r.
+      split.
+      * destruct (G 1 part_1) as [G1 _]. rewrite old_end in G1. exact G1.
+      * intros s Hs. destruct (G s Hs) as [G1 G2]. repeat split; intros; auto; discriminate.
+    + assert (n = 0%nat) by lia. subst n.
+      destruct (banked_alone t A Sp Db Aq) as [G1 G2]. simpl (2 ^ 0). unfold Rdiv.
+      rewrite Rinv_1, Rmult_1_r. split; [exact G1 |].
+      intros s Hs. destruct (G2 s Hs) as [G3 G4]. repeat split; intros; auto; discriminate.
+  - assert (Hbt : (b < t)%nat) by lia.
+    assert (La : last p b t) by (split; [assumption | intros u Hu; apply N; lia]).
+    destruct (acts q t) eqn:Aq.
+    + destruct n as [| n].
+      { pose proof (decisions_le q b t). lia. }
+      assert (Hn' : decisions q t = (decisions q b + n)%nat) by lia.
+      destruct (B b n La Db Hn') as [Bf _].
+      assert (L : bank kp b / 2 ^ S n - Rmax (taken kp b) 0 <= free p q t / 2)
+        by (rewrite <- halves; lra).
+      pose proof (banked_other t b A Sq (conj Hb N) Hbt Db Aq) as G. split.
+      * specialize (G 1 part_1). rewrite old_end in G. unfold free in *. lra.
+      * intros s Hs. specialize (G s Hs). repeat split; intros; try discriminate; try lra.
+        (* The other robot decided at event b and now: that is more than once. *)
+        pose proof (decisions_le q (S b) t Hbt) as Two. simpl in Two.
+        rewrite H0 in Two. lia.
+    + destruct (B b n La Db Hn) as [Bf Bp]. unfold free.
+      rewrite (rests q Mq t Aq), (rests p Mp t) by (apply N; lia).
+      split; [exact Bf |]. intros s Hs. destruct (old_after q t s Mq Hs) as [r [Hr E]].
+      rewrite E, (not_moved q t r Mq Aq). apply Bp. assumption.
+Qed.
+
+(* The paths before and after an event. *)
+Definition side := bool.
+Definition path_at (c : course) t (after : side) s :=
+  if after then new_path c t s else old_path c t s.
+
+Lemma new_or_old c t s : moves c -> new_path c t s = old_path c t s
+  \/ (acts c t = true /\ new_path c t s = add (place c t) (scale s (motion c t))).
+Proof.
+  intros M. destruct (acts c t) eqn:E.
+  - right. split; [reflexivity | apply moved; assumption].
+  - left. apply not_moved; assumption.
+Qed.
+
+Lemma paths_apart t : apart p q t -> sound p q kp t -> sound q p kq t ->
+  forall i j s r, part s -> part r -> floor <= dist (path_at q t j r) (path_at p t i s).
+Proof.
+  intros A Sp Sq i j s r Hs Hr.
+  assert (Old : floor <= dist (old_path q t r) (old_path p t s)) by (apply A; assumption).
+  assert (P : acts p t = true -> new_path p t s = add (place p t) (scale s (motion p t)) ->
+    floor <= dist (old_path q t r) (new_path p t s)).
+  { intros Ap ->. apply (new_old p q kp Mp Kp Fp t r s A Sp Ap Hr Hs). }
+  assert (Q : acts q t = true -> new_path q t r = add (place q t) (scale r (motion q t)) ->
+    floor <= dist (new_path q t r) (old_path p t s)).
+  { intros Aq ->. rewrite dist_sym.
+    apply (new_old q p kq Mq Kq Fq t s r (apart_sym p q t A) Sq Aq Hs Hr). }
+  destruct (new_or_old p t s Mp) as [Ep | [Ap Ep]];
+    destruct (new_or_old q t r Mq) as [Eq | [Aq Eq]];
+    destruct i, j; unfold path_at; rewrite ?Ep, ?Eq in *; auto.
+  apply new_new; assumption.
+Qed.
+
+End Both.
+
+(* The theorem for one pair. *)
+Section Invariance.
+
+Variables p q : course.
+Variables kp kq : view.
+Hypothesis Mp : moves p.
+Hypothesis Mq : moves q.
+Hypothesis Kp : knows p q kp.
+Hypothesis Kq : knows q p kq.
+Hypothesis Fp : follows share keep slack fastest p q kp.
+Hypothesis Fq : follows share keep slack fastest q p kq.
+Hypothesis first : apart p q 0.
+
+Definition invariant t := apart p q t /\ banked p q kp t /\ banked q p kq t.
+
+Lemma invariant_holds t : invariant t.
+Proof.
+  induction t as [| t [A [Bp Bq]]].
+  - split; [assumption |]. split; intros b n [Hb _]; lia.
+  - pose proof (bounds_sound p q kp Kp Fp t A Bp) as Sp.
+    pose proof (bounds_sound q p kq Kq Fq t (apart_sym p q t A) Bq) as Sq.
+    split; [| split].
+    + intros s r Hs Hr. destruct (old_after p t s Mp Hs) as [s' [Hs' ->]].
+      destruct (old_after q t r Mq Hr) as [r' [Hr' ->]].
+      apply (paths_apart p q kp kq Mp Mq Kp Kq Fp Fq t A Sp Sq true true s' r'); assumption.
+    + apply (banked_step p q kp kq); assumption.
+    + apply (banked_step q p kq kp); auto. apply apart_sym; assumption.
+Qed.
+
+(* Any point of either path before or after event t, from any point of either path of the other
+   robot. *)
+Theorem paths_never_meet t i j s r : part s -> part r ->
+  floor <= dist (path_at q t j r) (path_at p t i s).
+Proof.
+  intros Hs Hr. destruct (invariant_holds t) as [A [Bp Bq]].
+  apply (paths_apart p q kp kq); auto.
+  - apply (bounds_sound p q kp Kp Fp t A Bp).
+  - apply (bounds_sound q p kq Kq Fq t (apart_sym p q t A) Bq).
+Qed.
+
+End Invariance.
 End Pair.

@@ -135,7 +135,7 @@ Definition stored_together k b := (1 - share) * gap k b - taken k b - slack.
 
 Definition ball k t := norm (seen k t) - keep - reach k t.
 
-Record follows (p q : course) (k : view) : Prop := {
+Record keeps_gap (p q : course) (k : view) : Prop := {
   bounds : forall t, decides p t ->
     (gap k t <= ball k t /\ spare k t = 0%nat)
     \/ gap k t <= - 2 * slack
@@ -151,11 +151,15 @@ Record follows (p q : course) (k : view) : Prop := {
     place p (S t) = place p t /\ 0 <= taken k t;
   counts : forall t, decides p t -> reach k t < norm (seen k t) ->
     towards (direction k t) (motion p t) (slant k t) <= taken k t
-    \/ (fresh k t = true /\ narrow (direction k t) (motion p t) (tilt k t) <= taken k t);
+    \/ narrow (direction k t) (motion p t) (tilt k t) <= taken k t;
   limits : forall t, decides p t ->
     taken k t <= Rmax (share * gap k t + slack) 0
     \/ (norm (motion p t) <= fastest /\ taken k t <= gap k t - fastest)
-    \/ (paused q t /\ taken k t <= Rmax (gap k t + slack) 0);
+    \/ (paused q t /\ taken k t <= Rmax (gap k t + slack) 0)
+}.
+
+Record follows (p q : course) (k : view) : Prop := {
+  gap_kept :> keeps_gap p q k;
   keeps_off : forall t, decides p t -> fresh k t = true ->
     norm (aside k t) <= 1 /\ clear k t <= dot (aside k t) (begun k t)
     /\ clear k t <= dot (aside k t) (seen k t)
