@@ -11,13 +11,17 @@
    [all_earlier]     Each decision that is before an event of [p] is earlier than the decision of
                      [p]; it is a window earlier, unless [p] has heard it.
    [heard_is_before] Each decision that [p] has heard is before the event.
-   [count_by_age]    If the last decision in use is [age] old, then the other robot has decided at
-                     most [age / step] times since.
+   [count_by_age]    If the latest beacon is [age] old, then the other robot has decided at most
+                     [(age - window) / step] times since.
+   [fresh_by_age]    So its last decision is known if [age] is below [step + window].
    [stored_count]    In [k] steps of [p] that take less than [(k + 1) * step - window], the other
                      robot decides at most [k + 1] times. One spare decision thus covers all
                      jitter: the first stored bound is halved twice, each later one once.
    [clocks_run]      At each instant both bodies are on their paths before or after one event, as
-                     [Never.runs] demands. *)
+                     [Never.runs] demands.
+   [never_touch_by_the_clock]
+                     All together: two bodies that decide at these instants, hear each other in
+                     any pattern and follow the rule never touch. *)
 From Coq Require Import Reals Lra Lia Arith Psatz.
 Require Import Space Rule Invariant Hearing Never.
 Open Scope R_scope.
@@ -158,12 +162,26 @@ Proof.
     pose proof (not_before t D). pose proof (later others others_steps (theirs t) j L'). lra.
 Qed.
 
-(* [j] is the decision whose beacon is in use. *)
+(* [j] is the latest decision that [p] has heard; [q] has made [n] others since. *)
 Theorem count_by_age t j n : theirs t = (S j + n)%nat ->
-  INR n * step <= own (mine t) - others j.
+  (forall j', (j < j')%nat -> p_heard (mine t) j' = false) ->
+  n = 0%nat \/ INR n * step + window <= own (mine t) - others j.
 Proof.
-  intros H. pose proof (steps_apart others others_steps n j) as A.
-  assert (L : (j + n < theirs t)%nat) by lia. pose proof (before t _ L). lra.
+  intros H Latest. destruct n as [| n]; [left; reflexivity | right].
+  pose proof (steps_apart others others_steps (S n) j) as A.
+  assert (L : (j + S n < theirs t)%nat) by lia.
+  destruct (all_earlier t) as [G _]. destruct (G _ L) as [E | E]; [lra |].
+  rewrite Latest in E by lia. discriminate.
+Qed.
+
+Corollary fresh_by_age t j : (j < theirs t)%nat ->
+  (forall j', (j < j')%nat -> p_heard (mine t) j' = false) ->
+  own (mine t) - others j < step + window -> theirs t = S j.
+Proof.
+  intros L Latest Age. destruct (count_by_age t j (theirs t - S j)) as [E | E]; [lia | exact Latest
+    | lia |].
+  destruct (theirs t - S j)%nat as [| n] eqn:N; [lia |].
+  rewrite S_INR in E. pose proof (pos_INR n). nra.
 Qed.
 
 Theorem stored_count b t k m : p_decides b -> theirs t = (theirs b + m)%nat ->
@@ -303,6 +321,49 @@ Proof.
   induction t as [| t IH]; [reflexivity |]. cbn [decisions acts course_of]. rewrite IH.
   destruct (number_mine t) as [E | E]; rewrite E; [rewrite Nat.eqb_refl; reflexivity |].
   rewrite (proj2 (Nat.eqb_neq _ _)) by lia. reflexivity.
+Qed.
+
+Lemma theirs_is_decisions ends pauses t : decisions (course_of ends pauses theirs) t = theirs t.
+Proof.
+  induction t as [| t IH]; [reflexivity |]. cbn [decisions acts course_of]. rewrite IH.
+  destruct (number_theirs t) as [E | E]; rewrite E; [rewrite Nat.eqb_refl; reflexivity |].
+  rewrite (proj2 (Nat.eqb_neq _ _)) by lia. reflexivity.
+Qed.
+
+(* All together: two bodies that move by their clocks and follow the rule never touch. *)
+Theorem never_touch_by_the_clock radii margin error slack fastest
+    ends_p ends_q pauses_p pauses_q (body body' : R -> vec) kp kq
+    heard_p heard_q count_p count_q :
+  let p := course_of ends_p pauses_p mine in
+  let q := course_of ends_q pauses_q theirs in
+  0 < radii -> 0 <= slack -> 0 <= error -> 0 <= fastest -> error + 2 * slack <= margin ->
+  pauses_stand ends_p pauses_p -> pauses_stand ends_q pauses_q ->
+  (forall now, exists i, made own now i /\ on_its_path ends_p i (body now)) ->
+  (forall now, exists j, made others now j /\ on_its_path ends_q j (body' now)) ->
+  (forall i, dist (ends_p (S i)) (ends_p i) <= fastest) ->
+  (forall j, dist (ends_q (S j)) (ends_q j) <= fastest) ->
+  hears fastest error p q kp heard_p count_p -> hears fastest error q p kq heard_q count_q ->
+  follows (1 / 2) (radii + margin - error) slack fastest p q kp ->
+  follows (1 / 2) (radii + margin - error) slack fastest q p kq ->
+  radii + margin <= dist (ends_q 0%nat) (ends_p 0%nat) ->
+  forall now, radii <= dist (body' now) (body now).
+Proof.
+  intros p q R0 S0 E0 F0 M Pp Pq Bp Bq Lp Lq Hp Hq Fp Fq H0.
+  destruct (clocks_run ends_p ends_q pauses_p pauses_q body body' Pp Pq Bp Bq)
+    as [Mp [Mq Run]]. fold p in Mp, Run. fold q in Mq, Run.
+  assert (Slow : forall ends pauses number, number 0%nat = 0%nat ->
+    (forall t, number (S t) = number t \/ number (S t) = S (number t)) ->
+    (forall i, dist (ends (S i)) (ends i) <= fastest) ->
+    slow fastest (course_of ends pauses number)).
+  { intros ends pauses number Z N L. split; [simpl; rewrite Z; reflexivity |].
+    intros t. unfold motion. cbn [place course_of]. destruct (N t) as [-> | ->]; [| apply L].
+    rewrite sub_self, norm_zero. exact F0. }
+  apply (never_at_any_instant margin error slack fastest S0 E0 F0 M R body body' radii p q kp kq
+    heard_p heard_q count_p count_q); try assumption.
+  - split; [exact Mp |]. split; [| split; assumption].
+    apply Slow; [reflexivity | exact number_mine | exact Lp].
+  - split; [exact Mq |]. split; [| split; assumption].
+    apply Slow; [reflexivity | exact number_theirs | exact Lq].
 Qed.
 
 End Clock.

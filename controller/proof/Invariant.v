@@ -344,7 +344,8 @@ Proof.
       { unfold bank, room, stored in *. rewrite half in G.
         destruct (Rle_dec (gap k b + 2 * slack) 0) as [Z | Z].
         - exfalso. assert (0 < (1 - 1 / 2) ^ halved k t) by (apply pow_lt; lra). nra.
-        - eapply Rle_trans; [| apply (power_halved (spare k b) (spare k t) (halved k t) n); lra || lia].
+        - eapply Rle_trans;
+            [| apply (power_halved (spare k b) (spare k t) (halved k t) n); lra || lia].
           apply Rmult_le_compat_l; [left; apply power_pos | lra]. }
       split; [lra |]. intros _ s Hs. destruct (Bp s Hs) as [B1 [B2 _]].
       destruct n as [| n].
