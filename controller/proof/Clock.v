@@ -6,7 +6,7 @@
    assumed of the delay.
 
    Two decisions are at one event if neither used the other's beacon and they are less than a
-   window apart. Twice the window is at most a step.
+   window apart. The window serves the proof only: it can be any part of a step up to one half.
 
    [all_earlier]     Each decision that is before an event of [p] is earlier than the decision of
                      [p]; it is a window earlier, unless [p] has heard it.

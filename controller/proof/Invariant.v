@@ -272,7 +272,10 @@ Lemma retreats_from t s : decides p t -> fresh k t = true -> part s -> retreats 
 Proof.
   intros D Hf Hs [Rb Rs] Hw. destruct (path_known t s D Hf Hs) as [s' [[S0 S1] E]].
   destruct (E (motion p t)) as [_ E1]. rewrite dot_point in E1.
-  rewrite (dot_sym (begun k t)) in Rb. rewrite (dot_sym (seen k t)) in Rs.
+  assert (B : dot (motion p t) (begun k t) + reach k t * norm (motion p t) <= 0)
+    by (rewrite dot_sym; exact Rb).
+  assert (N : dot (motion p t) (seen k t) + reach k t * norm (motion p t) <= 0)
+    by (rewrite dot_sym; exact Rs).
   apply approach_le; [assumption |]. rewrite Rmult_0_r, dot_sym. nra.
 Qed.
 
