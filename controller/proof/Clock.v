@@ -23,7 +23,7 @@
                      All together: two bodies that decide at these instants, hear each other in
                      any pattern and follow the rule never touch. *)
 From Coq Require Import Reals Lra Lia Arith Psatz.
-Require Import Space Rule Invariant Hearing Never.
+Require Import Space Rule Course Invariant Hearing Never.
 Open Scope R_scope.
 
 Section Clock.

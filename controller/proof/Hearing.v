@@ -12,7 +12,7 @@
    Losses, delays and the order of packets do not matter: each packet may be the last one that is
    used. *)
 From Coq Require Import Reals Lra Lia Arith Psatz.
-Require Import Space Rule Invariant.
+Require Import Space Rule Course.
 Open Scope R_scope.
 
 (* Where the path before event t began. *)

@@ -15,7 +15,7 @@
                              The rule needs no plane ([keeps_off]) in this case.
    [exactly_never_touch]     Without errors and without slack no margin is needed. *)
 From Coq Require Import Reals Lra Lia Arith Psatz.
-Require Import Space Rule Invariant Hearing.
+Require Import Space Rule Course Invariant Hearing.
 Open Scope R_scope.
 
 (* What the assumptions say of one robot towards another one. *)

@@ -17,7 +17,7 @@ const COQ: Tools = Tools {
 };
 const FOLDER: &str = "controller/proof";
 /// The files, each after those that it needs.
-const FILES: [&str; 8] = ["Space", "Rule", "Invariant", "Hearing", "Never", "Clock", "Brake", "Touch"];
+const FILES: [&str; 9] = ["Space", "Rule", "Course", "Invariant", "Hearing", "Never", "Clock", "Brake", "Touch"];
 /// The files up to this one are compiled with a planted error; the others have no theorem on the
 /// rule, or robots that break it.
 const LAST_OF_THEOREM: &str = "Clock";
