@@ -3,14 +3,14 @@
    [GapLimit::share] allows a velocity if
      closing * step + growth * brake + closing * brake / 2 <= left.
    closing: speed at which the robot approaches the other one; brake: time to brake to rest;
-   growth: speed at which the gap shrinks meanwhile; left: what the robot may take of the gap.
+   growth: speed at which the gap shrinks meanwhile; left: the approach that is allowed.
 
    Straight braking reduces all closing speeds by one factor, so this lemma holds for all
    neighbours at once.
 
-   Not covered: [left] is fixed here, minus what the step took. In the controller the gap is
-   measured or stored again in each step, and half of it counts. So this file does not prove that
-   two robots with inertia never touch; the other files demand that a robot can stand in each
+   Not covered: [left] is fixed here, except for the part that a step used. In the controller the
+   gap is measured or stored again in each step, and half of it counts. So this file does not prove
+   that two robots with inertia never touch; the other files demand that a robot can stand in each
    decision. *)
 From Coq Require Import Reals Lra Psatz.
 Open Scope R_scope.

@@ -142,7 +142,7 @@ Proof.
   lra.
 Qed.
 
-(* What robot [p] has heard of robot [q]; [heard t] is the event of the last beacon in use. *)
+(* The beacons that robot [p] uses; [heard t] is the event of the last one. *)
 Definition hears p q k (heard count : nat -> nat) := forall t, decides p t ->
   (fresh k t = true -> reach k t = error
      /\ norm (sub (sub (origin q t) (place p t)) (begun k t)) <= error

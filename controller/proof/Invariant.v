@@ -23,10 +23,10 @@ Hypothesis keep_large : 2 * slack < keep.
 Definition floor := keep - 2 * slack.
 Definition room k t := gap k t + 2 * slack.
 
-(* The room of a decision, enlarged by what is spare. *)
+(* The room of a decision, doubled for each spare decision of the other robot. *)
 Definition bank k t := 2 ^ spare k t * room k t.
 
-(* What is free between the ends of the paths. *)
+(* The free distance between the ends of the paths. *)
 Definition free p q t := dist (place q t) (place p t) - floor.
 
 Definition apart p q t := forall s r, part s -> part r ->
@@ -154,7 +154,7 @@ Qed.
 Lemma dot_point u a b s : dot u (point a b s) = (1 - s) * dot u a + s * dot u b.
 Proof. unfold point, dot, add, sub, scale; simpl; ring. Qed.
 
-(* What the plane leaves is free. *)
+(* The distance that the plane leaves is free. *)
 Lemma aside_left t s r : decides p t -> fresh k t = true -> part s ->
   clear k t - reach k t - r * dot (aside k t) (motion p t)
     <= dist (old_path q t s) (add (place p t) (scale r (motion p t))).
@@ -318,7 +318,7 @@ Proof.
   pose proof (both_fair (own t) (other t) (free p q t) Fr Ho Ht s r Hs Hr). lra.
 Qed.
 
-(* The other robot takes at most half, since this one's last decision is not a pause. *)
+(* The other robot takes at most half, since the last decision of [p] is not a pause. *)
 Lemma other_half t b : apart p q t -> sound q p kq t -> acts q t = true ->
   decides p b -> (b <= t)%nat -> (forall u, (b < u <= t)%nat -> acts p u = false) ->
   other t <= free p q t / 2.

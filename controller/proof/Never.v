@@ -18,7 +18,7 @@ From Coq Require Import Reals Lra Lia Arith Psatz.
 Require Import Space Rule Course Invariant Hearing.
 Open Scope R_scope.
 
-(* What the assumptions say of one robot towards another one. *)
+(* The assumptions on one robot towards another one. *)
 Definition safe radii margin error slack fastest p q k heard count :=
   moves p /\ slow fastest p /\ hears fastest error p q k heard count
   /\ follows (1 / 2) (radii + margin - error) slack fastest p q k.
@@ -73,7 +73,7 @@ Proof.
   apply (two_robots_never_touch radii p q kp kq heard_p heard_q count_p count_q); assumption.
 Qed.
 
-(* [course i j]: what robot [i] does, in the order of events of the pair [i], [j]. *)
+(* [course i j]: the decisions of robot [i], in the order of events of the pair [i], [j]. *)
 Theorem no_two_robots_touch (robot instant : Type) (body : robot -> instant -> vec)
     (radius : robot -> R) (course : robot -> robot -> Rule.course)
     (knowledge : robot -> robot -> view) (heard count : robot -> robot -> nat -> nat) :

@@ -10,8 +10,8 @@
    The rule for a decision that is not a pause:
 
    [bounds]   The gap is at most that of the ball in which the other robot is, or nothing, or the
-              bound stored by the own last decision. What is stored is half of the gap minus what
-              the own motion takes; a motion that recedes adds nothing.
+              bound stored by the own last decision: half of the gap minus the approach of the own
+              motion. A motion that recedes adds nothing.
    [stands]   A robot stands if the other robot can be at its own place.
    [counts]   [taken] is the largest approach to any place where the other robot may be.
    [limits]   [taken] is at most half of the gap. It may be the whole gap if the other robot is
@@ -25,7 +25,7 @@ From Coq Require Import Reals Lra Arith.
 Require Import Space.
 Open Scope R_scope.
 
-(* What a robot does. [place c t]: the end of its path before event t. [base c t]: a point of
+(* The decisions of a robot. [place c t]: the end of its path before event t. [base c t]: a point of
    that path which it has not left behind before event t. [pauses]: it stands, and it forgets all
    stored bounds. *)
 Record course := Course {
@@ -67,8 +67,8 @@ Definition last c b t := (b < t)%nat /\ forall u, (b < u < t)%nat -> acts c u = 
 Definition paused c t := exists b, (b <= t)%nat /\ acts c b = true /\ pauses c b = true
   /\ forall u, (b < u <= t)%nat -> acts c u = false.
 
-(* What a robot knows of another one at its decision of event t. Places are offsets from the own
-   place.
+(* The knowledge of a robot about another one at its decision of event t. Places are offsets from
+   the own place.
 
    fresh:  whether it knows the other robot's last decision;
    seen:   fresh: the end of the other robot's path; else the centre of a ball that has all of
@@ -117,7 +117,7 @@ Definition direction k t := unit (seen k t).
 Definition slant k t := reach k t / norm (seen k t).
 Definition tilt k t := reach k t / (norm (seen k t) - reach k t / 2).
 
-(* The gap to the other robot's path along [aside], and what the own motion leaves of it. *)
+(* The gap to the other robot's path along [aside], and its rest after the own motion. *)
 Definition beyond k t := clear k t - reach k t - keep.
 Definition left_aside p k t := beyond k t + 2 * slack - dot (aside k t) (motion p t).
 

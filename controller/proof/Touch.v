@@ -1,4 +1,4 @@
-(* What goes wrong with a weaker rule: concrete robots that touch.
+(* Weaker rules let robots touch: concrete robots that do.
 
    [greater_share_touches]  Both robots take a share above one half of the gap between them. Both
                             know each other exactly, and touch at the end of one motion.

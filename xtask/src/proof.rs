@@ -27,7 +27,7 @@ const AXIOMS: [&str; 3] = ["sig_forall_dec", "sig_not_dec", "functional_extensio
 /// An axiom in the modules that come along with the real numbers. No theorem uses it.
 const LOADED: &str = "classic";
 
-/// An error in the rule or in what is assumed.
+/// An error in the rule or in an assumption.
 struct Plant {
     name: &'static str,
     /// One of [`FILES`].
