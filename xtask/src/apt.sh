@@ -48,6 +48,7 @@ for name in $4; do
 # Starts a program that cargo xtask unpacked, with its libraries.
 export LD_LIBRARY_PATH='$libraries'"\${LD_LIBRARY_PATH:+:\$LD_LIBRARY_PATH}"
 export WIRESHARK_DATA_DIR='$root/usr/share/wireshark' FONTCONFIG_FILE='$root/fonts.conf'
+export OCAMLFIND_CONF='$root/etc/ocamlfind.conf'
 exec '$program' "\$@"
 END
   chmod +x "$tools/bin/$name"

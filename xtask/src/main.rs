@@ -22,6 +22,7 @@ mod mutants;
 mod plants;
 mod prelude;
 mod project;
+mod proof;
 mod python;
 mod repo;
 mod report;
@@ -121,6 +122,8 @@ enum Command {
     Plants,
     /// Robots that negotiate on all maps of POGEMA's tables
     Pogema,
+    /// The proof that robots never touch, and errors planted in it: Coq refuses each
+    Proof,
     /// The package for Python: its wheel, types and tests
     Python,
     /// Fetch the emulators of the parts
@@ -160,6 +163,7 @@ fn main() -> ExitCode {
         Command::New => project::run(s, true),
         Command::Plants => plants::run(s, true),
         Command::Pogema => python::pogema(s, true),
+        Command::Proof => proof::run(s),
         Command::Python => python::package(s),
         Command::Qemu => emulate::fetch(s),
         Command::Size(options) => size::run(s, &options),

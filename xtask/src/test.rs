@@ -4,7 +4,7 @@
 use crate::device::PARTS;
 use crate::prelude::*;
 use crate::repo::BLESS;
-use crate::{bench, c, emulate, firmware, mpi, mutants, plants, project, python, size, soak, swarms};
+use crate::{bench, c, emulate, firmware, mpi, mutants, plants, project, proof, python, size, soak, swarms};
 
 /// Properties are tried on the same random cases each time, so that a failure is the change's;
 /// `cargo test` alone takes new ones.
@@ -50,6 +50,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     s.report.step("ten robots of a formation as firmware, 1000 steps", || emulate::run_ten(&s.repo));
     // Cargo takes a copy of the firmware for the same packages, and builds those again afterwards.
     plants::run(s, false);
+    proof::run(s);
     soak::run_short(s);
     firmware::example(s);
     project::run(s, is_all);
