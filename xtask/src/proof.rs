@@ -22,6 +22,10 @@ const FILES: [&str; 9] = ["Space", "Rule", "Course", "Invariant", "Hearing", "Ne
 /// rule, or robots that break it.
 const LAST_OF_THEOREM: &str = "Clock";
 
+/// The rule in Rust, and the test that compares it with the hypotheses of the theorems.
+const RULE: &str = "controller/src/neighbor/gap_limit.rs";
+const TIE: &str = "test --locked --package staya-controller --no-default-features --features wire --lib hypotheses";
+
 /// The axioms of Coq's real numbers, which the theorems use.
 const AXIOMS: [&str; 3] = ["sig_forall_dec", "sig_not_dec", "functional_extensionality_dep"];
 /// An axiom in the modules that come along with the real numbers. No theorem uses it.
@@ -102,8 +106,93 @@ const PLANTS: [Plant; 20] = [
         wrong: "Hypothesis window_short : window <= step." },
 ];
 
-/// Compiles the proof, checks it again, prints its axioms, and plants the errors.
+/// Each part of the rule in Rust: the program's text, and an error.
+#[rustfmt::skip]
+const CHANGES: [(&str, &str, &str); 15] = [
+    ("51 % of the gap to a robot that is heard",
+        "((gap * S::HALF).min(gap - other_m), S::ZERO)",
+        "((gap * S::from_milli(510)).min(gap - other_m), S::ZERO)"),
+    ("51 % of the gap to a silent robot",
+        "(gap * S::HALF, comes_mps",
+        "(gap * S::from_milli(510), comes_mps"),
+    ("51 % of a stored bound",
+        "other.gap_m * S::HALF - taken_mps",
+        "other.gap_m * S::from_milli(510) - taken_mps"),
+    ("first bound halved once",
+        "let is_first = !self.is_synchronous && gap <= ball_m;",
+        "let is_first = gap > ball_m;"),
+    ("99 % of the growth",
+        "inflation.growth_mps * silent_s;",
+        "inflation.growth_mps * silent_s * S::from_milli(990);"),
+    ("sine alone",
+        "closing * self.cos + side * self.slant }",
+        "closing + side * self.slant }"),
+    ("cosine inside the cone",
+        "side * self.cos <= closing * self.slant;",
+        "side < S::ZERO;"),
+    ("whole gap to a silent robot that does not give way",
+        "(gap - comes_mps * body.step_s, comes_mps",
+        "(gap, comes_mps"),
+    ("tolerance not subtracted",
+        "gap.max(kept_m - S::from_micro(TOLERANCE_UM) * S::TWO)",
+        "gap.max(kept_m)"),
+    ("receding counted out of phase",
+        "taken_mps = taken_mps.max(S::ZERO);",
+        "taken_mps = taken_mps.max(-S::ONE);"),
+    ("path in use ignored",
+        "limit.left_m = limit.left_m.min(gap_m);",
+        "limit.left_m = limit.left_m.max(gap_m);"),
+    ("retreat from the nearest point alone",
+        "if gap_m < S::ZERO { end_m - told_m } else { nearest_m }",
+        "nearest_m"),
+    ("no robot is hidden",
+        "is_silent && reach_m >= distance)",
+        "is_silent && reach_m < S::ZERO)"),
+    ("place without rounding",
+        "let mut reach_m = S::from_micro(OFFSET_ERROR_UM);",
+        "let mut reach_m = S::from_micro(OFFSET_ERROR_UM >> 4);"),
+    ("lost robot exactly at its place",
+        "if other.is_lost() { other.gap_m } else { S::ZERO };",
+        "S::ZERO;"),
+];
+
+/// Compiles the proof, checks it again, prints its axioms, plants the errors, and plants errors in
+/// the rule in Rust.
 pub fn run(s: &mut Session) {
+    theorems_hold(s);
+    for change in &CHANGES {
+        s.report.step(&format!("noticed in Rust: {}", change.0), || is_noticed(&s.repo, change));
+    }
+}
+
+/// Whether a test finds a decision that breaks a hypothesis, if the rule in Rust is changed.
+fn is_noticed(repo: &Repo, (_, right, wrong): &(&str, &str, &str)) -> Result<()> {
+    let folder = repo.target.join("proof/rust");
+    let mut times = 0;
+    repo.copy(&folder, |file, bytes| {
+        if file != Path::new(RULE) {
+            return bytes;
+        }
+        let text = String::from_utf8_lossy(&bytes);
+        times = text.matches(right).count();
+        text.replace(right, wrong).into_bytes()
+    })?;
+    ensure!(times == 1, "{RULE}: {times} times `{right}`: bring CHANGES up to date");
+    let mut test = repo.cargo(TIE);
+    test.current_dir(&folder).env("CARGO_TARGET_DIR", repo.target.join("proof/rust-target"));
+    test.env("CARGO_PROFILE_DEV_OPT_LEVEL", "1");
+    println!("$ {}", shown(&test));
+    let said = test.output().context("cannot start cargo")?;
+    let said = String::from_utf8_lossy(&said.stdout).into_owned() + &String::from_utf8_lossy(&said.stderr);
+    if said.contains("1 failed") {
+        return Ok(());
+    }
+    print!("{said}");
+    ensure!(said.contains("1 passed"), "the test does not run");
+    bail!("the test still passes with `{wrong}`")
+}
+
+fn theorems_hold(s: &mut Session) {
     let whole = s.repo.target.join("proof/whole");
     let is_compiled = s.report.step("the proof that robots never touch", || {
         COQ.prepare(&s.repo)?;
@@ -271,6 +360,14 @@ mod tests {
         for plant in &PLANTS {
             let text = files::read(&folder().join(format!("{}.v", plant.file))).expect(plant.file);
             assert_ne!(planted(plant, &text).expect(plant.name), text);
+        }
+    }
+
+    #[test]
+    fn every_change_has_its_place() {
+        let text = files::read(&folder().join("../../").join(RULE)).expect(RULE);
+        for (name, right, wrong) in CHANGES {
+            assert!(text.matches(right).count() == 1 && right != wrong, "{name}: `{right}`");
         }
     }
 
