@@ -12,7 +12,7 @@ use staya_controller::neighbor::Sighting;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Frame;
 
-/// What all decisions of a tick have in common.
+/// Inputs that all decisions of a tick have in common.
 pub(super) struct Tick<'a> {
     pub(super) tick: u32,
     pub(super) ground: &'a dyn Ground,
@@ -30,8 +30,8 @@ impl Tick<'_> {
         if has_just_restarted { inbox.cleared() } else { inbox }
     }
 
-    /// What a robot takes in its decision: frames, their length in bytes, and the bytes behind
-    /// them. If earlier bytes wait, this tick's frames are among the bytes behind those.
+    /// This tick's arrivals for a decision: frames, their length in bytes, and the bytes behind
+    /// them. If earlier bytes wait, all arrivals are bytes, so that their order stays.
     pub(super) fn delivered<'b>(
         &'b self,
         index: usize,
@@ -68,7 +68,7 @@ impl Tick<'_> {
     }
 }
 
-/// Buffers of a thread, and what its robots have in common.
+/// Buffers of a thread, and settings of all robots.
 struct Scratch<'a> {
     timing: &'a Timing,
     is_mute: bool,
@@ -81,7 +81,7 @@ struct Scratch<'a> {
 }
 
 impl Tick<'_> {
-    /// Keeps what arrives until the next decision.
+    /// Stores the arrivals of a tick in which the robot is not due.
     fn wait(&self, index: usize, computer: &mut OnboardComputer) {
         let inbox = self.inbox(index, computer);
         inbox.pieces().for_each(|bytes| computer.mail.extend_from_slice(bytes));

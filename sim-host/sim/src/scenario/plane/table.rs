@@ -344,7 +344,7 @@ table! {
         /// Silence after which a lost robot counts as standing even if most are lost, seconds.
         pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
         /// How long a robot stands and listens after its start, seconds. Default: two beacon
-        /// periods and the delay of the radio.
+        /// periods, the delay of the radio and the longest one of a late decision.
         pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
         /// Whether a robot that has not heard another one stands. Default: false.
         pub expects_others: bool = false;
