@@ -36,8 +36,8 @@ table! {
         pub drift_ppm: f64 = 0.0, 0.0..=100_000.0, "parts per million";
         /// Share of the decisions that come late, 0 to 1. Default: 0.
         pub late: f64 = 0.0, 0.0..=1.0, "(a share)";
-        /// Longest delay of a late decision, a tick or more; the following decisions are as much
-        /// later. Required if `late` is above 0.
+        /// Longest delay of a late decision, seconds, a tick or more; it delays the later decisions
+        /// too. Required if `late` is above 0.
         pub late_s: Option<f64>, 0.0..=600.0, "seconds";
     }
 }
@@ -97,8 +97,8 @@ impl Clocks {
         self.late_ticks.saturating_mul(self.tick_us)
     }
 
-    /// Tick of a robot's first decision, below [`step_ticks`](Self::step_ticks) unless `own` is its
-    /// phase.
+    /// Tick of a robot's first decision, below [`step_ticks`](Self::step_ticks); `own` is the phase
+    /// that the scenario gives it.
     #[must_use]
     pub fn phase_ticks(&self, seed: u64, robot: RobotId, own: Option<u32>) -> u32 {
         own.unwrap_or_else(|| match self.phases {
@@ -149,8 +149,9 @@ impl Clocks {
     /// Age with which robots count a beacon when they use it first, microseconds, if the radio
     /// takes `delay_us` at most. A packet arrives in the next tick or later.
     ///
-    /// Robots in step use a beacon in the tick of its arrival. Others use it up to a step later,
-    /// so ages are rounded to whole steps: one step for a delay up to half a step.
+    /// Robots that decide in each tick use a beacon in the tick of its arrival. Other robots use it
+    /// up to a step later. Their ages are rounded to whole steps: one step for a delay up to half a
+    /// step, two for a delay up to one and a half.
     #[must_use]
     pub fn latency_us(&self, delay_us: u32) -> u32 {
         let arrival = u64::from(delay_us.div_ceil(self.tick_us.max(1)).max(1));
