@@ -202,3 +202,8 @@ fn golden_six_discs() {
 fn golden_twenty_discs() {
     check("twenty-discs", None);
 }
+
+#[test]
+fn golden_out_of_phase() {
+    check("out-of-phase", None);
+}

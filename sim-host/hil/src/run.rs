@@ -115,6 +115,11 @@ pub(crate) fn drive(
     if scenario.sensing().is_some() {
         bail!("plane.sensing is not available on devices; remove it, or run without devices");
     }
+    if !scenario.clocks.is_synchronous() {
+        bail!(
+            "[clocks] is not available on devices, which decide in each tick; remove it and phase_s, or run without devices"
+        );
+    }
     if scenario.trust.keys.is_some() {
         bail!("{}: devices do not support keys; remove [authentication]", scenario.name);
     }

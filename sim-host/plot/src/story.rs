@@ -207,12 +207,12 @@ impl<'a> Story<'a> {
         else {
             return Vec::new();
         };
-        let step_s = setup.group(robot).abilities.step_s;
+        let tick_s = self.scenario.tick_s();
         let goal = |(number, place)| {
             let mut orders =
                 setup.orders.iter().filter(|order| usize::from(order.index) == number && order.tick <= tick);
             let (since, place) = orders.next_back().map_or((0, place), |order| (order.tick, &order.target));
-            moved(place.position_m, place.velocity_mps, f64::from(tick - since) * step_s)
+            moved(place.position_m, place.velocity_mps, f64::from(tick - since) * tick_s)
         };
         start.places.iter().enumerate().map(goal).collect()
     }

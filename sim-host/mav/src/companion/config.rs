@@ -216,7 +216,7 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
     };
     let tick = format!("its tick of {} s is too long for vehicles", scenario.tick_s());
     let radius = format!("route.radius {} is too large", scenario.laws.route.params.radius);
-    let faults: [(bool, &str, &str); 6] = [
+    let faults: [(bool, &str, &str); 7] = [
         (scenario.tick_us > 500_000, &tick, "give it tick_s = 0.5 or less; 0.1 is good"),
         (
             !plane.orders.is_empty(),
@@ -229,6 +229,7 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
             "remove it; intruders are simulated only",
         ),
         (plane.torus_m.is_some(), "plane.torus_m is not supported on real vehicles", "remove plane.torus_m"),
+        (!scenario.clocks.is_synchronous(), "real vehicles have clocks of their own", "remove [clocks] and phase_s"),
         (scenario.sensing().is_some(), "autopilots report no detections of other vehicles", "remove plane.sensing"),
         (scenario.laws.route.params.radius > RADIUS, &radius, "give 16 or less"),
     ];

@@ -7,7 +7,7 @@ use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_sim::engine::{AnyGround, Grid, Ground as _, PlaneGround};
 use staya_sim::world::border::{Beside, DEPTH, Settled};
-use staya_sim::world::plane::{self, Clearance};
+use staya_sim::world::plane::{self, Clearance, CommandAge};
 use staya_sim::world::scouts::Scouts;
 
 pub trait Talk {
@@ -30,11 +30,11 @@ pub trait Part {
     /// Data that a neighbour needs about bodies near `region` before they move.
     fn wishes(&self, tick: u32, region: &Region, commands: &[Command<f32>]) -> Vec<u8>;
 
-    /// Moves the bodies. Returns the number of collisions of bodies of this rank with each other.
+    /// Moves the bodies by commands with their ages. Returns the number of collisions of bodies of this rank with each other.
     fn advance_beside(
         &mut self,
         tick: u32,
-        commands: &[Command<f32>],
+        commands: (&[Command<f32>], &[CommandAge]),
         own: &Region,
         wishes: &[(usize, Vec<u8>)],
         talk: &mut dyn Talk,
@@ -97,7 +97,7 @@ impl Part for Grid {
     fn advance_beside(
         &mut self,
         tick: u32,
-        commands: &[Command<f32>],
+        (commands, _): (&[Command<f32>], &[CommandAge]),
         own: &Region,
         wishes: &[(usize, Vec<u8>)],
         talk: &mut dyn Talk,
@@ -188,12 +188,12 @@ impl Part for PlaneGround {
     fn advance_beside(
         &mut self,
         tick: u32,
-        commands: &[Command<f32>],
+        (commands, ages): (&[Command<f32>], &[CommandAge]),
         _: &Region,
         _: &[(usize, Vec<u8>)],
         _: &mut dyn Talk,
     ) -> Result<u64, RankError> {
-        Ok(self.advance(tick, commands))
+        Ok(self.advance(tick, commands, ages))
     }
 
     fn touches(&self, one: &Region, other: &Region) -> bool {

@@ -217,7 +217,8 @@ impl<'a> Rank<'a> {
         self.wire.choose(|one, other| ground.hinders(one, other));
         let wishes = self.wire.halo(|region| ground.wishes(tick, region, commands))?;
         let (own, ground) = (self.wire.regions[self.wire.rank()].clone(), part_mut(&mut engine.ground));
-        engine.collisions += ground.advance_beside(tick, &engine.commands, &own, &wishes, &mut self.wire)?;
+        engine.collisions +=
+            ground.advance_beside(tick, (&engine.commands, &engine.ages), &own, &wishes, &mut self.wire)?;
         engine.observe();
         let keeping = self.keeping(true)?;
         self.engine.tick += 1;

@@ -7,6 +7,7 @@ use super::run::Rank;
 use staya_controller::agent::Command;
 use staya_sim::engine::hash::StateHash;
 use staya_sim::engine::{StateError, Status};
+use staya_sim::world::plane::CommandAge;
 use std::collections::{BTreeMap, HashMap};
 
 /// Positions per rank for a new division of the world.
@@ -101,6 +102,7 @@ impl Rank<'_> {
         engine.here.push(number);
         part_mut(&mut engine.ground).admit(number, robot.id);
         engine.commands.push(Command::Hold);
+        engine.ages.push(CommandAge::default());
         engine.statuses.push(Status::before(&robot));
         engine.chains.push(StateHash::new(robot.id));
         engine.positions_m.insert(index, [0.0; 2]);
@@ -118,6 +120,7 @@ impl Rank<'_> {
         engine.here.swap_remove(index);
         part_mut(&mut engine.ground).dismiss(index);
         engine.commands.swap_remove(index);
+        engine.ages.swap_remove(index);
         engine.statuses.swap_remove(index);
         engine.chains.swap_remove(index);
         engine.positions_m.swap(index, robots - 1);

@@ -129,6 +129,16 @@ const PLANE: &str = "name = 'plane'\nseed = 5\nticks = 80\ntick_s = 0.1\n[radio]
     [[intervention]]\nat_s = 1\ndo = { kind = 'solid', solid = { kind = 'circle', center_m = [1, 1], radius_m = 0.5 } }\n\
     [[intervention]]\nat_s = 2\ndo = { kind = 'goal', robot = 9, place_m = [2, 2, 0] }\n";
 
+/// Robots that decide out of phase and late, with bytes that wait while they move between ranks.
+const CLOCKS: &str = "name = 'clocks'\nseed = 5\nticks = 160\ntick_s = 0.02\n\
+    [clocks]\nstep_s = 0.1\nphases = 'random'\ndrift_ppm = 20000\nlate = 0.1\nlate_s = 0.2\n\
+    [radio]\nrange_m = 3\nloss = 0.1\ndelay_ms = 20\njitter_ms = 60\nduplicate = 0.1\nbit_error_rate = 0.0005\n\
+    [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nmax_acceleration_mps2 = 3\nlag_s = 0.1\n\
+    [plane.robots.circle]\ncount = 40\nradius_m = 5\nnoise_m = 0.1\n\
+    [[plane.intruder]]\nstart_m = [-6, 0]\nvelocity_mps = [1, 0]\nradius_m = 0.3\n\
+    [[fault]]\nrobot = 7\nat_s = 1.03\ndown_s = 0.51\n\
+    [[plane.order]]\nat_s = 1.13\nplace_m = [2, 1]\n";
+
 /// A changing map of which the robots have an outdated copy.
 const CHANGES: &str = "[scouting]\nradius = 9\nunknown = 0.2\nwrong = 0.2\npatch_cells = 3\n[[terrain.change]]\nat_s = 3\nevery_s = 9\n\
     for_s = 5\nclass = 0\nrectangle = { x = 12, y = 5, width = 6, height = 20 }\n\
@@ -142,7 +152,7 @@ const PLANE_CHANGES: &str = "name = 'plane-on-land'\nseed = 5\nticks = 120\ntick
 #[test]
 fn radio_faults_and_interventions_do_not_depend_on_ranks() {
     let changing = format!("{GRID}{CHANGES}");
-    for text in [GRID, PLANE, &changing, PLANE_CHANGES] {
+    for text in [GRID, PLANE, CLOCKS, &changing, PLANE_CHANGES] {
         compare(text.lines().next().unwrap_or_default(), &parse(text), &[2, 5]);
     }
 }
@@ -204,6 +214,7 @@ fn a_checkpoint_continues_identically_on_any_number_of_ranks() {
     let scenarios = [
         parse(GRID),
         parse(PLANE),
+        parse(CLOCKS),
         load("insider.toml", 60),
         load("revoked.toml", 60),
         load("six-robots.toml", 60),

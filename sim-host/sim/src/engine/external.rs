@@ -5,7 +5,9 @@ use crate::scenario::Scenario;
 use staya_controller::agent::{AnyInputs, Command, GuidanceSetup, OUTBOX, SafetySetup, Setup, Task};
 use staya_controller::time::Instant;
 
-/// Controllers outside this process. Robots are numbered as in the scenario.
+/// Controllers outside this process. Robots are numbered as in the scenario. They decide in each
+/// tick, so the scenario's clocks must be synchronous
+/// ([`Clocks::is_synchronous`](crate::scenario::Clocks::is_synchronous)).
 ///
 /// Each tick calls [`ExternalController::send`] for each robot that is up, steps the engine's own
 /// robots, and then calls [`ExternalController::collect`], so that all controllers work in
@@ -76,7 +78,7 @@ impl Engine {
             let moment = Tick { tick, ground: &*self.ground, radio: &self.radio, orders };
             let delivered = moment.inbox(index, computer).pieces();
             let inputs = moment.inputs(index, computer, &mut senses, delivered, &mut heard);
-            let now = computer.now(tick, self.tick_us);
+            let now = computer.clock.now(tick, self.robots[self.here[index] as usize].id, &self.timing);
             external.controllers.send(index, tick, now, &inputs);
         }
     }

@@ -7,6 +7,7 @@ use super::hash::grid_words;
 use super::state::{Reader, StateError, write};
 use crate::record::Motion;
 use crate::scenario::{Intervention, Robot, Scenario};
+use crate::world::plane::CommandAge;
 use crate::world::scouts::{Memory, Scouts};
 use crate::world::{Body, Misplaced, MoveRules, Refusal, World};
 use serde::{Deserialize, Serialize};
@@ -168,7 +169,7 @@ impl Ground for Grid {
         }
     }
 
-    fn advance(&mut self, tick: u32, commands: &[Command<f32>]) -> u64 {
+    fn advance(&mut self, tick: u32, commands: &[Command<f32>], _: &[CommandAge]) -> u64 {
         self.look();
         self.world.advance(tick, commands);
         self.world.count_collisions(tick)

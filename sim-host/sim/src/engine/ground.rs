@@ -5,7 +5,7 @@ use super::{Grid, PlaneGround, Status};
 use crate::record::Motion;
 use crate::scenario::{Intervention, Movement, Scenario};
 use crate::terrain::Terrain;
-use crate::world::plane::{Clearance, Disc, Solid};
+use crate::world::plane::{Clearance, CommandAge, Disc, Solid};
 use crate::world::{Misplaced, Refusal};
 use staya_controller::agent::{AgentConfig, AnyInputs, Command, Task, WAYPOINTS};
 use staya_controller::grid::Cell;
@@ -50,17 +50,18 @@ pub trait Ground: Send + Sync {
     /// Sensor data of the robot of body `index` at the start of `tick`; the inbox is empty.
     fn sense<'a>(&'a self, index: usize, tick: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32>;
 
-    /// Replaces `sightings` with the robots that body `index` detects at the start of `tick`.
-    fn sightings(&self, _index: usize, _tick: u32, sightings: &mut Vec<Sighting<f32>>) {
+    /// Replaces `sightings` with the robots that body `index` detects at the start of `tick`, if its
+    /// sensor is due then or was due in the `within_ticks` ticks that end there.
+    fn sightings(&self, _index: usize, _tick: u32, _within_ticks: u32, sightings: &mut Vec<Sighting<f32>>) {
         sightings.clear();
     }
 
     /// Motion of a body at the start of `tick`.
     fn motion(&self, index: usize, tick: u32) -> Motion;
 
-    /// Moves the bodies according to the commands. Returns the number of collisions after `tick`,
+    /// Moves the bodies according to the commands, which have these ages. Returns the number of collisions after `tick`,
     /// from the positions of the bodies alone.
-    fn advance(&mut self, tick: u32, commands: &[Command<f32>]) -> u64;
+    fn advance(&mut self, tick: u32, commands: &[Command<f32>], ages: &[CommandAge]) -> u64;
 
     /// State of a body after `tick`, for the trace hash.
     fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords;

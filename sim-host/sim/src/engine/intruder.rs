@@ -13,12 +13,14 @@ pub(super) struct Intruder {
     id: RobotId,
     wire: HostWire,
     sequence: u16,
+    /// Ticks between two beacons, as of the robots.
+    period_ticks: u32,
     outbox: Vec<u8>,
 }
 
 impl Intruder {
-    pub(super) fn new(id: RobotId, format: Format) -> Self {
-        Self { id, wire: radio::wire(format, None, 0), sequence: 0, outbox: Vec::new() }
+    pub(super) fn new(id: RobotId, format: Format, period_ticks: u32) -> Self {
+        Self { id, wire: radio::wire(format, None, 0), sequence: 0, period_ticks, outbox: Vec::new() }
     }
 
     fn disc<'a>(&self, intruders: &'a [Disc]) -> Option<&'a Disc> {
@@ -36,9 +38,10 @@ impl Transmitter for Intruder {
     }
 
     /// Prepares a beacon with position and velocity, of a robot that does not give way.
-    fn act(&mut self, _: u32, _: &[u8], intruders: &[Disc]) {
+    fn act(&mut self, tick: u32, _: &[u8], intruders: &[Disc]) {
         self.outbox.clear();
-        let Some(disc) = self.disc(intruders) else { return };
+        let is_due = tick.is_multiple_of(self.period_ticks);
+        let Some(disc) = self.disc(intruders).filter(|_| is_due) else { return };
         let milli = |x: f64| libm::round(x * 1000.0);
         let beacon = Beacon {
             position_mm: disc.position_m.map(|x| milli(x) as i32),

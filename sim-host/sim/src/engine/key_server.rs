@@ -11,8 +11,8 @@ use staya_controller::robot::RobotId;
 use staya_controller::wire::{KeyPhase, OperatorWire, Postcard, Wire as _};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-/// Ticks between two attempts to reach robots that have not answered.
-const AGAIN_TICKS: u32 = 5;
+/// Steps of the robots between two attempts to reach robots that have not answered.
+const AGAIN_STEPS: u32 = 5;
 /// Attempts after which all robots are contacted again, since one of them may have restarted.
 const ROUNDS: u32 = 20;
 
@@ -27,6 +27,7 @@ pub(super) struct KeyServer {
     /// Tick at which this phase ends even without all confirmations.
     until: u32,
     overlap_ticks: u32,
+    again_ticks: u32,
     held: BTreeMap<RobotId, (u16, KeyPhase)>,
     outbox: Vec<u8>,
 }
@@ -47,6 +48,7 @@ impl KeyServer {
             phase: KeyPhase::Forget,
             until: 0,
             overlap_ticks: keeping.overlap_ticks,
+            again_ticks: AGAIN_STEPS.saturating_mul(scenario.clocks.step_ticks),
             held: BTreeMap::new(),
             outbox: Vec::new(),
         })
@@ -105,10 +107,10 @@ impl Transmitter for KeyServer {
             self.until = tick + self.overlap_ticks;
             return;
         }
-        if !tick.is_multiple_of(AGAIN_TICKS) {
+        if !tick.is_multiple_of(self.again_ticks) {
             return;
         }
-        let tells_all = tick.is_multiple_of(AGAIN_TICKS * ROUNDS);
+        let tells_all = tick.is_multiple_of(self.again_ticks.saturating_mul(ROUNDS));
         let late = all.iter().filter(|robot| tells_all || !is_done(robot));
         let mut frame = heapless::Vec::<u8, 64>::new();
         for &robot in late {

@@ -1,7 +1,7 @@
 //! The simulation loop, with one [`Agent`] per robot. [`simulate`] runs a whole scenario.
 //!
-//! A tick ([`Engine::step`]) has two phases. In the first, all robots decide in parallel. Each
-//! robot sees only its own pose and cell, the land around it and the bytes that the radio
+//! A tick ([`Engine::step`]) has two phases. In the first, all robots that are due decide in
+//! parallel; `[clocks]` of a scenario says when they are, by default in each tick. Each robot sees only its own pose and cell, the land around it and the bytes that the radio
 //! delivered. In the second, the radio transmits the frames and the world moves the bodies. An
 //! action therefore affects other robots in the next tick at the earliest, and neither the number
 //! of threads nor the order of robots matters.
@@ -9,6 +9,8 @@
 mod attacker;
 mod body;
 mod checkpoint_interval;
+mod clock;
+mod decide;
 mod external;
 mod faults;
 mod grid;
@@ -33,6 +35,7 @@ mod witness;
 
 pub use crate::own_law::{Own, OwnLaw, add_law};
 pub use checkpoint_interval::CheckpointInterval;
+use decide::Tick;
 use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
@@ -47,25 +50,23 @@ pub use status::Status;
 
 use crate::metrics::waits::Waits;
 use crate::metrics::{Arrivals, FormationMeters, FormationQuality, Member, in_cells};
-use crate::radio::{self, HostWire, Inbox, Radio};
+use crate::radio::{self, HostWire, Radio};
 use crate::record::{Motion, PacketCounts, TickRow};
 use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
 use crate::world::Misplaced;
+use crate::world::plane::CommandAge;
+use clock::{Clock, Timing};
 use hash::StateHash;
 use operator::Operator;
 use rayon::prelude::*;
 use roster::Roster;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{
-    Agent, AgentConfig, AnyInputs, Command, Event, GridWorkspace, Inputs, NEIGHBORS, Outputs, Setup, Task,
-};
+use staya_controller::agent::{Agent, AgentConfig, Command, Event, NEIGHBORS, Setup, Task};
 use staya_controller::neighbor::Tracker;
 use staya_controller::robot::RobotId;
-use staya_controller::time::Instant;
 use staya_controller::wire::Ring;
 use std::collections::{HashMap, VecDeque};
-use std::iter;
 use std::ops::Range;
 pub use transmitter::Transmitter;
 use transmitters::transmitters;
@@ -86,53 +87,14 @@ pub struct OnboardComputer {
     outbox: Vec<u8>,
     #[serde(skip)]
     events: Vec<Event>,
+    /// Bytes that wait for its next decision: those of the operator, and if it is not due, all
+    /// that arrive.
     mail: Vec<u8>,
     boot: u8,
-    /// Tick at which its clock showed 0.
-    epoch: u32,
+    clock: Clock,
     down_until: u32,
     sent_bytes: u64,
     heard_bytes: u64,
-}
-
-impl OnboardComputer {
-    const fn now(&self, tick: u32, tick_us: u32) -> Instant {
-        Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
-    }
-}
-
-struct Tick<'a> {
-    tick: u32,
-    ground: &'a dyn Ground,
-    radio: &'a Radio,
-    /// Frames of the operator to all robots.
-    orders: &'a [u8],
-}
-
-impl Tick<'_> {
-    /// Received bytes, behind the decoded frames.
-    fn inbox<'b>(&'b self, index: usize, computer: &OnboardComputer) -> Inbox<'b> {
-        let inbox = self.radio.inbox(index);
-        // Frames that arrived while it was down are lost.
-        let has_just_restarted = computer.boot > 0 && computer.epoch == self.tick;
-        if has_just_restarted { inbox.cleared() } else { inbox }
-    }
-
-    /// The inputs with these received bytes, and the orders behind them.
-    fn inputs<'b, 'c>(
-        &'b self,
-        index: usize,
-        computer: &OnboardComputer,
-        senses: &'b mut Senses,
-        delivered: impl Iterator<Item = &'c [u8]>,
-        heard: &'b mut Vec<u8>,
-    ) -> AnyInputs<'b, f32> {
-        heard.clear();
-        delivered.for_each(|bytes| heard.extend_from_slice(bytes));
-        heard.extend_from_slice(self.orders);
-        heard.extend_from_slice(&computer.mail);
-        Inputs { inbox: heard, ..self.ground.sense(index, self.tick, senses) }
-    }
 }
 
 /// A running scenario. An operator may observe it and command its robots between ticks.
@@ -142,6 +104,7 @@ impl Tick<'_> {
 pub struct Engine {
     roster: Roster,
     tick_us: u32,
+    timing: Timing,
     #[doc(hidden)]
     pub tick: u32,
     /// All robots of the scenario, sorted by id.
@@ -166,6 +129,9 @@ pub struct Engine {
     pub computers: Vec<OnboardComputer>,
     #[doc(hidden)]
     pub commands: Vec<Command<f32>>,
+    /// Ages of the commands in this tick.
+    #[doc(hidden)]
+    pub ages: Vec<CommandAge>,
     #[doc(hidden)]
     pub statuses: Vec<Status>,
     #[doc(hidden)]
@@ -217,6 +183,7 @@ impl Engine {
         let mut engine = Self {
             roster: Roster::new(scenario, agents),
             tick_us: scenario.tick_us,
+            timing: Timing::new(scenario),
             tick: 0,
             faults: scenario.events.faults.clone(),
             changes: scenario.land.changes.clone(),
@@ -230,6 +197,7 @@ impl Engine {
             ground,
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],
+            ages: vec![CommandAge::default(); here.len()],
             statuses: Vec::new(),
             chains: here.iter().map(|&number| StateHash::new(robots[number as usize].id)).collect(),
             positions_m,
@@ -246,7 +214,11 @@ impl Engine {
             robots,
             here,
         };
-        engine.computers = (0..engine.here.len()).map(|index| engine.start(index, 0)).collect();
+        let computers = engine.here.iter().enumerate().map(|(index, &number)| {
+            let clock = engine.timing.first(scenario, number as usize);
+            OnboardComputer { clock, ..engine.start(index, 0) }
+        });
+        engine.computers = computers.collect();
         engine.statuses = engine.here.iter().map(|&number| Status::before(&engine.robots[number as usize])).collect();
         engine
     }
@@ -279,7 +251,7 @@ impl Engine {
             events: Vec::new(),
             mail: Vec::new(),
             boot,
-            epoch: self.tick,
+            clock: Clock::new(self.tick),
             down_until: self.tick,
             sent_bytes: 0,
             heard_bytes: 0,
@@ -314,7 +286,7 @@ impl Engine {
         let carried = self.radio.receive(self.tick, &self.positions_m, &[], sent);
         let packets = self.count(refused, carried);
 
-        self.collisions += self.ground.advance(self.tick, &self.commands);
+        self.collisions += self.ground.advance(self.tick, &self.commands, &self.ages);
         self.observe();
         let members: Vec<_> = self.members().collect();
         let quality = self.formation_quality(&members, true);
@@ -367,75 +339,12 @@ impl Engine {
         packets
     }
 
-    /// First phase: all robots decide. Returns the numbers of refused frames only.
+    /// First phase: the robots that are due decide. Returns the numbers of refused frames only.
     pub fn decide(&mut self) -> PacketCounts {
         self.send_out();
         let mut refused = self.decide_here();
         refused.rejected += self.collect();
         refused
-    }
-
-    fn decide_here(&mut self) -> PacketCounts {
-        let (tick, tick_us, is_mute, keeps_events) = (self.tick, self.tick_us, self.is_mute, self.operator.is_some());
-        let orders = self.ground.view(tick).orders;
-        let moment = Tick { tick, ground: &*self.ground, radio: &self.radio, orders };
-        let scratch =
-            || (GridWorkspace::<WIDE>::default(), Senses::default(), Vec::new(), Vec::new(), Outputs::default());
-        let work = (&mut self.computers, &mut self.commands, &mut self.statuses, &mut self.positions_m);
-        work.into_par_iter()
-            .enumerate()
-            .with_min_len(BATCH)
-            .map_init(
-                scratch,
-                |(workspace, senses, heard, seen, out), (index, (computer, command, status, position_m))| {
-                    let [x, y, _] = moment.ground.motion(index, tick).position_m;
-                    *position_m = [x, y];
-                    computer.outbox.clear();
-                    computer.events.clear();
-                    *command = Command::Hold;
-                    if tick < computer.down_until {
-                        status.fall_silent();
-                        return PacketCounts::default();
-                    }
-                    if computer.agent.is_none() {
-                        return PacketCounts::default();
-                    }
-                    let now = computer.now(tick, tick_us);
-                    let inbox = moment.inbox(index, computer);
-                    let inputs = moment.inputs(index, computer, senses, iter::once(inbox.bytes), heard);
-                    let heard_bytes = inbox.frame_bytes() + inputs.inbox.len();
-                    let Some(agent) = &mut computer.agent else {
-                        return PacketCounts::default();
-                    };
-                    moment.ground.sightings(index, tick, seen);
-                    if !seen.is_empty() {
-                        let _ = agent.see(seen, &inputs.state, now);
-                    }
-                    agent.hear_decoded_into(inbox.frames(), &inputs, now, out);
-                    agent.act_into(&inputs, now, workspace, out);
-                    if is_mute {
-                        out.outbox.clear();
-                    }
-                    computer.heard_bytes += heard_bytes as u64;
-                    computer.sent_bytes += out.outbox.len() as u64;
-                    // Beacons have similar lengths, so the buffer does not need spare capacity.
-                    computer.outbox.reserve_exact(out.outbox.len());
-                    computer.outbox.extend_from_slice(&out.outbox);
-                    computer.mail.clear();
-                    if keeps_events {
-                        computer.events.extend_from_slice(&out.events);
-                    }
-                    command.clone_from(&out.command);
-                    *status = Status {
-                        mode: agent.mode(),
-                        leader: agent.leader(),
-                        target: agent.target().unwrap_or(status.target),
-                        wait: out.wait,
-                    };
-                    PacketCounts::refused(out.rejected, out.refused, out.implausible)
-                },
-            )
-            .reduce(PacketCounts::default, |one, other| one + other)
     }
 
     /// Records the state of all robots after the second phase.

@@ -8,7 +8,7 @@ use orders::{course, waypoint};
 
 use super::grid::{Changed, duration};
 use super::ground::Senses;
-use crate::scenario::{Order, PlaneSetup, Robot, Scenario};
+use crate::scenario::{Clocks, Order, PlaneSetup, Robot, Scenario};
 use crate::world::plane::{Clearance, Disc, Plane, Sight, Solid, narrow};
 use crate::world::scouts::Scouts;
 use crate::world::window_but;
@@ -49,6 +49,8 @@ pub struct PlaneGround {
     pub numbers: Vec<u32>,
     radius: u8,
     tick_us: u32,
+    clocks: Clocks,
+    /// Longest delay of a packet, without reordering.
     delay_us: u32,
     range_m: f32,
     since: Vec<u32>,
@@ -72,6 +74,7 @@ impl PlaneGround {
             radius_m: intruder.radius_m,
             position_m: intruder.position_m,
             velocity_mps: intruder.velocity_mps,
+            target_mps: intruder.velocity_mps,
             abilities: setup.general.abilities,
             downwash: 1.0,
         });
@@ -98,7 +101,8 @@ impl PlaneGround {
             numbers: (0..scenario.robots.len() as u32).collect(),
             radius: scenario.laws.route.params.radius,
             tick_us: scenario.tick_us,
-            delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
+            clocks: scenario.clocks.clone(),
+            delay_us: libm::round((scenario.radio.delay_ms + scenario.radio.jitter_ms) * 1000.0) as u32,
             range_m: scenario.radio.range_m.min(FARTHEST_M) as f32,
             orders: frames(&setup.orders, scenario.radio.format, scenario.key()),
             since: vec![0; scenario.robots.len()],
@@ -179,23 +183,22 @@ impl PlaneGround {
     }
 
     fn config(&self, number: usize) -> AgentConfig<f32> {
-        let tick = duration(self.tick_us);
-        // Frames arrive in the next tick, or in the first tick that starts after the delay.
-        let ticks = self.delay_us.div_ceil(self.tick_us.max(1)).max(1);
-        let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
+        let (step, latency) = (duration(self.clocks.step_us()), duration(self.clocks.latency_us(self.delay_us)));
+        // A robot that comes late is silent for as much longer.
+        let silent_us = latency.as_micros().saturating_add(duration(self.clocks.late_us()).as_micros());
         let group = self.setup.group(number);
         AgentConfig {
             max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
             lag_s: group.abilities.lag_s as f32,
-            is_synchronous: true,
-            latency: Duration::from_micros(micros),
+            is_synchronous: self.clocks.is_synchronous(),
+            latency,
             contact_loss: ContactLossPolicy {
-                listen: group.listen.unwrap_or(Duration::from_micros(micros.saturating_add(2 * tick.as_micros()))),
+                listen: group.listen.unwrap_or(Duration::from_micros(silent_us.saturating_add(2 * step.as_micros()))),
                 reach_m: self.range_m,
                 ..group.contact_loss
             },
             flock: group.flock,
-            ..AgentConfig::new(self.robots[number].id, group.radius_m as f32, tick)
+            ..AgentConfig::new(self.robots[number].id, group.radius_m as f32, step)
         }
     }
 
@@ -257,6 +260,7 @@ fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
         radius_m: group.radius_m,
         position_m: start.position_m,
         velocity_mps: start.velocity_mps,
+        target_mps: start.velocity_mps,
         abilities: group.abilities,
         downwash: group.downwash(),
     }

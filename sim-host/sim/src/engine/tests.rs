@@ -10,7 +10,7 @@ use staya_controller::agent::{
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::rand::Rng;
 use staya_controller::robot::Mode;
-use staya_controller::time::Duration;
+use staya_controller::time::{Duration, Instant};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -189,7 +189,7 @@ fn overlapping_faults_end_together_and_a_fault_without_length_is_a_restart() {
     let sent: Vec<_> = (0..10).map(|_| engine.step().packets.sent).collect();
     assert_eq!(sent, [2, 2, 1, 1, 1, 1, 1, 1, 2, 2]);
     assert_eq!(engine.computers[0].boot, 1);
-    assert_eq!((engine.computers[1].boot, engine.computers[1].epoch), (1, 2));
+    assert_eq!((engine.computers[1].boot, engine.computers[1].clock.epoch), (1, 2));
 }
 
 #[test]
@@ -346,6 +346,7 @@ proptest! {
 }
 
 mod attack;
+mod clocks;
 mod crossing;
 mod external;
 mod intervene;

@@ -17,7 +17,8 @@ pub(super) fn transmitters(scenario: &Scenario, intruders: &[Disc]) -> Vec<Box<d
     let attackers = scenario.events.attacks.iter().enumerate();
     let attackers = attackers.map(|(index, attack)| Box::new(Attacker::new(attack, index, scenario)) as _);
     let heard = intruders.iter().filter(|disc| disc.id.is_some());
-    let intruders = heard.map(|disc| Box::new(Intruder::new(disc.id, scenario.radio.format)) as _);
+    let intruders =
+        heard.map(|disc| Box::new(Intruder::new(disc.id, scenario.radio.format, scenario.clocks.step_ticks)) as _);
     let server = KeyServer::new(scenario).map(|server| Box::new(server) as _);
     attackers.chain(intruders).chain(server).collect()
 }

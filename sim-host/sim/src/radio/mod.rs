@@ -103,6 +103,11 @@ impl<'a> Inbox<'a> {
         self.packets.iter().filter_map(move |&at| self.medium.frame(self.medium.packet(at)))
     }
 
+    /// Number of the first frames.
+    pub const fn packets(self) -> usize {
+        self.packets.len()
+    }
+
     /// Length of the first frames, bytes.
     pub fn frame_bytes(self) -> usize {
         self.packets.iter().map(|&at| self.medium.packet(at).len()).sum()
@@ -147,13 +152,13 @@ pub struct Radio {
 /// Bytes of a packet, measured for beacons of both wire formats.
 const PACKET_BYTES: f64 = 40.0;
 
-/// Estimated memory of the radio of robots at these positions, bytes, if each sends one packet in
-/// each tick. O(n).
+/// Estimated memory of the radio of robots at these positions, bytes, if each sends `per_tick`
+/// packets in a tick and uses received ones when it sends. O(n).
 #[must_use]
-pub fn expected_bytes(params: &RadioParams, tick_us: u32, positions_m: &[[f64; 2]]) -> u64 {
+pub fn expected_bytes(params: &RadioParams, tick_us: u32, per_tick: f64, positions_m: &[[f64; 2]]) -> u64 {
     let fates = Fates::new(params, 0, tick_us);
-    let held = fates.held_ticks() * late::HELD_BYTES as f64;
-    let sent = f64::from(fates.longest_ticks().unwrap_or(0)) * positions_m.len() as f64 * PACKET_BYTES;
+    let held = fates.held_ticks() * late::HELD_BYTES as f64 * per_tick;
+    let sent = f64::from(fates.longest_ticks().unwrap_or(0)) * per_tick * positions_m.len() as f64 * PACKET_BYTES;
     let arrived = (1.0 - params.loss) * medium::pairs_in_range(positions_m, params.range_m);
     (arrived * (PACKET_BYTES + held) + sent) as u64
 }

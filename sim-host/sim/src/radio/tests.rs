@@ -346,7 +346,7 @@ fn memory_is_estimated_from_pairs_in_range() {
     let square = |side: u32| (0..side * side).map(move |i| [f64::from(i % side), f64::from(i / side)]);
     let expected = |params: &RadioParams, side: u32| {
         let places: Vec<_> = square(side).collect();
-        expected_bytes(params, TICK_US, &places) as f64 / (places.len() as f64 * PACKET_BYTES)
+        expected_bytes(params, TICK_US, 1.0, &places) as f64 / (places.len() as f64 * PACKET_BYTES)
     };
     // Robots in range of each: all 400, or the 317 of a circle of 10 m.
     assert!((390.0..410.0).contains(&expected(&all, 20)), "{}", expected(&all, 20));

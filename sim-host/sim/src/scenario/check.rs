@@ -100,7 +100,8 @@ pub(super) fn memory(draft: &Draft<'_>, robots: &[Robot], plane: Option<&PlaneSe
     };
     let (robots, cells) = (positions_m.len(), u64::from(land.width()) * u64::from(land.height()));
     let bytes = robots as u64 * ROBOT_BYTES + cells * CELL_BYTES;
-    let packets = radio::expected_bytes(&draft.file.radio, micros(draft.file.tick_s), &positions_m);
+    let per_tick = 1.0 / f64::from(draft.step_ticks().max(1));
+    let packets = radio::expected_bytes(&draft.file.radio, micros(draft.file.tick_s), per_tick, &positions_m);
     if has_memory(bytes.saturating_add(packets)) {
         return Ok(());
     }

@@ -41,6 +41,7 @@ impl Scenario {
             seed,
             ticks: _,
             tick_us,
+            clocks,
             land: Land { terrain, changes, scouting },
             radio,
             robots,
@@ -58,6 +59,7 @@ impl Scenario {
             all.mix(map.cells());
             all.add(sight);
         }
+        all.add(&clocks);
         all.add(&(seed, tick_us, radio, robots, formations, movement, laws, events, misnumbered, plausibility));
         // `Debug` output hides secrets.
         let rotation = keys.as_ref().and_then(|keys| keys.rotation.as_ref());

@@ -4,6 +4,7 @@
 
 mod authentication;
 mod check;
+mod clocks;
 mod field;
 mod fingerprint;
 mod formation;
@@ -27,6 +28,7 @@ mod table;
 mod write;
 
 pub use authentication::Keys;
+pub use clocks::{Clocks, ClocksTable, Phases};
 pub use field::Field;
 pub use formation::{FormationEntry, FormationStarts};
 pub use given::{Given, Row, Rows};
@@ -180,6 +182,8 @@ pub struct Scenario {
     pub tick_us: u32,
     /// The terrain, its changes, and what robots know of it.
     pub land: Land,
+    /// When the robots decide.
+    pub clocks: Clocks,
     /// Parameters of the radio.
     pub radio: RadioParams,
     /// Robots, sorted by id. Starts are free and distinct; goals are distinct.
@@ -305,6 +309,7 @@ impl Scenario {
         check::times(draft, ticks.max(file.ticks))?;
         check::radio(draft)?;
         check::moves(draft)?;
+        let mut clocks = clocks::clocks(draft)?;
         let land = check::terrain(draft)?;
         let (route, formation) = (params::routing(draft)?, FormationSetup::new(draft)?);
         let (Placed { robots, formations, parts }, movement) = match &file.plane {
@@ -324,6 +329,7 @@ impl Scenario {
             }
         };
         let plane = movement.plane();
+        clocks.has_own_phases = plane.is_some_and(PlaneSetup::has_phases);
         check::numbers(draft, &robots, plane.map_or(0, PlaneSetup::heard))?;
         let laws = Laws {
             added: law::law(draft, plane, land.as_ref())?,
@@ -340,6 +346,7 @@ impl Scenario {
             seed: file.seed,
             ticks: file.ticks,
             tick_us: ranges::micros(file.tick_s),
+            clocks,
             land: Land { changes: land::changes(draft, &terrain)?, terrain, scouting },
             radio: file.radio.clone(),
             trust: Trust {
@@ -413,6 +420,12 @@ impl Scenario {
     #[must_use]
     pub fn tick_s(&self) -> f64 {
         f64::from(self.tick_us) / 1e6
+    }
+
+    /// Time between two decisions of a robot, seconds.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        f64::from(self.clocks.step_us()) / 1e6
     }
 }
 

@@ -11,8 +11,8 @@ use staya_controller::time::Duration;
 const TIMES: f64 = 2.0;
 /// Default position tolerance, in radii of the largest body (on the grid: half cells).
 const SLACK_RADII: f64 = 4.0;
-/// Ticks for which a robot must be consistent after a jump: the age at which a beacon is stale.
-const SETTLE_TICKS: u32 = 4;
+/// Steps for which a robot must be consistent after a jump: the age at which a beacon is stale.
+const SETTLE_STEPS: u32 = 4;
 
 table! {
     /// `[plausibility]`: plausibility limits on beacons. The defaults accept every honest robot.
@@ -27,7 +27,7 @@ table! {
         /// Position tolerance, metres. Default: four radii of the largest body; two cells on the
         /// grid.
         pub slack_m: Option<f64>, 0.0..=1e6, "metres";
-        /// How long a robot must be consistent after a jump, seconds. Default: four ticks.
+        /// How long a robot must be consistent after a jump, seconds. Default: four steps.
         pub settle_s: Option<f64>, 0.0..=1800.0, "seconds";
         /// Largest robot id. Default: the largest id in the scenario.
         pub last_robot: Option<u32>;
@@ -36,12 +36,12 @@ table! {
 
 defaults!(PlausibilityTable);
 
-fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> PlausibilityLimits<f32> {
+fn usual(radius_m: f64, speed_mps: f64, step_us: u32, last: u32) -> PlausibilityLimits<f32> {
     PlausibilityLimits {
         max_radius_m: (TIMES * radius_m) as f32,
         max_speed_mps: (TIMES * speed_mps) as f32,
         slack_m: (SLACK_RADII * radius_m) as f32,
-        settle: Duration::from_micros(i32::try_from(tick_us.saturating_mul(SETTLE_TICKS)).unwrap_or(i32::MAX)),
+        settle: Duration::from_micros(i32::try_from(step_us.saturating_mul(SETTLE_STEPS)).unwrap_or(i32::MAX)),
         last: RobotId(last),
     }
 }
@@ -63,7 +63,7 @@ impl Scenario {
         let all = kinds.chain(intruders).chain(starts);
         let (radius_m, speed_mps) = all.fold((0.0, 0.0), |a: (f64, f64), b| (a.0.max(b.0), a.1.max(b.1)));
         // Beaconing intruders have the ids after those of the robots.
-        usual(radius_m, speed_mps, self.tick_us, last + plane.heard() as u32)
+        usual(radius_m, speed_mps, self.clocks.step_us(), last + plane.heard() as u32)
     }
 }
 

@@ -3,6 +3,7 @@
 //! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times
 //! are simulated. File names are relative to the scenario file.
 
+use super::clocks::ClocksTable;
 use super::formation::FormationEntry;
 use super::intervention::InterventionTable;
 use super::law::LawTable;
@@ -29,6 +30,8 @@ table! {
         pub ticks: u32;
         /// Tick length, 0.001 to 60 s: the time to cross a cell of impassability 1. Default: 1.
         pub tick_s: f64 = 1.0, 0.001..=60.0, "seconds";
+        /// When robots in the plane decide. Default: all of them in each tick.
+        pub clocks: ClocksTable = Default::default();
         /// The terrain; optional with `[plane]`.
         pub terrain: Option<TerrainTable>;
         /// Terrain that robots know before they see it. Default: none.

@@ -135,6 +135,11 @@ fn errors_name_line_field_and_remedy() {
         ("[[vehicle]]", "[other]", "other"),
         ("swap-circle", "no-such-file", "no-such-file.toml"),
         ("swap-circle", "six-robots", "scenario: its robots move from cell to cell"),
+        (
+            "swap-circle",
+            "out-of-phase",
+            "scenario: real vehicles have clocks of their own; remove [clocks] and phase_s",
+        ),
     ] {
         let error = parse(&text("", "").replace(from, to)).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}\n{expected}");

@@ -8,7 +8,7 @@ use crate::engine::state::{Reader, StateError, write};
 use crate::record::Motion;
 use crate::scenario::{Intervention, Order, Target, goals};
 use crate::world::Refusal;
-use crate::world::plane::{Clearance, Disc, Solid};
+use crate::world::plane::{Clearance, CommandAge, Disc, Solid};
 use crate::world::scouts::Memory;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AgentConfig, AnyInputs, Command, GuidanceKind, Task};
@@ -22,6 +22,7 @@ use std::collections::VecDeque;
 struct PlaneBody {
     position_m: [f64; 3],
     velocity_mps: [f64; 3],
+    target_mps: [f64; 3],
     goal: Cell,
     places: Vec<Target>,
     since: u32,
@@ -50,6 +51,7 @@ impl Ground for PlaneGround {
         let body = PlaneBody {
             position_m: disc.position_m,
             velocity_mps: disc.velocity_mps,
+            target_mps: disc.target_mps,
             goal: self.robots[number].goal,
             places: self.setup.starts[number].places.clone(),
             since: self.since[number],
@@ -60,15 +62,17 @@ impl Ground for PlaneGround {
     }
 
     fn load_body(&mut self, number: usize, index: Option<usize>, from: &mut Reader<'_>) -> Result<(), StateError> {
-        let PlaneBody { position_m, velocity_mps, goal, places, since, shut, seen } = from.read("a body")?;
+        let PlaneBody { position_m, velocity_mps, target_mps, goal, places, since, shut, seen } =
+            from.read("a body")?;
         self.robots[number].goal = goal;
         self.setup.starts[number].places = places;
         self.since[number] = since;
         let Some(index) = index else { return Ok(()) };
-        if !is_finite(&[position_m, velocity_mps]) {
+        let motion = [position_m, velocity_mps, target_mps];
+        if !is_finite(&motion) {
             return Err(from.unfit("its body is nowhere"));
         }
-        self.plane.put(index, position_m, velocity_mps);
+        self.plane.put(index, motion);
         self.plane.put_shut(index, shut);
         if let (Some(scouts), Some(seen)) = (&mut self.scouts, seen) {
             scouts.put(index, seen);
@@ -106,7 +110,7 @@ impl Ground for PlaneGround {
             self.plane.put_cell(Cell::new(x, y), class);
         }
         for (index, [position_m, velocity_mps]) in (self.plane.discs().len()..).zip(intruders) {
-            self.plane.put(index, position_m, velocity_mps);
+            self.plane.put(index, [position_m, velocity_mps, velocity_mps]);
         }
         (self.clearance, self.gap_m, self.changed) = (clearance, gap_m, changed);
         self.plane.put_solids(solids);
@@ -120,9 +124,9 @@ impl Ground for PlaneGround {
         self.sense_at(index, position_m, velocity_mps, senses)
     }
 
-    fn sightings(&self, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
+    fn sightings(&self, index: usize, tick: u32, within_ticks: u32, sightings: &mut Vec<Sighting<f32>>) {
         match &self.sight {
-            Some(sight) => sight.sightings(&self.plane, index, tick, sightings),
+            Some(sight) => sight.sightings(&self.plane, index, tick, within_ticks, sightings),
             None => sightings.clear(),
         }
     }
@@ -142,12 +146,12 @@ impl Ground for PlaneGround {
         }
     }
 
-    fn advance(&mut self, _: u32, commands: &[Command<f32>]) -> u64 {
+    fn advance(&mut self, _: u32, commands: &[Command<f32>], ages: &[CommandAge]) -> u64 {
         if let (Some(scouts), Some(land)) = (&mut self.scouts, self.plane.terrain()) {
             let (plane, discs) = (&self.plane, self.plane.discs());
             scouts.observe(land, |index| plane.cell(discs[index].position_m));
         }
-        self.plane.advance(commands);
+        self.plane.advance(commands, ages);
         if let Some(sight) = &mut self.sight {
             sight.look(&self.plane);
         }

@@ -77,7 +77,7 @@ fn errors(sensing: &str, radio: &str, range_m: f64) -> (f64, f64) {
             let tick = engine.tick;
             engine.step();
             for (own, computer) in places.iter().zip(&engine.computers) {
-                let now = computer.now(tick, engine.tick_us);
+                let now = computer.clock.now(tick, RobotId(1), &engine.timing);
                 let agent = computer.agent.as_ref().expect("it is here");
                 let here = staya_controller::geom::Position::from_metres(*own).expect("a place");
                 for known in super::super::inspect::known(agent.neighbors(), here, *own, now) {

@@ -1,8 +1,8 @@
 //! `[plane.lattice]`, `[plane.goal_flock]` and `[plane.boids]`.
 
+use super::super::ScenarioFile;
 use super::super::given::Given;
 use super::super::source::Checked;
-use super::super::{Draft, ScenarioFile};
 use super::body::Group;
 use super::table::{BoidsTable, GoalFlockTable, LatticeTable};
 use crate::radio::RadioParams;
@@ -68,9 +68,8 @@ fn lattice(group: &Group<'_>, given: &LatticeTable) -> Checked<GuidanceSetup> {
         // The pull grows with the size of the flock.
         params.gamma = Gain::critical(params.alpha.position / GAMMA_OF_TWO);
     }
-    let Draft { file, .. } = group.draft;
     if given.params.get("c_alpha").is_none() {
-        let (delay_s, rate_hz) = file.radio.news(file.tick_s);
+        let (delay_s, rate_hz) = group.draft.file.radio.news(group.draft.step_s());
         params = params.stable_for(delay_s as f32, rate_hz as f32);
     }
     given.params.store(&mut params);
@@ -91,8 +90,8 @@ fn lattice(group: &Group<'_>, given: &LatticeTable) -> Checked<GuidanceSetup> {
     Ok(GuidanceSetup::Lattice { params, motion })
 }
 
-pub(super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams, tick_s: f64) -> Option<String> {
-    let (delay_s, rate_hz) = radio.news(tick_s);
+pub(super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams, step_s: f64) -> Option<String> {
+    let (delay_s, rate_hz) = radio.news(step_s);
     let news_s = delay_s + 1.0 / rate_hz;
     let (gain, pull) = (f64::from(params.alpha.position), f64::from(params.gamma.position));
     if news_s > 1.001 * f64::from(params.oldest_news_s()) {

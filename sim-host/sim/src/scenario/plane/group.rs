@@ -86,7 +86,8 @@ impl Group<'_> {
             max_speed_mps: body.max_speed_mps,
             max_acceleration_mps2: body.max_acceleration_mps2,
             lag_s: body.lag_s,
-            step_s: f64::from(micros(self.draft.file.tick_s)) / 1e6,
+            step_s: f64::from(micros(self.draft.step_s())) / 1e6,
+            tick_s: f64::from(micros(self.draft.file.tick_s)) / 1e6,
         };
         let orca = body.orca.clone().unwrap_or_default();
         let guidance = self.guidance(cruise_mps, tolerance_m)?;

@@ -27,6 +27,7 @@ pub use table::*;
 
 pub(super) use super::read::Limits;
 
+use super::clocks::phase_ticks;
 use super::robots;
 use super::source::{Checked, Section};
 use super::{Draft, Part, Placed, Robot, Scenario};
@@ -100,6 +101,11 @@ impl PlaneSetup {
         group.unwrap_or(&self.general)
     }
 
+    /// Whether some robots have a phase of their own other than 0.
+    pub(super) fn has_phases(&self) -> bool {
+        self.starts.iter().any(|start| start.phase_ticks.is_some_and(|phase| phase > 0))
+    }
+
     /// Number of intruders that send beacons.
     #[must_use]
     pub fn heard(&self) -> usize {
@@ -169,12 +175,13 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
     let solids = solids(draft, table)?;
     let (cells, mut formations) = cells.unwrap_or_default();
     let last = cells.last().map_or(0, |robot| robot.id.0);
+    let phase = phase_ticks(draft, &kind.at, kind.body.phase_s)?;
     let mut placing = starts::Placing {
         draft,
         general_m: general.radius_m,
         solids: &solids,
         groups: Vec::new(),
-        starts: terrain.map_or_else(Vec::new, |land| starts::on_land(&cells, land)),
+        starts: terrain.map_or_else(Vec::new, |land| starts::on_land(&cells, land, phase)),
     };
     if let Some(robots) = in_metres {
         placing.place(&kind, None, robots)?;
@@ -189,7 +196,8 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
             (true, RobotsSource::Formation(formation), Some(land)) => {
                 let at = group.at.at("robots.formation");
                 let (robots, formation) = robots::of_group(draft, &at, formation, land)?;
-                let members = starts::on_land(&robots, land).into_iter();
+                let phase = phase_ticks(draft, &group.at, group.body.phase_s)?;
+                let members = starts::on_land(&robots, land, phase).into_iter();
                 placing.starts.extend(members.map(|start| Start { group: Some(number), ..start }));
                 let id = last.saturating_add(u32::try_from(before - cells.len()).unwrap_or(u32::MAX)).saturating_add(1);
                 formations.push(formation.of(before, id));

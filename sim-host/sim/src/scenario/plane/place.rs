@@ -13,6 +13,8 @@ pub struct Start {
     pub places: Vec<Target>,
     /// Index in [`PlaneSetup::groups`](super::PlaneSetup::groups); `None`: the general group.
     pub group: Option<usize>,
+    /// Tick of the first decision; `None`: by [`Clocks::phases`](crate::scenario::Clocks::phases).
+    pub phase_ticks: Option<u32>,
 }
 
 /// A goal, which may move.

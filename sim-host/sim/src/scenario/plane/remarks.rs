@@ -13,7 +13,7 @@ type Loop = Vec<[f64; 2]>;
 pub(in super::super) fn remarks(scenario: &Scenario, setup: &PlaneSetup) -> Vec<String> {
     let (loops, tick_s) = (loops(&setup.solids), scenario.tick_s());
     let gains = |group: &RobotGroup| match &group.guidance {
-        GuidanceSetup::Lattice { params, .. } => flocks::remark(params, &scenario.radio, tick_s),
+        GuidanceSetup::Lattice { params, .. } => flocks::remark(params, &scenario.radio, scenario.step_s()),
         _ => None,
     };
     let mut remarks: Vec<_> = setup.kinds().filter_map(gains).collect();

@@ -109,7 +109,7 @@ pub(super) fn starts(
         let from_m = std::array::from_fn(|axis| low[axis].max(position_m[axis] - entry.travel_m));
         let to_m = std::array::from_fn(|axis| high[axis].min(position_m[axis] + entry.travel_m));
         let goal = Target::fixed(draw(from_m, to_m, &mut aims, false)?);
-        starts.push(Start { position_m, velocity_mps: [0.0; 3], places: vec![goal], group: None });
+        starts.push(Start { position_m, velocity_mps: [0.0; 3], places: vec![goal], group: None, phase_ticks: None });
     }
     Ok(starts)
 }

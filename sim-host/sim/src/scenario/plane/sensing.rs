@@ -21,8 +21,11 @@ pub(super) fn sensing(draft: &Draft<'_>, table: &PlaneTable, setup: &PlaneSetup)
         let what = format!("guidance \"{name}\" moves between cells, which sensors do not observe");
         return Err(draft.error(field, what, "give a guidance that goes by velocities, or leave it out"));
     }
-    // At least the age at which a beacon is stale, and at least three detections.
-    let usual_s = f64::from((3 * sensing.every_ticks + sensing.delay_ticks).max(4)) * draft.file.tick_s;
+    // At least the age at which a beacon is stale, and at least three detections, of which a robot
+    // takes one in a step at most.
+    let step_ticks = draft.step_ticks();
+    let usual_ticks = (3 * sensing.every_ticks.max(step_ticks) + sensing.delay_ticks).max(4 * step_ticks);
+    let usual_s = f64::from(usual_ticks) * draft.file.tick_s;
     let forget_s = sensing.forget_s.unwrap_or(usual_s);
     draft.within("plane.sensing.forget_s", forget_s, draft.file.tick_s..=1000.0, "seconds")?;
     let abilities = setup.kinds().map(|group| group.abilities);

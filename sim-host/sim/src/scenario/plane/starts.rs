@@ -1,5 +1,6 @@
 //! Starts and goals of robots in the plane.
 
+use super::super::clocks::phase_ticks;
 use super::super::source::Checked;
 use super::super::{Draft, Robot};
 use super::body::Group;
@@ -15,7 +16,7 @@ use staya_controller::rand::Rng;
 
 const STARTS: u32 = 0x0053_0003;
 
-pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
+pub(super) fn on_land(robots: &[Robot], terrain: &Terrain, phase_ticks: Option<u32>) -> Vec<Start> {
     let center = |cell: Cell| {
         let [x, y] = terrain.center_m(cell);
         [x, y, 0.0]
@@ -25,6 +26,7 @@ pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
         velocity_mps: [0.0; 3],
         places: vec![Target::fixed(center(robot.goal))],
         group: None,
+        phase_ticks,
     };
     robots.iter().map(start).collect()
 }
@@ -64,13 +66,16 @@ impl Placing<'_> {
             // The caller places formations.
             RobotsSource::Formation(_) => Vec::new(),
         };
-        self.starts.extend(placed.into_iter().map(|start| Start { group: number, ..start }));
+        let phase_ticks = phase_ticks(self.draft, &group.at, group.body.phase_s)?;
+        self.starts.extend(placed.into_iter().map(|start| Start { group: number, phase_ticks, ..start }));
         Ok(())
     }
 
     /// A robot whose body differs gets its own group.
     fn list(&mut self, kind: &Group<'_>, group: Option<usize>, list: &[PlaneRobotEntry], noise_m: f64) -> Checked {
-        for entry in list {
+        let common = phase_ticks(self.draft, &kind.at, kind.body.phase_s)?;
+        for (index, entry) in list.iter().enumerate() {
+            let at = kind.at.at(format!("robots.list[{index}]"));
             let group = kind.of_entry(entry).map(|own| self.add(&own)).transpose()?.or(group);
             let mut rng = Rng::keyed(self.draft.file.seed, STARTS, self.starts.len() as u32, 2);
             let [x, y, z] = entry.start_m.0;
@@ -80,6 +85,7 @@ impl Placing<'_> {
                 velocity_mps: entry.velocity_mps.0,
                 places: entry.via_m.iter().copied().chain(entry.goal_m).map(|Place(at)| Target::fixed(at)).collect(),
                 group,
+                phase_ticks: phase_ticks(self.draft, &at, entry.phase_s)?.or(common),
             });
         }
         Ok(())
@@ -105,6 +111,7 @@ fn circle_starts(circle: &CircleEntry, seed: u64) -> Vec<Start> {
             velocity_mps: [0.0; 3],
             places: vec![Target::fixed([-x, -y, 0.0])],
             group: None,
+            phase_ticks: None,
         }
     };
     (0..circle.count).map(start).collect()
@@ -122,7 +129,7 @@ fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3
         let position_m = draws.find(|&place| taken.is_free(place) && is_clear(place, radius_m, others))?;
         taken.take(position_m);
         let velocity_mps = between(&mut rng, cloud.velocity_from_mps, cloud.velocity_to_mps);
-        Some(Start { position_m, velocity_mps, places: places.clone(), group: None })
+        Some(Start { position_m, velocity_mps, places: places.clone(), group: None, phase_ticks: None })
     };
     (0..cloud.count).map(start).collect()
 }

@@ -42,6 +42,9 @@ table! {
         pub tolerance_m: Option<f64>, TOLERANCE;
         /// Range of obstacle detection, metres. Default: 10.
         pub sight_m: f64 = 10.0, 0.0..=2e6, "metres";
+        /// Time of the first decision, a whole number of ticks below a step. Default: by
+        /// `clocks.phases`.
+        pub phase_s: Option<f64>, 0.0..=60.0, "seconds";
         /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs a formation too.
         pub guidance: GuidanceKind = GuidanceKind::Waypoint;
         /// Safety layer.
@@ -114,7 +117,7 @@ table! {
         /// Default: 2.
         pub margin: f64 = 2.0, 0.0..=100.0, "standard deviations";
         /// Time after which a robot without beacons and detections is dropped, seconds. Default:
-        /// three detection intervals plus the delay, at least four ticks.
+        /// three detection intervals plus the delay, at least four steps.
         pub forget_s: Option<f64>;
     }
 }
@@ -159,6 +162,9 @@ table! {
         pub radius_m: Option<f64>, RADIUS;
         /// Highest speed on easy land, m/s. Default: that of its group.
         pub max_speed_mps: Option<f64>, 0.001..=32.0, "m/s";
+        /// Time of its first decision, a whole number of ticks below a step. Default: that of its
+        /// group.
+        pub phase_s: Option<f64>, 0.0..=60.0, "seconds";
     }
 }
 
@@ -338,7 +344,7 @@ table! {
         /// Silence after which a lost robot counts as standing even if most are lost, seconds.
         pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
         /// How long a robot stands and listens after its start, seconds. Default: two beacon
-        /// periods and the delay of the radio.
+        /// periods, the delay of the radio and the longest one of a late decision.
         pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
         /// Whether a robot that has not heard another one stands. Default: false.
         pub expects_others: bool = false;

@@ -5,6 +5,7 @@
 //! overlap is counted, so that a controller cannot rely on the world for safety.
 
 mod border;
+mod motion;
 mod sensing;
 mod shape;
 mod solid;
@@ -12,6 +13,7 @@ mod solids;
 
 #[doc(hidden)]
 pub use border::Beside;
+pub use motion::CommandAge;
 pub use sensing::{Sensing, Sight};
 pub(crate) use shape::contains;
 pub use shape::{FAR_M, Shape};
@@ -25,8 +27,6 @@ use crate::terrain::Terrain;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::Command;
-use staya_controller::body::Body as Limits;
-use staya_controller::geom::Vec3;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
@@ -42,6 +42,8 @@ pub struct Disc {
     pub position_m: [f64; 3],
     /// World velocity, metres per second.
     pub velocity_mps: [f64; 3],
+    /// Velocity that it approaches until its robot decides again, m/s; its own without a lag.
+    pub target_mps: [f64; 3],
     /// Speed and acceleration limits.
     pub abilities: Abilities,
     /// Ratio of height to width of the space to avoid because of downwash; 1: a ball.
@@ -57,8 +59,10 @@ pub struct Abilities {
     pub max_acceleration_mps2: f64,
     /// Time constant with which the velocity follows a command (first order), seconds; 0: at once.
     pub lag_s: f64,
-    /// Length of a tick, seconds.
+    /// Time between two decisions of its robot, seconds.
     pub step_s: f64,
+    /// Length of a tick, seconds.
+    pub tick_s: f64,
 }
 
 impl Abilities {
@@ -205,11 +209,11 @@ impl Plane {
         self.solids.near(place_m, within_m).filter(move |solid| solid.distance_m(place_m) <= within_m)
     }
 
-    /// Restores position and velocity of a body; intruders follow the robots.
-    pub(crate) fn put(&mut self, index: usize, position_m: [f64; 3], velocity_mps: [f64; 3]) {
+    /// Restores the position, velocity and target of a body; intruders follow the robots.
+    pub(crate) fn put(&mut self, index: usize, [position_m, velocity_mps, target_mps]: [[f64; 3]; 3]) {
         let intruders = self.intruders.iter_mut();
         if let Some(disc) = self.discs.iter_mut().chain(intruders).nth(index) {
-            (disc.position_m, disc.velocity_mps) = (position_m, velocity_mps);
+            (disc.position_m, disc.velocity_mps, disc.target_mps) = (position_m, velocity_mps, target_mps);
         }
     }
 
@@ -308,44 +312,26 @@ impl Plane {
         max_speed_mps(self.terrain(), &self.shut[index], &self.discs[index].abilities, position_m)
     }
 
-    /// Moves the bodies by one tick; `commands[i]` belongs to body `i`. A body without lag has
-    /// constant velocity within the tick. A hold command or a command for cells makes it brake.
+    /// Moves the bodies by one tick; `commands[i]` and `ages[i]` belong to body `i`. A hold command
+    /// or a command for cells makes it brake.
+    ///
+    /// A new command changes the velocity at once, by as much as the body can change it in a step
+    /// ([`Body::reach`](staya_controller::body::Body::reach)); then the velocity stays for the step.
+    /// So the number of ticks in a step does not change the motion that the robot has planned. A
+    /// body with a lag approaches this velocity during the step. A body whose command has expired
+    /// brakes in each tick, within its acceleration.
     ///
     /// # Panics
-    /// If there are fewer commands than bodies.
-    pub fn advance(&mut self, commands: &[Command<f32>]) {
-        assert!(commands.len() >= self.discs.len(), "a command for each body");
+    /// If there are fewer commands or ages than bodies.
+    pub fn advance(&mut self, commands: &[Command<f32>], ages: &[CommandAge]) {
+        let bodies = self.discs.len();
+        assert!(commands.len() >= bodies && ages.len() >= bodies, "a command with its age for each body");
         let (land, space) = (self.terrain.as_ref(), self.space);
-        let bodies = self.discs.par_iter_mut().zip(&mut self.shut).zip(commands).with_min_len(BATCH);
-        bodies.for_each(|((disc, shut), command)| {
-            let wish = match *command {
-                Command::Velocity(v) => Vec3::new(v.x.into(), v.y.into(), v.z.into()),
-                Command::Hold | Command::Move(_) => Vec3::ZERO,
-            };
-            let [vx, vy, vz] = disc.velocity_mps;
-            let limits = Limits {
-                id: disc.id,
-                velocity_mps: Vec3::new(vx, vy, vz),
-                radius_m: disc.radius_m,
-                max_speed_mps: max_speed_mps(land, shut, &disc.abilities, disc.position_m),
-                max_acceleration_mps2: disc.abilities.max_acceleration_mps2,
-                step_s: disc.abilities.step_s,
-            };
-            let Abilities { lag_s, step_s, .. } = disc.abilities;
-            if lag_s > 0.0 {
-                let left = libm::exp(-step_s / lag_s);
-                // The velocity changes by no more in a tick than that of a body without lag.
-                let command = Limits { step_s: step_s / (1.0 - left), ..limits }.reach(wish);
-                let mean = command + (limits.velocity_mps - command) * (lag_s * (1.0 - left) / step_s);
-                let last = command + (limits.velocity_mps - command) * left;
-                disc.velocity_mps = [mean.x, mean.y, mean.z];
-                disc.go();
-                disc.velocity_mps = [last.x, last.y, last.z];
-            } else {
-                let v = limits.reach(wish);
-                disc.velocity_mps = [v.x, v.y, v.z];
-                disc.go();
-            }
+        let bodies =
+            self.discs.par_iter_mut().zip(&mut self.shut).zip(commands.par_iter().zip(ages)).with_min_len(BATCH);
+        bodies.for_each(|((disc, shut), (command, age))| {
+            disc.steer(command, *age, land, shut);
+            disc.go();
             if space.period().is_some() {
                 // The height is not periodic.
                 let [x, y, _] = space.fold(disc.position_m);
@@ -422,14 +408,6 @@ impl Plane {
             clearance.intruder_overlaps += u64::from(gap < -ROUNDING_M);
         }
         clearance
-    }
-}
-
-impl Disc {
-    fn go(&mut self) {
-        for (place, speed) in self.position_m.iter_mut().zip(self.velocity_mps) {
-            *place += speed * self.abilities.step_s;
-        }
     }
 }
 

@@ -80,14 +80,22 @@ impl Sight {
     }
 
     /// Writes the detections of body `index` at `tick` to `sightings`, nearest first, without
-    /// silent intruders, which robots detect as obstacles.
-    pub fn sightings(&self, plane: &Plane, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
+    /// silent intruders, which robots detect as obstacles. None if the sensor was not due in the
+    /// `within_ticks` ticks that end with this one: 1, or the time since its last use.
+    pub fn sightings(
+        &self,
+        plane: &Plane,
+        index: usize,
+        tick: u32,
+        within_ticks: u32,
+        sightings: &mut Vec<Sighting<f32>>,
+    ) {
         sightings.clear();
         let (sensing, delay) = (&self.sensing, self.sensing.delay_ticks);
         let is_early = self.past.len() <= delay as usize;
         let Some(then) = self.past.front().filter(|_| !is_early) else { return };
         let own = &plane.discs()[index];
-        if (tick.wrapping_sub(delay).wrapping_add(own.id.0)) % sensing.every_ticks != 0 {
+        if (tick.wrapping_sub(delay).wrapping_add(own.id.0)) % sensing.every_ticks >= within_ticks {
             return;
         }
         let at = then[index];

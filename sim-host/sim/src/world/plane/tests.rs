@@ -1,7 +1,8 @@
 use super::*;
+use staya_controller::geom::Vec3;
 
 const ABILITIES: Abilities =
-    Abilities { max_speed_mps: 2.0, max_acceleration_mps2: f64::INFINITY, lag_s: 0.0, step_s: 0.5 };
+    Abilities { max_speed_mps: 2.0, max_acceleration_mps2: f64::INFINITY, lag_s: 0.0, step_s: 0.5, tick_s: 0.5 };
 
 fn disc(id: u32, x: f64, y: f64) -> Disc {
     Disc {
@@ -9,6 +10,7 @@ fn disc(id: u32, x: f64, y: f64) -> Disc {
         radius_m: 0.5,
         position_m: [x, y, 0.0],
         velocity_mps: [0.0; 3],
+        target_mps: [0.0; 3],
         abilities: ABILITIES,
         downwash: 1.0,
     }
@@ -21,12 +23,12 @@ fn go(x: f32, y: f32) -> Command<f32> {
 #[test]
 fn a_body_follows_commands_within_its_speed_limit() {
     let mut plane = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]);
-    plane.advance(&[go(1.0, -0.5)]);
+    plane.advance(&[go(1.0, -0.5)], &[CommandAge::New; 4]);
     assert_eq!(plane.discs()[0].position_m, [0.5, -0.25, 0.0]);
-    plane.advance(&[go(40.0, 0.0)]);
+    plane.advance(&[go(40.0, 0.0)], &[CommandAge::New; 4]);
     assert_eq!(plane.discs()[0].position_m, [1.5, -0.25, 0.0]);
-    plane.advance(&[go(f32::NAN, 0.0)]);
-    plane.advance(&[Command::Hold]);
+    plane.advance(&[go(f32::NAN, 0.0)], &[CommandAge::New; 4]);
+    plane.advance(&[Command::Hold], &[CommandAge::New; 4]);
     assert_eq!(plane.discs()[0].position_m, [1.5, -0.25, 0.0]);
 }
 
@@ -37,7 +39,7 @@ fn inertia_takes_time() {
     let mut plane = Plane::new(None, vec![], vec![slow_one]);
     let mut speeds = Vec::new();
     for command in [go(2.0, 0.0), go(2.0, 0.0), Command::Hold, Command::Hold] {
-        plane.advance(&[command]);
+        plane.advance(&[command], &[CommandAge::New; 4]);
         speeds.push(plane.discs()[0].velocity_mps[0]);
     }
     assert_eq!(speeds, [0.5, 1.0, 0.5, 0.0]);
@@ -56,7 +58,7 @@ fn rough_land_slows_bodies_and_walls_count_as_intrusions() {
     assert_eq!(plane.clearance().intrusions, 1);
     assert_eq!(plane.cell([15.0, 5.0, 3.0]), Some(Cell::new(1, 0)));
     assert_eq!([-0.1, 30.0, f64::NAN].map(|x| plane.cell([x, 5.0, 0.0])), [None; 3]);
-    plane.advance(&[go(9.0, 0.0), go(9.0, 0.0), go(9.0, 0.0), go(0.0, 0.0)]);
+    plane.advance(&[go(9.0, 0.0), go(9.0, 0.0), go(9.0, 0.0), go(0.0, 0.0)], &[CommandAge::New; 4]);
     let places: Vec<f64> = plane.discs().iter().map(|d| d.position_m[0]).collect();
     assert_eq!(places, [6.0, 15.25, -4.0, 25.0]);
 }
@@ -85,17 +87,17 @@ fn each_body_has_its_own_size_and_speed() {
     let quick = Disc { radius_m: 0.25, abilities: fast, ..disc(2, 2.5, 0.0) };
     let mut plane = Plane::new(None, vec![], vec![large, quick]);
     assert_eq!(plane.clearance().bodies_m, 0.25);
-    plane.advance(&[go(40.0, 0.0), go(40.0, 0.0)]);
+    plane.advance(&[go(40.0, 0.0), go(40.0, 0.0)], &[CommandAge::New; 4]);
     let places: Vec<f64> = plane.discs().iter().map(|disc| disc.position_m[0]).collect();
     assert_eq!(places, [1.0, 6.5]);
 }
 
 #[test]
 fn intruders_pass_through_everything_and_are_counted_separately() {
-    let intruder = Disc { velocity_mps: [-40.0, 0.0, 0.0], ..disc(9, 21.0, 0.0) };
+    let intruder = Disc { velocity_mps: [-40.0, 0.0, 0.0], target_mps: [-40.0, 0.0, 0.0], ..disc(9, 21.0, 0.0) };
     let mut plane = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]).with_intruders(vec![intruder]);
     assert_eq!(plane.clearance().intruders_m, 20.0);
-    plane.advance(&[Command::Hold]);
+    plane.advance(&[Command::Hold], &[CommandAge::New; 4]);
     let clearance = plane.clearance();
     assert_eq!((clearance.intruders_m, clearance.intruder_overlaps, clearance.overlaps), (0.0, 0, 0));
     let at = Disc { position_m: [0.75, 0.0, 0.0], ..intruder };
