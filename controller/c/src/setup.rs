@@ -197,6 +197,8 @@ impl StayaSetup {
             seed,
             boot,
             tick: us(self.tick_us),
+            // Robots with clocks of their own.
+            is_synchronous: false,
             beacon_period: us(self.beacon_period_us),
             radius_m,
             max_acceleration_mps2,

@@ -1,7 +1,7 @@
 //! The configuration of the agent of one robot.
 
 use super::ContactLossPolicy;
-use crate::neighbor::{Ages, PlausibilityLimits};
+use crate::neighbor::{Ages, PlausibilityLimits, Rounding, TooCoarse};
 use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
@@ -77,6 +77,23 @@ impl<S: Scalar> AgentConfig<S> {
             plausibility: self.plausibility.cast(),
             flock: self.flock,
         }
+    }
+
+    /// Returns whether the gaps that robots keep cover all rounding errors, if no robot is faster
+    /// than `fastest_mps`. Check it when a robot is configured, for a safety layer with
+    /// [`inflation`](super::Safety::inflation).
+    ///
+    /// # Errors
+    /// The tick, the speed, or the way in [`expire_after`](Ages::expire_after) is too long.
+    pub fn check_rounding(&self, fastest_mps: S, is_in_space: bool) -> Result<(), TooCoarse> {
+        let range_m = fastest_mps * S::from_micro(self.ages.expire_after.as_micros());
+        Rounding {
+            step: self.tick,
+            fastest_mmps: fastest_mps.to_milli().unwrap_or(i32::MAX),
+            range_m: range_m.floor_to_i32().unwrap_or(i32::MAX),
+            is_in_space,
+        }
+        .check()
     }
 
     /// Creates a configuration from the values that every robot needs (on the grid any `radius_m`).

@@ -1,5 +1,6 @@
 //! Limits a velocity so that robots cannot touch at any age of their neighbours' states.
 
+use super::rounding::{OFFSET_ERROR_UM, ROUNDING_MM, TOLERANCE_UM};
 use super::{Neighbor, NeighborTable, StalenessInflation};
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
@@ -11,14 +12,6 @@ use heapless::Vec;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 
-/// Gap that remains, millimetres: [`OFFSET_ERROR_UM`], the rounded radius of the other robot, and
-/// twice [`TOLERANCE_UM`].
-const ROUNDING_MM: i32 = 3;
-/// Greatest error of the offset of another robot, micrometres: both positions and its velocity are
-/// rounded to millimetres (per second) on each axis.
-const OFFSET_ERROR_UM: i32 = 2_100;
-/// Excess accepted in the last round, micrometres.
-const TOLERANCE_UM: i32 = 200;
 /// What a velocity that is turned aside takes less of a gap than it may, micrometres: more than the
 /// rounding of the operations.
 const GRAIN_UM: i32 = 20;

@@ -17,6 +17,7 @@ mod gap_limit;
 mod loss;
 mod nearby;
 mod plausibility;
+mod rounding;
 mod sighting;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
@@ -28,6 +29,7 @@ pub use gap_limit::GapLimit;
 pub use loss::LossEstimate;
 pub use nearby::{Nearby, StalenessInflation, add_lost, nearest};
 pub use plausibility::{Claim, PlausibilityFilter, PlausibilityLimits, Verdict};
+pub use rounding::{Rounding, TooCoarse};
 pub use sighting::{Sighted, Sighting, TrackParams};
 pub use tie::tie;
 pub use track::Track;
