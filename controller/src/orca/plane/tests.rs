@@ -164,6 +164,19 @@ fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     assert!((hard.velocity_mps.x - 0.5).abs() < 1e-9, "{hard:?}");
 }
 
+#[test]
+fn only_the_hard_constraints_are_obeyed_without_a_solution() {
+    let plane = |x: f64, y: f64, nx: f64, ny: f64| HalfPlane { point: v(x, y), normal: v(nx, ny) };
+    let planes = [plane(0.5, 0.0, 1.0, 0.0), plane(0.0, 0.3, 0.0, 1.0), plane(0.0, -0.3, 0.0, -1.0)];
+    for (hard, y, depth) in [(1, 0.0, 0.3), (2, 0.3, 0.6)] {
+        let got = solve::<_, 4>(&planes, hard, V::ZERO, 1.0);
+        assert!((got.velocity_mps - v(0.5, y)).y.abs() < 1e-9 && got.velocity_mps.x > 0.5 - 1e-9, "{hard} {got:?}");
+        assert!((got.penetration_mps - depth).abs() < 1e-9, "{hard} {got:?}");
+    }
+    // Those beyond the capacity do not count.
+    assert_eq!(solve::<_, 2>(&planes, 1, V::ZERO, 1.0).penetration_mps, 0.0);
+}
+
 fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {
     let pair = || (-2.0_f64..2.0, -2.0_f64..2.0).prop_map(|(x, y)| v(x, y));
     let others = proptest::collection::vec((pair(), pair(), 0.1_f64..1.0), 0..10);

@@ -450,6 +450,46 @@ fn turns_are_measured_while_robots_pass() {
     assert_eq!(memory, RightOfWay::NEW, "alone at a door, the rule does not apply");
 }
 
+#[test]
+fn patience_grows_with_the_rank() {
+    let ahead = robot(9, [0.4, 0.0], [0.0; 2]);
+    let opposite = robot(4, [1.7, 0.0], [0.0; 2]);
+    for (other, idle, goes) in
+        [(opposite, 4.99, false), (opposite, 5.01, true), (ahead, 6.66, false), (ahead, 6.67, true)]
+    {
+        let mut memory = RightOfWay { idle: Some((idle, 5.0)), ..RightOfWay::NEW };
+        let _ = wishes(&mut memory, &[other], [4.0, 0.0], 1);
+        assert_eq!((memory.goes, memory.waits()), (goes, !goes), "{idle}");
+    }
+    // It is drawn for each time that the door is empty.
+    for step in 0..5 {
+        let (mut memory, mut rng) = (RightOfWay::NEW, crate::orca::fixtures::rng_of(5, step));
+        let (body, walls) = (body(5, [0.0; 2]), door_walls(1.0, 0.2));
+        let nearby = [opposite];
+        let situation = Situation { obstacles: &walls, ..situation(&body, &nearby) };
+        let _ = memory.wish(&situation, Vec2::new(4.0, 0.0), 5.0, &mut rng);
+        let more = f64::from(crate::orca::fixtures::rng_of(5, step).below(1000)) / 1000.0;
+        assert_eq!(memory.idle, Some((0.025 / 0.15, 5.0 + 5.0 * more)));
+    }
+}
+
+#[test]
+fn a_robot_slows_down_before_the_point_that_it_heads_for() {
+    let (body, walls) = (body(5, [0.0; 2]), door_walls(-0.05, 0.2));
+    let nearby = [robot(9, [-0.9, 0.0], [0.0; 2])];
+    let situation = Situation { obstacles: &walls, ..situation(&body, &nearby) };
+    let wish = |goal_m: f64| {
+        let mut rng = crate::orca::fixtures::rng_of(5, 0);
+        RightOfWay::NEW.clone().wish(&situation, Vec2::new(goal_m, 0.0), 5.0, &mut rng).unwrap()
+    };
+    // 0.01 m in a step of 0.05 s.
+    assert!((wish(0.01) - Vec2::new(0.2, 0.0)).norm() < 1e-9, "{:?}", wish(0.01));
+    let far = wish(4.0);
+    // Four radii behind the door, and 0.3 radii to the right.
+    let way = Vec2::new(0.6 - 0.05, -0.045);
+    assert!((far - way * (0.5 / way.norm())).norm() < 1e-9, "{far:?}");
+}
+
 /// A door, a robot before it, and others, in other units of length and time.
 fn scaled(others: &[Other], length: f64, time: f64, steps: usize) -> Vec<Option<Vec2<f64>>> {
     let body =
