@@ -3,6 +3,9 @@ use crate::wire::{Beacon, Bytes, ProtocolId};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
+mod lost;
+mod plausibility;
+
 const AGES: Ages = Ages { stale_after: Duration::from_millis(1_000), expire_after: Duration::from_millis(5_000) };
 
 fn at(micros: u32) -> Instant {
@@ -235,103 +238,6 @@ fn lost_robots_block_their_places_until_they_are_received() {
     assert_eq!(lost(&table), [1, 2, 9]);
 }
 
-/// A table whose robots 1, 3 and 4 are lost at 5 s, and whose robot 2 is known.
-fn three_of_four_lost() -> NeighborTable<f32, 4> {
-    let mut table = full::<4>(at(0));
-    let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
-    table.expire((&BODY, 0.1), at(5_000_001), (Duration::MAX, true), |_| {});
-    assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
-    table
-}
-
-#[test]
-fn lost_robots_that_fill_more_than_half_of_the_table_displace_only_each_other() {
-    let now = at(5_100_000);
-    let gone = |id, x| Neighbor { trace: Trace::Lost, ..standing(id, x, now) };
-    let mut table = three_of_four_lost();
-    assert_eq!(put(&mut table, gone(9, 2.5), now), Put::Inserted, "the farthest lost robot makes way unreported");
-    assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 9].into()));
-    assert_eq!(put(&mut table, gone(8, 90.0), now), Put::Refused, "a known one does not make way");
-    let mut known = full::<4>(now);
-    assert_eq!(put(&mut known, gone(9, 0.5), now), Put::Evicted(RobotId(4)));
-    assert_eq!((ids(&known), lost(&known)), ([1, 2, 3].into(), [9].into()));
-}
-
-#[test]
-fn the_state_of_a_lost_robot_ages_until_the_oldest_age() {
-    let mut table = three_of_four_lost();
-    let mut ages = |micros: u32| {
-        table.expire((&BODY, 0.1), at(micros), (Duration::MAX, true), |_| {});
-        let ages = table.lost().iter().map(|robot| robot.age(at(micros)).map_or(-1, Duration::as_micros));
-        ages.collect::<StdVec<_>>()
-    };
-    assert_eq!(ages(6_000_000), [6_000_000; 3]);
-    // Robot 2, received at 3 s, is lost too by now.
-    assert_eq!(ages(650_000_000), [650_000_000, 647_000_000, 650_000_000, 650_000_000]);
-    assert_eq!(ages(651_000_000), [650_000_000, 648_000_000, 650_000_000, 650_000_000]);
-    assert_eq!(ages(900_000_000), [OLDEST.as_micros(); 4]);
-}
-
-#[test]
-fn a_robot_that_was_moved_is_not_remembered_where_it_was() {
-    for (micros, is_remembered) in [(4_200_000, false), (3_000_000, true)] {
-        for (silent, other) in [(RobotId(3), RobotId(3).duplicate()), (RobotId(3).duplicate(), RobotId(3))] {
-            let mut table = NeighborTable::<f32, 4>::new(AGES);
-            for (id, heard) in [(silent, 0), (other, micros), (RobotId(5), 4_500_000)] {
-                let _ = put(&mut table, standing(id.0, 1.0, at(heard)), at(heard));
-            }
-            let mut told = StdVec::new();
-            table.expire((&BODY, 0.1), at(5_000_001), (Duration::MAX, true), |id| told.push(id));
-            assert_eq!(
-                (told, lost(&table).len()),
-                ([silent].into(), usize::from(is_remembered)),
-                "{silent:?} {micros}"
-            );
-        }
-    }
-}
-
-#[test]
-fn robots_are_forgotten_one_at_a_time() {
-    let mut table = three_of_four_lost();
-    let now = at(5_100_000);
-    assert!(!table.forget(RobotId(3)) && !table.forget(RobotId(7)), "lost, and unknown");
-    assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
-    let _ = put(&mut table, standing(3, 3.0, now), now);
-    table.clear_lost(RobotId(3));
-    table.clear_lost(RobotId(2));
-    assert_eq!((ids(&table), lost(&table), table.len()), ([2, 3].into(), [1, 4].into(), 2), "not lost");
-    assert!(table.forget(RobotId(2)));
-    assert_eq!((ids(&table), lost(&table)), ([3].into(), [1, 4].into()));
-    assert!(table.forget(RobotId(3)) && table.is_empty());
-    assert_eq!(lost(&table), [1, 4]);
-}
-
-#[test]
-fn all_robots_are_moved_to_their_images_and_lose_their_gaps() {
-    let mut table = three_of_four_lost();
-    let now = at(5_100_000);
-    let _ = put(&mut table, Neighbor { gap_m: 0.5, ..standing(2, 2.0, now) }, now);
-    table.see_at(|place| Position::from_mm(place.mm.map(|mm| mm + 7)));
-    let places = |robots: &[Neighbor<f32>]| robots.iter().map(|robot| robot.position.mm[1]).collect::<StdVec<_>>();
-    assert_eq!((places(table.as_slice()), places(table.lost())), ([7].into(), [7; 3].into()));
-    assert_eq!(table.as_slice()[0].gap_m, 0.5);
-    table.forget_gaps();
-    assert_eq!(table.as_slice()[0].gap_m, 0.0);
-}
-
-#[test]
-fn lost_robots_are_appended_as_obstacles_that_grow() {
-    let table = three_of_four_lost();
-    let mut nearby = nearest::<f32, 3>(table.as_slice(), 0, Position::ORIGIN, 0.1, at(7_000_000), &AGES, &INFLATION);
-    assert_eq!(nearby.len(), 1);
-    add_lost(&mut nearby, table.lost(), Position::ORIGIN, 0.1, at(7_000_000), &AGES, &INFLATION);
-    let got: StdVec<_> = nearby.iter().map(|near| (near.id.0, near.gives_way, near.offset_m.x)).collect();
-    assert_eq!(got, [(2, false, 2.0), (1, false, 1.0), (3, false, 3.0)], "up to the capacity");
-    let grown = nearby[2].radius_m - table.lost()[1].radius_m;
-    assert_eq!(grown, INFLATION.max_m, "six seconds at half a metre per second are more");
-}
-
 #[test]
 fn robots_of_another_flock_are_strangers() {
     let own = standing(1, 1.0, at(0));
@@ -341,80 +247,6 @@ fn robots_of_another_flock_are_strangers() {
         seen.iter().map(|near| near.is_stranger).collect::<StdVec<_>>()
     };
     assert_eq!((strangers(0), strangers(3)), ([false, true].into(), [true, false].into()));
-}
-
-const LIMITS: PlausibilityLimits<f64> = PlausibilityLimits {
-    max_radius_m: 0.5,
-    max_speed_mps: 2.0,
-    slack_m: 0.5,
-    settle: Duration::from_millis(300),
-    last: RobotId(20),
-};
-
-#[test]
-fn values_at_their_limit_are_plausible() {
-    let beacon = Beacon::default();
-    let said = |radius_m: f64, speed: f64| Neighbor {
-        radius_m,
-        velocity_mps: Vec3::new(0.0, speed, 0.0),
-        ..Neighbor::<f64>::from_beacon(RobotId(1), &beacon, ProtocolId::NONE, at(0))
-    };
-    let cut = |limits: &PlausibilityLimits<f64>, radius_m, speed| {
-        let mut said = said(radius_m, speed);
-        (limits.cut(&mut said), said.radius_m, said.velocity_mps.y)
-    };
-    assert_eq!(cut(&LIMITS, 0.5, 2.0), ((false, false), 0.5, 2.0));
-    assert_eq!(cut(&LIMITS, 0.5001, 2.0), ((true, false), 0.5, 2.0));
-    assert_eq!(cut(&LIMITS, 0.1, -2.01), ((false, true), 0.1, -2.0));
-    let any = PlausibilityLimits::<f64>::ANY;
-    assert_eq!(cut(&any, 1e9, 1e9), ((false, false), 1e9, 1e9));
-    assert_eq!(cut(&any, 0.1, f64::INFINITY).0, (false, false), "without a limit, no speed is too fast");
-    let place = |mm: i32| Position::from_mm([0, mm, 0]);
-    for (mm, millis, can_go) in [
-        (2500, 1000, true),
-        (-2500, 1000, true),
-        (2501, 1000, false),
-        (500, 0, true),
-        (501, 0, false),
-        (500, -900, true),
-    ] {
-        assert_eq!(LIMITS.can_go(place(7), place(7 + mm), Duration::from_millis(millis)), can_go, "{mm} {millis}");
-    }
-    assert!(any.can_go(place(0), place(i32::MAX), Duration::ZERO) && any.believes_all_places());
-    assert!(!LIMITS.believes_all_places());
-}
-
-#[test]
-fn limits_keep_their_values_in_other_numbers() {
-    let cast = LIMITS.cast::<f32>();
-    assert_eq!((cast.max_radius_m, cast.max_speed_mps, cast.slack_m), (0.5, 2.0, 0.5));
-    assert_eq!((cast.settle, cast.last), (LIMITS.settle, LIMITS.last));
-    assert_eq!(PlausibilityLimits::<f64>::ANY.cast::<f32>().max_speed_mps, f32::MAX);
-    assert!(PlausibilityLimits::<f32>::ANY.cast::<crate::scalar::Q16>().believes_all_places());
-}
-
-#[test]
-fn a_suspect_settles_by_consistent_places_and_is_removed_when_believed() {
-    let mut filter = PlausibilityFilter::new();
-    let longest = Duration::from_millis(1_000);
-    let judge = |filter: &mut PlausibilityFilter, id: u32, mm: i32, millis: u32| {
-        filter.judge(RobotId(id), Position::from_mm([mm, 0, 0]), at(millis * 1000), &LIMITS, longest)
-    };
-    assert_eq!(judge(&mut filter, 1, 0, 0), Verdict::Begins);
-    assert_eq!(judge(&mut filter, 1, 100, 200), Verdict::Stands);
-    assert_eq!(judge(&mut filter, 1, 9000, 299), Verdict::Stands, "a jump starts again");
-    assert_eq!(judge(&mut filter, 1, 9000, 598), Verdict::Stands);
-    assert_eq!(judge(&mut filter, 1, 9000, 599), Verdict::Settled);
-    assert_eq!(judge(&mut filter, 1, 9000, 600), Verdict::Begins, "removed when it settled");
-    let _ = judge(&mut filter, 2, 0, 600);
-    filter.clear(RobotId(1));
-    assert_eq!(judge(&mut filter, 2, 0, 700), Verdict::Stands, "another one stays");
-    assert_eq!(judge(&mut filter, 1, 9000, 700), Verdict::Begins);
-    assert_eq!(judge(&mut filter, 1, 9000, 1_701), Verdict::Begins, "silent for too long");
-    // All four entries are in use: a fifth robot stays in doubt.
-    let _ = [3, 4, 5].map(|id| judge(&mut filter, id, 0, 1_701));
-    assert_eq!([1_702, 2_002].map(|millis| judge(&mut filter, 6, 0, millis)), [Verdict::Begins; 2]);
-    assert_eq!(judge(&mut filter, 5, 0, 2_002), Verdict::Settled, "the last that found an entry");
 }
 
 /// Receives one robot at `x` metres with a velocity, and returns its trace.

@@ -328,6 +328,15 @@ fn a_detection_inside_a_body_seen_at_one_time_starts_no_track() {
 }
 
 #[test]
+fn bodies_that_only_touch_do_not_overlap() {
+    let params = TrackParams { gate: 0.5, ..params::<f64>() };
+    let mut track = Track::new(RobotId(2), at(0), Position::ORIGIN, 0.005, &params);
+    track.radius_m = 0.25;
+    let fits = |mm: i32| track.fit(Position::from_mm([mm, 0, 0]), 0.005, 0.25, at(0), &params).is_some();
+    assert_eq!([499, 500, 501].map(fits), [true, false, false]);
+}
+
+#[test]
 fn each_detection_takes_the_track_that_fits_it_best() {
     for swapped in [false, true] {
         let mut tracker = Tracker::<f64>::new(params());

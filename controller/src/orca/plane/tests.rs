@@ -39,6 +39,9 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     let overlapping = half_plane(V::ZERO, &ball(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(-1.0, 0.0));
     assert!((overlapping.point.x + 5.0).abs() < 1e-9);
+    // At the velocity of the disc's centre no direction follows but that of the other robot.
+    let centre = half_plane(v(10.0, 0.0), &ball(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
+    assert_eq!(centre.normal, v(-1.0, 0.0));
     let tied = |tie: V| {
         let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
         half_plane(V::ZERO, &other, &p).unwrap().normal

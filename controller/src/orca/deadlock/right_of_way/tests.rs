@@ -4,9 +4,11 @@ use super::*;
 use crate::body::Body;
 use crate::neighbor::Nearby;
 use crate::orca::fixtures::{body, robot};
-use crate::robot::{Mode, RobotId};
-use proptest::prelude::*;
+use crate::robot::Mode;
 use std::vec::Vec;
+
+mod steps;
+mod zones;
 
 const DOOR: Gap<f64> =
     Gap { middle: Vec2::new(1.0, 0.0), ahead: Vec2::new(1.0, 0.0), half: 0.2, depth: 0.0, is_only_way: false };
@@ -180,125 +182,6 @@ fn a_silent_robot_has_no_place_in_the_order() {
     }
 }
 
-/// A robot anywhere around a door in metres: 0.15 m are one radius, 0.05 m/s are slow.
-#[derive(Clone, Copy, Debug)]
-struct Other {
-    id: u32,
-    /// Behind the middle of the door, and to the left of its axis.
-    place: [f64; 2],
-    speed: f64,
-    mode: Mode,
-    gives_way: bool,
-}
-
-prop_compose! {
-    fn others()(
-        id in prop_oneof![Just(4_u32), Just(6)],
-        place in prop_oneof![[-1.6..1.6_f64, -0.5..0.5_f64], [-0.3..0.3_f64, -0.25..0.25_f64]],
-        speed in -0.15..0.15_f64,
-        mode in prop_oneof![3 => Just(Mode::Cruise), 1 => Just(Mode::Arrived)],
-        gives_way in prop::bool::weighted(0.8),
-    ) -> Other {
-        Other { id, place, speed, mode, gives_way }
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4096))]
-
-    /// The zones of a door of 0.4 m for another robot, by their borders in metres.
-    #[test]
-    fn each_zone_of_a_door_has_its_meaning(
-        other in others(), own_m in prop_oneof![Just(1.0), -0.3..0.5_f64], depth in prop_oneof![Just(0.0), Just(0.5)],
-        is_narrow: bool,
-    ) {
-        let gap = Gap { middle: Vec2::new(own_m, 0.0), depth, ..DOOR };
-        let Other { id, place: [along, y], speed, mode, gives_way } = other;
-        let nearby = [Nearby { mode, gives_way, ..robot(id, [own_m + along, y], [speed, 0.0]) }];
-        let body = body(5, [0.0; 2]);
-        let situation = situation(&body, &nearby);
-        let own = gap.place(Vec2::ZERO);
-        let got = Approach { gap, situation: &situation, own, is_narrow }.traffic();
-
-        let beyond = (along.abs() - depth).max(0.0);
-        let x = if along < 0.0 { -beyond } else { beyond };
-        let (distance, own_distance) = (libm::hypot(x, y), (own_m.abs() - depth).max(0.0));
-        let is_parked = mode == Mode::Arrived || !gives_way;
-        // Positions are rounded: equally far robots have the order of their ids.
-        let is_nearer = if (distance - own_distance).abs() > 0.09e-3 { distance < own_distance } else { id < 5 };
-        let (goes, comes) = (speed > 0.05, speed < -0.05);
-        let is_in_door = x.abs() < 0.225 && y.abs() < 0.2;
-        prop_assert_eq!(got.ahead, is_in_door && goes, "ahead");
-        let stands = is_in_door && !is_parked && !goes && x > 0.0 && is_nearer;
-        prop_assert_eq!(got.against, is_in_door && comes || stands, "against");
-        let is_first = if (along - own_m).abs() > 0.09e-3 { along < own_m } else { id < 5 };
-        let bars = is_in_door && along > -own_m && !is_parked && !goes && is_first;
-        prop_assert_eq!(got.bars, bars, "bars");
-        let is_before = x < 0.0 && is_nearer && mode == Mode::Cruise && (gives_way || !is_narrow);
-        prop_assert_eq!(got.rank, i32::from(is_before && !comes), "rank");
-        let flows = is_narrow && (is_in_door && !is_parked || is_before && (goes || comes));
-        prop_assert_eq!(got.flows, flows, "flows");
-        let comes_out = x < 0.0 && comes && distance < own_distance - 0.15 && x > -0.75 && y.abs() < 0.3;
-        prop_assert_eq!(got.comes_out, comes_out, "comes out");
-        let opposite = x > 0.0 && distance < 0.75 && speed < 0.05 && !is_parked;
-        let oncoming = opposite && comes && y.abs() < 0.35;
-        prop_assert_eq!([got.opposite, got.oncoming], [opposite, oncoming]);
-        prop_assert_eq!([got.opposite_is_nearer, got.oncoming_is_nearer], [opposite && is_nearer, oncoming && is_nearer]);
-        let apart = libm::hypot(own_m + along, y);
-        let queues = is_narrow && is_before && !comes && apart < 0.525;
-        prop_assert_eq!(got.is_behind, queues && (own_m + along) * own_m > 0.0, "queue");
-        prop_assert_eq!(got.crowds.is_some(), queues && apart < 0.45, "crowd");
-        let is_ahead = own.x < 0.0 && is_nearer || x > 0.0 && y.abs() < 0.3;
-        if !(is_ahead && !is_parked && !comes) {
-            prop_assert!(!got.leads && got.pace_mps == f64::MAX, "follows");
-        } else if x >= 0.0 {
-            prop_assert_eq!(got.leads, goes, "leads");
-        }
-    }
-
-    #[test]
-    fn the_way_through_a_door_bends_into_its_lane(
-        own in [-1.0..1.0_f64, -0.5..0.5_f64], half in 0.1..0.6_f64, has_lanes: bool,
-    ) {
-        let gap = Gap { middle: Vec2::new(-own[0], own[1]), half, ..DOOR };
-        let [x, y] = own;
-        let lane = if has_lanes { half / 2.0 } else { 0.0 };
-        let is_beside = (y - lane).abs() > (half - 0.15).max(0.045);
-        let wanted = match (x > 0.0, is_beside) {
-            (true, _) => [0.6, lane + 0.045],
-            (false, true) if has_lanes => [-0.12, lane],
-            (false, true) => [x.clamp(-0.225, -0.12), lane],
-            (false, false) => [0.3, lane],
-        };
-        let got = with_approach(gap, &[], |approach| approach.way_through(has_lanes));
-        prop_assert!((got - Vec2::new(wanted[0], wanted[1])).norm() < 1e-9, "{got:?} {wanted:?}");
-    }
-
-    #[test]
-    fn robots_wait_beside_the_lane_by_rank(
-        own in [-1.5..-0.01_f64, -1.0..1.0_f64], half in 0.1..0.6_f64, rank in 0..6_i32, is_behind: bool, has_lanes: bool,
-    ) {
-        let gap = Gap { middle: Vec2::new(-own[0], own[1]), half, ..DOOR };
-        let [x, y] = own;
-        let side = if has_lanes || y >= 0.0 { 1.0 } else { -1.0 };
-        let spot = [-0.225, (half.max(0.15) + 0.18) * side];
-        let is_in_lane = y.abs() < half.max(0.15) + 0.15 && x > -0.75;
-        let room = 0.15 * (6.5 * f64::from(rank)).sqrt();
-        let wanted = if is_in_lane && !has_lanes {
-            // First back, then aside.
-            Some(if x > -0.195 { [-0.375, spot[1]] } else { [x, spot[1] + 0.075 * side] })
-        } else {
-            Some(spot).filter(|spot| !is_behind && libm::hypot(spot[0] - x, spot[1] - y) >= room)
-        };
-        let traffic = Traffic { rank, is_behind, ..NO_TRAFFIC };
-        let got = with_approach(gap, &[], |approach| approach.place_to_wait(&traffic, has_lanes));
-        prop_assert_eq!(got.is_some(), wanted.is_some(), "{:?} {:?}", got, wanted);
-        if let Some((got, wanted)) = got.zip(wanted) {
-            prop_assert!((got - Vec2::new(wanted[0], wanted[1])).norm() < 1e-9, "{got:?} {wanted:?}");
-        }
-    }
-}
-
 #[test]
 fn a_robot_too_near_to_the_one_ahead_moves_back() {
     let gap = Gap { middle: Vec2::new(1.5, 0.0), ..DOOR };
@@ -317,6 +200,12 @@ fn the_first_robot_in_the_door_that_is_ahead_decides_whether_it_bars() {
     };
     assert!(bars([(0.1, 0.0), (0.12, 0.3)]) && !bars([(0.1, 0.3), (0.12, 0.0)]));
     assert!(bars([(-0.2, 0.3), (0.1, 0.0)]), "one behind does not count");
+    // Of two equally far from their exits, the smaller id has priority.
+    let meets = |id: u32, along: f64| {
+        with_approach(gap, &[robot(id, [0.15 + along, 0.0], [0.0; 2])], |approach| approach.traffic()).bars
+    };
+    assert_eq!([meets(4, 0.15), meets(6, 0.15)], [true, false]);
+    assert_eq!([meets(4, 0.16), meets(6, 0.14)], [false, true]);
 }
 
 #[test]
@@ -382,161 +271,4 @@ fn the_rule_applies_near_doors_with_robots_and_at_narrow_ones_that_are_the_only_
     let nearby = [robot(9, [-0.6, 0.0], [0.0; 2])];
     let still = Situation { obstacles: &walls, wish: Vec2::ZERO, ..situation(&body, &nearby) };
     assert!(Approach::new(&still, Vec2::new(5.0, 0.0)).is_none(), "a robot that stands needs no way");
-}
-
-/// The wishes in some steps at a door 1 m ahead, and the state after them.
-fn wishes(memory: &mut RightOfWay<f64>, nearby: &[Nearby<f64>], goal: [f64; 2], steps: u32) -> Vec<Vec2<f64>> {
-    let (body, walls) = (body(5, [0.0; 2]), door_walls(1.0, 0.2));
-    let situation = Situation { obstacles: &walls, ..situation(&body, nearby) };
-    let goal = Vec2::new(goal[0], goal[1]);
-    (0..steps)
-        .map(|step| memory.wish(&situation, goal, 5.0, &mut crate::orca::fixtures::rng_of(5, step)).unwrap_or_default())
-        .collect()
-}
-
-#[test]
-fn a_robot_follows_through_a_door_at_the_pace_of_the_one_ahead() {
-    let east = Vec2::new(1.0, 0.0);
-    let far = robot(9, [-0.6, 0.0], [0.0; 2]);
-    let mut free = RightOfWay::NEW;
-    assert_eq!(wishes(&mut free, &[far], [4.0, 0.0], 1), [east * 0.5]);
-    assert!(free.goes && !free.waits() && !free.takes_turns());
-    // Its place along the gap counts: 0.33 m ahead it moves as fast as the robot ahead.
-    let leader = robot(9, [0.33, 0.0], [0.2, 0.0]);
-    let mut follows = RightOfWay::NEW;
-    let got = wishes(&mut follows, &[leader], [4.0, 0.0], 1)[0];
-    assert!((got - east * 0.2).norm() < 1e-9, "{got:?}");
-    assert!(follows.goes && follows.takes_turns());
-    // The next point of the way is the goal, if that is nearer.
-    let mut near = RightOfWay::NEW;
-    let got = wishes(&mut near, &[far], [1.1, 0.0], 1)[0];
-    assert!((got - east * 0.5).norm() < 1e-9, "{got:?}");
-}
-
-#[test]
-fn a_robot_waits_until_its_patience_ends() {
-    let opposite = robot(4, [2.0, 0.0], [0.0; 2]);
-    let nearer = robot(4, [1.5, 0.0], [0.0; 2]);
-    for (other, waits) in [(opposite, true), (nearer, true), (robot(6, [1.7, 0.0], [0.0; 2]), true)] {
-        let mut memory = RightOfWay::NEW;
-        let got = wishes(&mut memory, &[other], [4.0, 0.0], 200);
-        let goes = got.iter().position(|wish| wish.x > 0.4);
-        let is_late = goes.is_some_and(|step| (29..=61).contains(&step));
-        assert_eq!(is_late || goes == Some(0), waits, "{other:?} {goes:?}");
-    }
-}
-
-#[test]
-fn turns_are_measured_while_robots_pass() {
-    let in_door = |speed: f64| robot(9, [1.0, 0.0], [speed, 0.0]);
-    let mut memory = RightOfWay::NEW;
-    let step = |memory: &mut RightOfWay<f64>, other: Nearby<f64>, steps| {
-        let _ = wishes(memory, &[other], [4.0, 0.0], steps);
-        (memory.last_went_ahead, (memory.turn_m / 0.025).round() as i32, memory.idle.is_some())
-    };
-    // 0.025 m per step at the top speed.
-    assert_eq!(step(&mut memory, in_door(0.3), 1), (Some(true), 0, true));
-    assert_eq!(step(&mut memory, in_door(0.3), 9), (Some(true), 9, true));
-    assert_eq!(step(&mut memory, in_door(-0.3), 1), (Some(false), 0, true), "the other direction begins");
-    assert_eq!(step(&mut memory, in_door(-0.3), 4), (Some(false), 4, true));
-    let away = robot(9, [-0.6, 0.0], [0.0; 2]);
-    assert_eq!(step(&mut memory, away, 3), (Some(false), 7, true), "an empty door ends no turn");
-    // The time at an empty door counts, in radii; while robots pass it does not.
-    let (idle, enough) = memory.idle.unwrap();
-    assert!((idle - 4.0 * 0.025 / 0.15).abs() < 1e-9 && (5.0..10.0).contains(&enough), "{idle} {enough}");
-    let _ = step(&mut memory, in_door(0.3), 5);
-    assert!(memory.idle.is_some_and(|(idle, _)| (idle - 0.025 / 0.15).abs() < 1e-9), "{memory:?}");
-    let _ = wishes(&mut memory, &[], [4.0, 0.0], 1);
-    assert_eq!(memory, RightOfWay::NEW, "alone at a door, the rule does not apply");
-}
-
-#[test]
-fn patience_grows_with_the_rank() {
-    let ahead = robot(9, [0.4, 0.0], [0.0; 2]);
-    let opposite = robot(4, [1.7, 0.0], [0.0; 2]);
-    for (other, idle, goes) in
-        [(opposite, 4.99, false), (opposite, 5.01, true), (ahead, 6.66, false), (ahead, 6.67, true)]
-    {
-        let mut memory = RightOfWay { idle: Some((idle, 5.0)), ..RightOfWay::NEW };
-        let _ = wishes(&mut memory, &[other], [4.0, 0.0], 1);
-        assert_eq!((memory.goes, memory.waits()), (goes, !goes), "{idle}");
-    }
-    // It is drawn for each time that the door is empty.
-    for step in 0..5 {
-        let (mut memory, mut rng) = (RightOfWay::NEW, crate::orca::fixtures::rng_of(5, step));
-        let (body, walls) = (body(5, [0.0; 2]), door_walls(1.0, 0.2));
-        let nearby = [opposite];
-        let situation = Situation { obstacles: &walls, ..situation(&body, &nearby) };
-        let _ = memory.wish(&situation, Vec2::new(4.0, 0.0), 5.0, &mut rng);
-        let more = f64::from(crate::orca::fixtures::rng_of(5, step).below(1000)) / 1000.0;
-        assert_eq!(memory.idle, Some((0.025 / 0.15, 5.0 + 5.0 * more)));
-    }
-}
-
-#[test]
-fn a_robot_slows_down_before_the_point_that_it_heads_for() {
-    let (body, walls) = (body(5, [0.0; 2]), door_walls(-0.05, 0.2));
-    let nearby = [robot(9, [-0.9, 0.0], [0.0; 2])];
-    let situation = Situation { obstacles: &walls, ..situation(&body, &nearby) };
-    let wish = |goal_m: f64| {
-        let mut rng = crate::orca::fixtures::rng_of(5, 0);
-        RightOfWay::NEW.clone().wish(&situation, Vec2::new(goal_m, 0.0), 5.0, &mut rng).unwrap()
-    };
-    // 0.01 m in a step of 0.05 s.
-    assert!((wish(0.01) - Vec2::new(0.2, 0.0)).norm() < 1e-9, "{:?}", wish(0.01));
-    let far = wish(4.0);
-    // Four radii behind the door, and 0.3 radii to the right.
-    let way = Vec2::new(0.6 - 0.05, -0.045);
-    assert!((far - way * (0.5 / way.norm())).norm() < 1e-9, "{far:?}");
-}
-
-/// A door, a robot before it, and others, in other units of length and time.
-fn scaled(others: &[Other], length: f64, time: f64, steps: usize) -> Vec<Option<Vec2<f64>>> {
-    let body =
-        Body { radius_m: 0.15 * length, max_speed_mps: 0.5 * length / time, step_s: 0.05 * time, ..body(5, [0.0; 2]) };
-    let walls = door_walls(1.0, 0.2).map(|wall| match wall {
-        Obstacle::Wall(ends) => Obstacle::Wall(ends.map(|end| end * length)),
-        other => other,
-    });
-    let mut memory = RightOfWay::NEW;
-    (0..steps)
-        .map(|step| {
-            let nearby: Vec<_> = others
-                .iter()
-                .map(|other| {
-                    let [x, y] = other.place;
-                    let on = 1.0 + x + other.speed * 0.05 * step as f64;
-                    Nearby {
-                        id: RobotId(other.id),
-                        mode: other.mode,
-                        gives_way: other.gives_way,
-                        radius_m: 0.15 * length,
-                        ..robot(9, [on * length, y * length], [other.speed * length / time, 0.0])
-                    }
-                })
-                .collect();
-            let wish = Vec2::new(0.5 * length / time, 0.0);
-            let situation = Situation { body: &body, wish, goal: None, nearby: &nearby, obstacles: &walls };
-            let mut rng = crate::orca::fixtures::rng_of(5, step as u32);
-            memory.wish(&situation, Vec2::new(4.0 * length, 0.0), 5.0, &mut rng)
-        })
-        .collect()
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
-
-    #[test]
-    fn decisions_are_equal_in_other_units_of_length_and_time(
-        others in proptest::collection::vec(others(), 1..4), length in -3..4_i32, time in -3..4_i32,
-    ) {
-        let (length, time) = (libm::ldexp(1.0, length), libm::ldexp(1.0, time));
-        let plain = scaled(&others, 1.0, 1.0, 12);
-        for (step, (plain, other)) in plain.into_iter().zip(scaled(&others, length, time, 12)).enumerate() {
-            prop_assert_eq!(plain.is_some(), other.is_some());
-            if let Some((plain, other)) = plain.zip(other) {
-                prop_assert!((other * (time / length) - plain).norm() < 1e-9, "{step}: {plain:?} {other:?}");
-            }
-        }
-    }
 }
