@@ -111,11 +111,7 @@ enum Command {
         scaling: bool,
     },
     /// Changes of the controller that its tests must notice
-    Mutants {
-        /// Every N-th one from the K-th on
-        #[arg(long, value_name = "K/N", default_value = mutants::SHARD)]
-        shard: String,
-    },
+    Mutants(mutants::Options),
     /// What `staya new` makes, compiled and tested
     New,
     /// Panics planted in the firmware's sources: the linker refuses each
@@ -159,7 +155,7 @@ fn main() -> ExitCode {
         Command::Fuzz { seconds } => fuzz::run(s, seconds),
         Command::Install(options) => install::run(s, &options),
         Command::Mpi { scaling } => mpi::run(s, scaling),
-        Command::Mutants { shard } => mutants::run(s, &shard),
+        Command::Mutants(options) => mutants::run(s, &options),
         Command::New => project::run(s, true),
         Command::Plants => plants::run(s, true),
         Command::Pogema => python::pogema(s, true),

@@ -64,7 +64,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     s.report.step("experiments show what they should, with few seeds", || {
         execute(s.repo.command(staya?).args(["experiment", "--all", "--quick", "--restart"]))
     });
-    mutants::run(s, mutants::SHARD);
+    mutants::run(s, &mutants::Options::default());
     bench::run_goals(s);
 }
 

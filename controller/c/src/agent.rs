@@ -84,6 +84,7 @@ impl StayaAgent {
             let agent = begin(&mut *(&raw mut (*site).agent).cast(), &config);
             *agent.law_mut() = setup.law()?;
             *agent.safety_mut() = setup.layer()?;
+            setup.check_rounding(&config, agent.safety())?;
             *agent.wire_mut() = setup.speech()?;
             (&raw mut (*site).law).write(StayaLaw::of(setup.law)?);
             (&raw mut (*site).has_heard).write(false);

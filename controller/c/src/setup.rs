@@ -25,6 +25,7 @@ use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::FlySafety;
 #[cfg(feature = "push-out")]
 use staya_controller::agent::PushOutSafety;
+use staya_controller::agent::Safety;
 use staya_controller::agent::{AgentConfig, ContactLossPolicy, External, OrcaSafety, Unguarded, WaypointGuidance};
 use staya_controller::neighbor::{Ages, PlausibilityLimits};
 #[cfg(feature = "space")]
@@ -276,6 +277,17 @@ impl StayaSetup {
             }
             #[cfg(not(all(feature = "table", feature = "space", feature = "push-out")))]
             _ => Err(StayaStatus::NotBuilt),
+        }
+    }
+
+    /// Refuses a tick or a speed for which the gaps between robots do not cover rounding.
+    pub(crate) fn check_rounding(&self, config: &AgentConfig<Number>, layer: &Layer) -> Checked<()> {
+        let is_in_space = self.safety == StayaSafety::Fly as u8;
+        match layer.inflation() {
+            Some(inflation) => {
+                config.check_rounding(inflation.growth_mps, is_in_space).map_err(|_| StayaStatus::Number)
+            }
+            None => Ok(()),
         }
     }
 

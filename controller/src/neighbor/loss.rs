@@ -92,6 +92,7 @@ impl LossEstimate {
 mod tests {
     use super::*;
     use crate::rand::Rng;
+    use proptest::prelude::*;
 
     const PERIOD: Duration = Duration::from_millis(1_000);
     const LONGEST: Duration = Duration::from_millis(60_000);
@@ -191,6 +192,51 @@ mod tests {
         assert_eq!(estimate.patience(8, PERIOD, PERIOD), PERIOD);
         assert_eq!(estimate.patience(0, PERIOD, longest), PERIOD.saturating_mul(4));
         assert!(estimate.patience(8, Duration::ZERO, longest) <= longest);
+    }
+
+    proptest! {
+        /// Chances as fractions instead of fixed point.
+        #[test]
+        fn patience_is_the_least_silence_with_less_than_one_false_alarm_in_10_000_minutes(
+            events in proptest::collection::vec((0..40_u16, any::<bool>()), 0..60),
+            neighbors in 0..20_usize, period_ms in 50..2_000_i32, longest_s in 1..200_i32,
+        ) {
+            let mut estimate = LossEstimate::new();
+            let [mut frames, mut gaps, mut ended, mut lost] = [0_u16; 4];
+            for (missed, is_heard) in events {
+                if is_heard { estimate.heard(missed) } else { estimate.gave_up(missed) }
+                frames += missed + u16::from(is_heard);
+                gaps += u16::from(missed > 3);
+                ended += u16::from(missed > 3 && is_heard);
+                lost += missed.saturating_sub(3);
+            }
+            prop_assert_eq!(estimate, LossEstimate { frames, gaps, ended, lost });
+            let (period, longest) = (Duration::from_millis(period_ms), Duration::from_millis(longest_s * 1000));
+            let got = estimate.patience(neighbors, period, longest);
+            let chance = |part: u16, whole: u16| (f64::from(part) + 1.0) / (f64::from(whole) + 2.0);
+            let per_minute = f64::from(60_000 / period_ms) * neighbors as f64 * chance(gaps, frames);
+            let alarms = |periods: i32| per_minute * libm::pow(1.0 - chance(ended, lost), f64::from(periods - 4));
+            prop_assert!(got <= longest);
+            let periods = got.as_micros() / period.as_micros();
+            if got < longest {
+                prop_assert!(got == period.saturating_mul(periods) && (4..=64).contains(&periods));
+                prop_assert!(alarms(periods) < 1.05e-4, "{periods}: {}", alarms(periods));
+            }
+            let before = (periods - 1).min(63);
+            prop_assert!(before < 4 || alarms(before) > 0.95e-4, "{before}: {}", alarms(before));
+        }
+    }
+
+    #[test]
+    fn all_counts_are_halved_when_the_frames_reach_the_memory() {
+        let mut estimate = LossEstimate { frames: MEMORY - 2, gaps: 101, ended: 51, lost: 1001 };
+        estimate.heard(0);
+        assert_eq!(estimate, LossEstimate { frames: MEMORY - 1, gaps: 101, ended: 51, lost: 1001 });
+        estimate.heard(0);
+        assert_eq!(estimate, LossEstimate { frames: MEMORY / 2, gaps: 50, ended: 25, lost: 500 });
+        let mut long = LossEstimate::new();
+        long.heard(u16::MAX);
+        assert_eq!(long, LossEstimate { frames: MEMORY / 2, gaps: 0, ended: 0, lost: (MEMORY - 4) / 2 });
     }
 
     #[test]

@@ -3,6 +3,9 @@ use crate::wire::{Beacon, Bytes, ProtocolId};
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
+mod lost;
+mod plausibility;
+
 const AGES: Ages = Ages { stale_after: Duration::from_millis(1_000), expire_after: Duration::from_millis(5_000) };
 
 fn at(micros: u32) -> Instant {
@@ -233,6 +236,17 @@ fn lost_robots_block_their_places_until_they_are_received() {
         assert!(ages.into_iter().all(|age| age.is_some_and(|age| age <= OLDEST)));
     }
     assert_eq!(lost(&table), [1, 2, 9]);
+}
+
+#[test]
+fn robots_of_another_flock_are_strangers() {
+    let own = standing(1, 1.0, at(0));
+    let other = Neighbor { flock: 3, ..standing(2, 2.0, at(0)) };
+    let strangers = |flock: u8| {
+        let seen = nearest::<_, 4>(&[own, other], flock, Position::ORIGIN, 0.0, at(0), &AGES, &INFLATION);
+        seen.iter().map(|near| near.is_stranger).collect::<StdVec<_>>()
+    };
+    assert_eq!((strangers(0), strangers(3)), ([false, true].into(), [true, false].into()));
 }
 
 /// Receives one robot at `x` metres with a velocity, and returns its trace.

@@ -37,4 +37,16 @@ mod tests {
         let fixed = tie::<Q16>(a, b);
         assert!((fixed.x.to_f64() - way.x).abs() < 1e-4 && (fixed.y.to_f64() - way.y).abs() < 1e-4);
     }
+
+    #[test]
+    fn the_directions_of_many_pairs_cover_half_a_turn_evenly() {
+        let mut counts = [0; 4];
+        for other in 2..402 {
+            let way = tie::<f64>(RobotId(1), RobotId(other));
+            let angle = libm::atan2(way.y, way.x) / core::f64::consts::PI;
+            assert!((0.0..1.0).contains(&angle), "{angle}");
+            counts[(angle * 4.0) as usize] += 1;
+        }
+        assert!(counts.iter().all(|count| (70..130).contains(count)), "{counts:?}");
+    }
 }

@@ -84,3 +84,48 @@ impl<S: Scalar> VelocityObstacle<S> {
         pr1.min(pr2).min(pr3.max(pr4)).max(disc)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type V = Vec2<f64>;
+
+    fn near(one: V, x: f64, y: f64) -> bool {
+        (one - V::new(x, y)).norm() < 1e-12
+    }
+
+    /// A cone with the half angle of the triangle 3, 4, 5.
+    #[test]
+    fn parts_and_predicates_of_an_obstacle_are_signed_distances() {
+        let obstacle = VelocityObstacle::new(V::new(4.0, 3.0), 3.0, 2.0).unwrap();
+        let ((tip, radius), [left, right]) = (obstacle.disc(), obstacle.legs());
+        assert!(near(obstacle.ahead(), 0.8, 0.6) && near(tip, 2.0, 1.5) && radius == 1.5);
+        assert!(near(left, 0.28, 0.96) && near(right, 1.0, 0.0));
+        for (velocity, predicates, value) in [
+            ((2.0, 1.5), [1.5, 1.5, 0.0, 0.0, 1.5], 1.5),
+            ((0.0, 0.0), [0.0, 0.0, -2.0, -2.0, -1.0], -1.0),
+            ((8.0, 6.0), [6.0, 6.0, 6.0, 6.0, -6.0], 6.0),
+            ((8.0, 1.0), [7.4, 1.0, 1.2, 6.0, 1.5 - 36.25_f64.sqrt()], 1.0),
+            ((8.0, -1.0), [7.96, -1.0, -0.72, 6.0, 1.5 - 42.25_f64.sqrt()], -1.0),
+            ((2.0, 5.0), [0.52, 5.0, 3.36, 0.0, -2.0], 0.52),
+        ] {
+            let velocity = V::new(velocity.0, velocity.1);
+            for (got, wanted) in obstacle.predicates(velocity).into_iter().zip(predicates) {
+                assert!((got - wanted).abs() < 1e-9, "{velocity:?}: {:?}", obstacle.predicates(velocity));
+            }
+            assert!((obstacle.value(velocity) - value).abs() < 1e-9, "{velocity:?}: {}", obstacle.value(velocity));
+        }
+    }
+
+    #[test]
+    fn overlapping_and_invalid_robots_have_no_velocity_obstacle() {
+        let is_some =
+            |x: f64, radii: f64, horizon: f64| VelocityObstacle::new(V::new(x, 0.0), radii, horizon).is_some();
+        assert!(is_some(1.01, 1.0, 2.0));
+        assert!(!is_some(1.0, 1.0, 2.0) && !is_some(0.5, 1.0, 2.0) && !is_some(0.0, 1.0, 2.0));
+        assert!(!is_some(3.0, 0.0, 2.0) && !is_some(3.0, -1.0, 2.0) && !is_some(3.0, f64::NAN, 2.0));
+        assert!(!is_some(3.0, 1.0, 0.0) && !is_some(3.0, 1.0, -2.0) && !is_some(3.0, 1.0, f64::NAN));
+        assert!(!is_some(f64::NAN, 1.0, 2.0) && !is_some(f64::INFINITY, 1.0, 2.0));
+    }
+}

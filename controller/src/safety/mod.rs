@@ -3,6 +3,8 @@
 mod any;
 mod orca;
 mod push_out;
+#[cfg(test)]
+mod tests;
 
 pub use any::{AnyHalfPlanes, AnySafety};
 pub use orca::{FlySafety, OrcaSafety};

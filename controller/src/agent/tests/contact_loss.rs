@@ -2,7 +2,7 @@
 
 use super::plane::{Robot, STEP, in_plane, length, one_step_late, orca, place, step_number, waypoint};
 use super::*;
-use crate::neighbor::StalenessInflation;
+use crate::neighbor::{PlausibilityLimits, StalenessInflation, Trace};
 use crate::orca::AvoidParams;
 use crate::rand::Rng;
 use crate::scalar::Q16;
@@ -183,6 +183,32 @@ fn lost_robots_are_told_and_errors_corrected() {
         (previous, ages) = (said.id.0, ages + 1);
     }
     assert!(ages >= 3);
+}
+
+/// What other robots tell about lost ones is limited as their own values are.
+#[test]
+fn a_lost_robot_that_was_told_is_a_ball_within_the_limits() {
+    let plausibility = PlausibilityLimits { max_radius_m: 0.5, last: RobotId(20), ..PlausibilityLimits::<f32>::ANY };
+    let mut robot = Robot::new(&AgentConfig { plausibility, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
+    let told = |id: u32, x_mm: i32, radius_mm: u16| {
+        let position_mm = [x_mm, 100, 0];
+        Message::Lost(LostRobot { id: RobotId(id), is_lost: true, age_cs: 50, position_mm, radius_mm })
+    };
+    let messages = [told(20, 5000, 200), told(21, 5000, 200), told(0, 5000, 200), told(4, 7000, 900)];
+    let _ = robot.step(step_number(100), &bytes(2, 0, 0, &messages));
+    let lost: Vec<_> = robot.agent.link.table.lost().iter().collect();
+    assert_eq!(lost.iter().map(|lost| lost.id.0).collect::<Vec<_>>(), [4, 20]);
+    assert_eq!(lost.iter().map(|lost| lost.position.mm).collect::<Vec<_>>(), [[7000, 100, 0], [5000, 100, 0]]);
+    assert_eq!(lost.iter().map(|lost| lost.radius_m).collect::<Vec<_>>(), [0.5, 0.2]);
+    let age = lost[0].age(step_number(100)).map(Duration::as_micros);
+    assert_eq!((age, lost[0].mode, lost[0].trace), (Some(500_000), Mode::Fault, Trace::Lost));
+    // A state that is newer by a hundredth of a second or less is the same one.
+    let mut place = |age_cs: u16, sequence: u16| {
+        let newer = LostRobot { id: RobotId(4), is_lost: true, age_cs, position_mm: [9000, 100, 0], radius_mm: 200 };
+        let _ = robot.step(step_number(100), &bytes(2, 0, sequence, &[Message::Lost(newer)]));
+        robot.agent.link.table.lost()[0].position.mm[0]
+    };
+    assert_eq!([place(51, 10), place(49, 11), place(48, 12)], [7000, 7000, 9000]);
 }
 
 /// Beacons every half second, and a lag of 0.3 s: a robot of 1 m/s that falls silent may have

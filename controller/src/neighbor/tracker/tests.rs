@@ -236,7 +236,11 @@ fn invalid_detections_are_counted_and_change_nothing() {
         Sighting { deviation_m: -0.05, ..good },
         Sighting { deviation_m: 0.0, ..good },
         Sighting { deviation_m: f32::NAN, ..good },
+        Sighting { deviation_m: f32::INFINITY, ..good },
         Sighting { radius_m: -1.0, ..good },
+        Sighting { radius_m: f32::INFINITY, ..good },
+        Sighting { velocity_mps: Some((Vec3::ZERO, f32::INFINITY)), ..good },
+        Sighting { velocity_mps: Some((Vec3::ZERO, f32::NAN)), ..good },
         Sighting { age: Duration::from_millis(-1), ..good },
         Sighting { id: Some(RobotId::NONE), ..good },
         Sighting { id: Some(OWN), ..good },
@@ -261,6 +265,100 @@ fn a_late_detection_has_less_weight_than_a_prompt_one() {
     let (prompt, late) = (variance(0), variance(300));
     assert_eq!((prompt.0, late.0, late.2), (1, 1, at(10)));
     assert!(prompt.1 < late.1 && late.1 < 0.05 * 0.05, "{prompt:?} {late:?}");
+}
+
+#[test]
+fn values_at_their_limit_are_valid() {
+    let good = sighting::<f32>(1.0, 0.0);
+    let limits = [
+        Sighting { radius_m: 0.0, ..good },
+        Sighting { deviation_m: 1e-6, ..good },
+        Sighting { velocity_mps: Some((Vec3::ZERO, 0.0)), ..good },
+        Sighting { id: Some(RobotId(2)), ..good },
+    ];
+    assert!(limits.iter().all(|limit| limit.is_sound(OWN)));
+}
+
+#[test]
+fn anonymous_numbers_follow_each_other_and_skip_those_in_use() {
+    let mut tracker = Tracker::<f32>::new(params());
+    let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(3.0, 0.0)], 0);
+    assert_eq!(ids(&tracker), [1, 2].map(RobotId::local));
+    tracker.nameless = 0;
+    let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(3.0, 0.0), sighting(5.0, 0.0)], 1);
+    assert_eq!(ids(&tracker), [1, 2, 3].map(RobotId::local));
+    tracker.nameless = u16::MAX;
+    let _ = see(&mut tracker, &[sighting(7.0, 0.0)], 2);
+    assert_eq!(ids(&tracker), [1, 2, 3, 0].map(RobotId::local));
+}
+
+#[test]
+fn a_late_detection_is_relative_to_where_the_own_robot_was() {
+    let mut tracker = Tracker::<f64>::new(params());
+    let late = Sighting { age: Duration::from_millis(200), ..sighting(1.0, 0.5) };
+    let own = Position::from_mm([4_000, 0, 0]);
+    let _ = tracker.see(&[late], OWN, own, Vec3::new(1.0, -2.0, 0.0), at(10));
+    let track = tracker.tracks()[0];
+    assert_eq!(track.position.mm, [4_800, 900, 0]);
+    assert_eq!((track.at, track.seen), (at(6), Some(at(6))));
+}
+
+#[test]
+fn a_detection_inside_a_body_seen_at_one_time_starts_no_track() {
+    let first = sighting::<f32>(1.0, 0.0);
+    let large = |x: f64, radius: f32, age_ms: i32| Sighting {
+        radius_m: radius,
+        age: Duration::from_millis(age_ms),
+        deviation_m: 0.001,
+        ..sighting(x, 0.0)
+    };
+    // The first detection takes the track, the second one does not find another.
+    for (x, radius, age_ms, is_repeated) in
+        [(1.14, 0.1, 0, true), (1.16, 0.1, 0, false), (1.3, 0.4, 0, true), (1.3, 0.2, 0, false), (1.14, 0.1, 10, false)]
+    {
+        let mut tracker = Tracker::<f32>::new(params());
+        let _ = see(&mut tracker, &[first], 0);
+        let count = see(&mut tracker, &[first, large(x, radius, age_ms)], 1);
+        assert_eq!(
+            (count.known, count.repeated, count.new),
+            (1, u16::from(is_repeated), u16::from(!is_repeated)),
+            "{x}"
+        );
+    }
+}
+
+#[test]
+fn bodies_that_only_touch_do_not_overlap() {
+    let params = TrackParams { gate: 0.5, ..params::<f64>() };
+    let mut track = Track::new(RobotId(2), at(0), Position::ORIGIN, 0.005, &params);
+    track.radius_m = 0.25;
+    let fits = |mm: i32| track.fit(Position::from_mm([mm, 0, 0]), 0.005, 0.25, at(0), &params).is_some();
+    assert_eq!([499, 500, 501].map(fits), [true, false, false]);
+}
+
+#[test]
+fn each_detection_takes_the_track_that_fits_it_best() {
+    for swapped in [false, true] {
+        let mut tracker = Tracker::<f64>::new(params());
+        let mut pair = [sighting(1.0, 0.0), sighting(1.25, 0.0)];
+        let _ = see(&mut tracker, &pair.map(|one| Sighting { radius_m: 0.05, ..one }), 0);
+        pair = [sighting(1.05, 0.0), sighting(1.3, 0.0)].map(|one| Sighting { radius_m: 0.05, ..one });
+        if swapped {
+            pair.swap(0, 1);
+        }
+        assert_eq!(see(&mut tracker, &pair, 1), Sighted { known: 2, ..Sighted::default() });
+        let places = [0, 1].map(|at| tracker.tracks()[at].position.mm[0]);
+        assert!((1_000..1_060).contains(&places[0]) && (1_250..1_310).contains(&places[1]), "{places:?}");
+    }
+}
+
+#[test]
+fn an_anonymous_track_is_kept_for_the_closest_detection_with_an_id() {
+    let mut tracker = Tracker::<f64>::new(params());
+    let _ = see(&mut tracker, &[sighting(1.0, 0.0), named(5, 1.8, 0.0), sighting(2.6, 0.0)], 0);
+    assert_eq!(ids(&tracker), [RobotId(5), RobotId::local(1), RobotId::local(2)]);
+    let _ = see(&mut tracker, &[named(9, 2.6, 0.0)], 1);
+    assert_eq!(ids(&tracker), [RobotId(5), RobotId::local(1), RobotId(9)], "not another robot's track");
 }
 
 /// The textbook Kalman filter with matrices, one axis each.

@@ -109,6 +109,82 @@ fn a_full_avoider_keeps_the_nearest_and_capacity_zero_works() {
 }
 
 #[test]
+fn both_radii_and_the_margin_count() {
+    let params = AvoidParams { margin_m: 0.1, wall_horizon_s: 2.0, ..AvoidParams::<f64>::default() };
+    let own = body(1, [0.5, 0.0]);
+    let planes = |nearby: &[Nearby<f64>], obstacles: &[Obstacle<f64>]| {
+        let (hard, planes) = Avoider::<f64, 4>::new(params).half_spaces(&own, nearby, obstacles);
+        assert_eq!(hard, obstacles.len());
+        // The speed towards the obstacle that is permitted for 2 s.
+        planes.iter().map(|plane| -plane.point.dot(plane.normal) * 2.0).collect::<std::vec::Vec<_>>()
+    };
+    let is_near = |got: std::vec::Vec<f64>, wanted: f64| got.len() == 1 && (got[0] - wanted).abs() < 1e-9;
+    let wall = Obstacle::Wall([Vec2::new(0.8, -9.0), Vec2::new(0.8, 9.0)]);
+    assert!(is_near(planes(&[], &[wall]), 0.8 - 0.15 - 0.1));
+    let ball = Obstacle::Ball { center_m: Vec3::new(1.2, 0.0, 0.0), radius_m: 0.4 };
+    assert!(is_near(planes(&[], &[ball]), 1.2 - 0.4 - 0.15 - 0.1));
+    let plane = Obstacle::Plane { normal: Vec3::new(-2.0, 0.0, 0.0), distance_m: 1.6 };
+    assert!(is_near(planes(&[], &[plane]), 0.8 - 0.15 - 0.1), "of any length of its normal");
+    // A stationary robot that does not give way is like a ball.
+    let robot = Nearby { radius_m: 0.4, gives_way: false, ..robot(2, [1.2, 0.0], [0.0; 2]) };
+    assert!(is_near(planes(&[robot], &[]), 1.2 - 0.4 - 0.15 - 0.1));
+}
+
+#[test]
+fn of_equally_near_obstacles_the_first_ones_count() {
+    let wall = |x: f64| Obstacle::Wall([Vec2::new(x, -1.0), Vec2::new(x, 1.0)]);
+    let own = body(1, [0.1, 0.0]);
+    let normals = |obstacles: &[Obstacle<f64>]| {
+        let (_, planes) = Avoider::<f64, 2>::new(AvoidParams::default()).half_spaces(&own, &[], obstacles);
+        planes.iter().map(|plane| plane.normal.x).collect::<std::vec::Vec<_>>()
+    };
+    assert_eq!(normals(&[wall(0.5), wall(-0.5)]), [-1.0, 1.0]);
+    assert_eq!(normals(&[wall(-0.5), wall(0.5)]), [1.0, -1.0]);
+    assert_eq!(normals(&[wall(-0.5), wall(0.5), wall(0.5), wall(-0.5)]), [1.0, -1.0]);
+    assert_eq!(normals(&[wall(-0.6), wall(0.7), wall(0.4)]), [-1.0, 1.0]);
+    // In the centre of a ball there is no nearest point: nothing is nearer.
+    let ball = Obstacle::Ball { center_m: Vec3::ZERO, radius_m: 0.2 };
+    let (_, planes) =
+        Avoider::<f64, 2>::new(AvoidParams::default()).half_spaces(&own, &[], &[wall(0.4), wall(-0.5), ball]);
+    assert!(planes[0].penetration(Vec2::ZERO) > 1.0, "{planes:?}");
+}
+
+#[test]
+fn a_robot_that_is_not_finite_does_not_hide_the_next_one() {
+    let bad = Nearby { radius_m: f64::NAN, ..robot(2, [0.5, 0.0], [0.0; 2]) };
+    let (_, planes) = Avoider::<f64, 4>::new(AvoidParams::default()).half_spaces(
+        &body(1, [0.0; 2]),
+        &[bad, robot(3, [0.6, 0.0], [0.0; 2])],
+        &[],
+    );
+    assert_eq!(planes.len(), 1);
+}
+
+#[test]
+fn a_body_that_changes_its_velocity_slowly_turns_back_slowly() {
+    let reached = |acceleration: f64| {
+        let own = Body { max_acceleration_mps2: acceleration, ..body(1, [-0.5, 0.0]) };
+        let mut avoider = Avoider::<f64, 4>::new(AvoidParams::default());
+        avoider.velocity(&own, Vec2::new(0.5, 0.0), None, &[], &[], &mut rng()).velocity_mps.x
+    };
+    // In a step of 0.05 s.
+    for (acceleration, speed) in [(1.0, -0.45), (6.0, -0.2), (14.0, 0.2), (19.0, 0.45), (21.0, 0.5), (f64::MAX, 0.5)] {
+        assert!((reached(acceleration) - speed).abs() < 1e-9, "{acceleration} {}", reached(acceleration));
+    }
+}
+
+#[test]
+fn parameters_keep_their_values_in_other_numbers() {
+    let deadlock = crate::orca::DeadlockParams { lean_rad: 0.25, patience_radii: 7.0 };
+    let params = AvoidParams { horizon_s: 3.0, wall_horizon_s: 1.5, share: 0.75, margin_m: 0.125, deadlock };
+    assert_eq!(params.cast::<f32>().cast::<f64>(), params);
+    let mut avoider = Avoider::<f64, 4>::new(params);
+    assert_eq!(avoider.params(), &params);
+    avoider.params_mut().share = 0.5;
+    assert_eq!(avoider.params().share, 0.5);
+}
+
+#[test]
 fn fixed_point_robots_avoid_each_other() {
     let q = |x: f64| Q16::from_f64(x).unwrap();
     let own = Body::<Q16> {

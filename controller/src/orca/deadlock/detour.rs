@@ -157,3 +157,6 @@ pub(super) fn nearest<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Optio
     };
     moved.nearest_point().map(|(point, distance)| (point.xy(), distance))
 }
+
+#[cfg(test)]
+mod tests;

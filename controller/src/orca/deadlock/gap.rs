@@ -168,3 +168,6 @@ fn for_each_gap<S: Scalar>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -15,6 +15,8 @@ mod gap;
 mod patience;
 mod right_of_way;
 mod spread;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use detour::detour;
 pub(super) use patience::Patience;

@@ -39,6 +39,9 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     let overlapping = half_plane(V::ZERO, &ball(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(-1.0, 0.0));
     assert!((overlapping.point.x + 5.0).abs() < 1e-9);
+    // At the velocity of the disc's centre no direction follows but that of the other robot.
+    let centre = half_plane(v(10.0, 0.0), &ball(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
+    assert_eq!(centre.normal, v(-1.0, 0.0));
     let tied = |tie: V| {
         let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
         half_plane(V::ZERO, &other, &p).unwrap().normal
@@ -162,6 +165,19 @@ fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     assert!((soft.penetration_mps - 0.4).abs() < 1e-9);
     let hard = solve::<_, 4>(&planes, 1, V::ZERO, 1.0);
     assert!((hard.velocity_mps.x - 0.5).abs() < 1e-9, "{hard:?}");
+}
+
+#[test]
+fn only_the_hard_constraints_are_obeyed_without_a_solution() {
+    let plane = |x: f64, y: f64, nx: f64, ny: f64| HalfPlane { point: v(x, y), normal: v(nx, ny) };
+    let planes = [plane(0.5, 0.0, 1.0, 0.0), plane(0.0, 0.3, 0.0, 1.0), plane(0.0, -0.3, 0.0, -1.0)];
+    for (hard, y, depth) in [(1, 0.0, 0.3), (2, 0.3, 0.6)] {
+        let got = solve::<_, 4>(&planes, hard, V::ZERO, 1.0);
+        assert!((got.velocity_mps - v(0.5, y)).y.abs() < 1e-9 && got.velocity_mps.x > 0.5 - 1e-9, "{hard} {got:?}");
+        assert!((got.penetration_mps - depth).abs() < 1e-9, "{hard} {got:?}");
+    }
+    // Those beyond the capacity do not count.
+    assert_eq!(solve::<_, 2>(&planes, 1, V::ZERO, 1.0).penetration_mps, 0.0);
 }
 
 fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {

@@ -51,6 +51,9 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     let overlapping = half_space(V::ZERO, &ball(v(0.0, 0.0, 0.5), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(0.0, 0.0, -1.0));
     assert!((overlapping.point.z + 5.0).abs() < 1e-9);
+    // At the velocity of the ball's centre no direction follows but that of the other robot.
+    let centre = half_space(v(0.0, 0.0, 10.0), &ball(v(0.0, 0.0, 0.5), V::ZERO, 1.0), &p).unwrap();
+    assert_eq!(centre.normal, v(0.0, 0.0, -1.0));
     let tied = |tie: V| {
         let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
         half_space(V::ZERO, &other, &p).unwrap().normal

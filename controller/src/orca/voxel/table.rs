@@ -100,10 +100,10 @@ const fn rounded(x: f64) -> i16 {
 
 /// Newton's method; std's root is not available at compile time.
 const fn root(x: f64) -> f64 {
-    let mut root = 0.5 * (x + 1.0);
+    let mut root = x;
     let mut step = 0;
     // Enough for 0.1 to 10^10.
-    while step < 24 {
+    while step < 25 {
         root = 0.5 * (root + x / root);
         step += 1;
     }

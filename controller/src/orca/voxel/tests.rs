@@ -156,6 +156,75 @@ fn stored_normals_lie_between_backwards_and_the_leg() {
     }
 }
 
+/// Levels are equal steps of the tangent of a quarter of the cone's angle, directions equal steps
+/// of x / (x + y); behind the leg's normal the disc's does not count.
+#[test]
+fn each_node_is_the_nearest_integer_to_the_exact_normal() {
+    let VelocityObstacleTable { sines, directions, normals } = VoxelTable2k::TABLE;
+    assert_eq!(VoxelTable2k::TABLE.shape(), [20, 25]);
+    assert_eq!(VoxelTable2k::TABLE.bytes(), 20 * 2 + 20 * 25 * 4);
+    let one = f64::from(ONE);
+    for (level, nodes) in normals.chunks(directions).enumerate() {
+        let (sin, cos) = Scalar::sin_cos(2.0 * libm::atan(level as f64 / 19.0));
+        let stored = v(nodes[0][0].into(), nodes[0][1].into());
+        assert!((stored - v(sin, cos) * one).x.abs() <= 0.5 + 1e-9);
+        assert!((stored - v(sin, cos) * one).y.abs() <= 0.5 + 1e-9);
+        let sine = stored.x / stored.norm() * one;
+        assert!((0.0..1.0).contains(&(sine - f64::from(sines[level]) + 1e-9)), "{level}");
+        for (direction, &[x, y]) in nodes.iter().enumerate() {
+            let before = direction as f64 / 24.0;
+            let disc = v(before, 1.0 - before).normalized().unwrap() * one;
+            let exact = if disc.x * stored.y > disc.y * stored.x { disc } else { stored };
+            let off = v(x.into(), y.into()) - exact;
+            assert!(off.x.abs() <= 0.5 + 1e-9 && off.y.abs() <= 0.5 + 1e-9, "{level} {direction} {off:?}");
+        }
+    }
+}
+
+#[test]
+fn lookups_interpolate_between_levels_and_directions() {
+    let table = VoxelTable2k::TABLE;
+    let last = table.sines.len() - 1;
+    for (below, pair) in table.sines.windows(2).enumerate() {
+        let sine = |part: f64| (f64::from(pair[0]) + (f64::from(pair[1]) - f64::from(pair[0])) * part) / f64::from(ONE);
+        for part in [0.0, 0.25, 0.75] {
+            let (level, up) = table.level(sine(part)).unwrap();
+            assert!(level == below && (up - part).abs() < 1e-9, "{below} {part}: {level} {up}");
+        }
+    }
+    // Beyond the table, its first and last levels are extended.
+    assert_eq!(table.level(-0.01_f64).map(|(level, up)| (level, up < 0.0)), Some((0, true)));
+    assert_eq!(table.level(1.0_f64), Some((last - 1, 1.0)));
+    assert_eq!(table.level(1.5_f64).map(|(level, up)| (level, up > 1.0)), Some((last - 1, true)));
+    assert_eq!(table.level(f64::NAN), None);
+    for (w, node, on) in [
+        (v(0.0, 1.0), 0, 0.0),
+        (v(-1.0, 0.0), 23, 1.0),
+        (v(-1.0, 1.0), 12, 0.0),
+        (v(-1.0, 3.0), 6, 0.0),
+        (v(-5.0, 3.0), 15, 0.0),
+        (v(-1.0, 9.0), 2, 0.4),
+        (v(3.0, 1.0), 0, 0.0),
+        (v(3.0, 0.0), 0, 0.0),
+        (V::ZERO, 0, 0.0),
+    ] {
+        let (found, rest) = table.direction(w).unwrap();
+        assert!(found == node && (rest - on).abs() < 1e-9, "{w:?}: {found} {rest}");
+    }
+    let middle = table.between(30, 0.25_f64).unwrap();
+    let [[ax, ay], [bx, by]] = [table.normals[30], table.normals[31]].map(|node| node.map(f64::from));
+    assert_eq!(middle, v(ax * 0.75 + bx * 0.25, ay * 0.75 + by * 0.25));
+    assert_eq!(table.between(499, 0.0_f64), None);
+    // At a node the normal is the stored one, with the axis pointing back.
+    for (level, direction) in [(0, 5), (3, 12), (10, 0), (10, 20), (18, 24)] {
+        let sine = f64::from(table.sines[level]) / f64::from(ONE);
+        let before = f64::from(direction) / 24.0;
+        let found = table.normal(sine, v(-before, 1.0 - before)).unwrap();
+        let [x, y] = table.normals[level * 25 + direction as usize].map(f64::from);
+        assert!((found - v(-x, y) * (1.0 / f64::from(ONE))).norm() < 1e-4, "{level} {direction} {found:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 

@@ -7,6 +7,9 @@ use crate::orca::fixtures::{body, robot};
 use crate::robot::Mode;
 use std::vec::Vec;
 
+mod steps;
+mod zones;
+
 const DOOR: Gap<f64> =
     Gap { middle: Vec2::new(1.0, 0.0), ahead: Vec2::new(1.0, 0.0), half: 0.2, depth: 0.0, is_only_way: false };
 
@@ -177,4 +180,95 @@ fn a_silent_robot_has_no_place_in_the_order() {
         assert_eq!((got.rank, got.is_behind), (i32::from(counts(at[0] < 1.0)), counts(at[0] < 1.0)), "{at:?}");
         assert_eq!(got.opposite, counts(at[0] > 1.0), "{at:?}");
     }
+}
+
+#[test]
+fn a_robot_too_near_to_the_one_ahead_moves_back() {
+    let gap = Gap { middle: Vec2::new(1.5, 0.0), ..DOOR };
+    let traffic = Traffic { crowds: Some(Vec2::new(0.3, 0.0)), is_behind: true, rank: 1, ..NO_TRAFFIC };
+    let got = with_approach(gap, &[], |approach| approach.place_to_wait(&traffic, false)).unwrap();
+    // Three radii behind it: 0.45 m, of which it has 0.3 m.
+    assert!((got - Vec2::new(-1.65, 0.0)).norm() < 1e-9, "{got:?}");
+}
+
+#[test]
+fn the_first_robot_in_the_door_that_is_ahead_decides_whether_it_bars() {
+    let gap = Gap { middle: Vec2::new(0.15, 0.0), ..DOOR };
+    let bars = |others: [(f64, f64); 2]| {
+        let nearby = others.map(|(along, speed)| robot(9, [0.15 + along, 0.0], [speed, 0.0]));
+        with_approach(gap, &nearby, |approach| approach.traffic()).bars
+    };
+    assert!(bars([(0.1, 0.0), (0.12, 0.3)]) && !bars([(0.1, 0.3), (0.12, 0.0)]));
+    assert!(bars([(-0.2, 0.3), (0.1, 0.0)]), "one behind does not count");
+    // Of two equally far from their exits, the smaller id has priority.
+    let meets = |id: u32, along: f64| {
+        with_approach(gap, &[robot(id, [0.15 + along, 0.0], [0.0; 2])], |approach| approach.traffic()).bars
+    };
+    assert_eq!([meets(4, 0.15), meets(6, 0.15)], [true, false]);
+    assert_eq!([meets(4, 0.16), meets(6, 0.14)], [false, true]);
+}
+
+#[test]
+fn two_lanes_need_room_for_two_robots_and_their_clearance() {
+    for (half, largest, has_lanes) in
+        [(0.31, 0.15, false), (0.3115, 0.15, true), (0.36, 0.2, false), (0.3615, 0.2, true)]
+    {
+        let got = with_approach(Gap { half, ..DOOR }, &[], |approach| approach.has_lanes(largest));
+        assert_eq!(got, has_lanes, "{half} {largest}");
+    }
+}
+
+#[test]
+fn a_robot_is_between_walls_if_two_opposite_ones_are_near() {
+    let wall = |ax: f64, ay: f64, bx: f64, by: f64| Obstacle::Wall([Vec2::new(ax, ay), Vec2::new(bx, by)]);
+    let north = |y: f64| wall(-9.0, y, 9.0, y);
+    let between = |obstacles: &[Obstacle<f64>]| {
+        let body = body(5, [0.0; 2]);
+        let situation = Situation { obstacles, ..situation(&body, &[]) };
+        let own = DOOR.place(Vec2::ZERO);
+        Approach { gap: DOOR, situation: &situation, own, is_narrow: true }.is_between_walls()
+    };
+    assert!(!between(&[]) && !between(&[north(0.2)]));
+    assert!(between(&[north(0.2), north(-0.39)]) && between(&[north(-0.39), north(0.2)]));
+    assert!(!between(&[north(0.2), north(-0.41)]), "wider than four radii");
+    assert!(!between(&[north(0.2), wall(0.25, -9.0, 0.25, 9.0)]), "a corner");
+    // Opposite is at more than 120 degrees: a wall whose nearest point is at 110 or 130 degrees.
+    for (degrees, is_opposite) in [(110.0_f64, false), (130.0, true)] {
+        let (sin, cos) = Scalar::sin_cos((90.0 + degrees).to_radians());
+        let (foot, along) = (Vec2::new(cos, sin) * 0.3, Vec2::new(-sin, cos) * 0.1);
+        let slanted = Obstacle::Wall([foot - along, foot + along]);
+        assert_eq!(between(&[north(0.2), slanted]), is_opposite, "{degrees}");
+    }
+}
+
+fn door_walls(x: f64, half: f64) -> [Obstacle<f64>; 2] {
+    [half, -half].map(|y| Obstacle::Wall([Vec2::new(x, y), Vec2::new(x, y * 30.0)]))
+}
+
+/// Whether the rule applies at a door: its robot has a radius of 0.15 m.
+fn applies(x: f64, half: f64, goal: [f64; 2], others: usize) -> Option<bool> {
+    let (body, walls) = (body(5, [0.0; 2]), door_walls(x, half));
+    let nearby = [robot(9, [-0.6, 0.0], [0.0; 2])];
+    let situation = Situation { obstacles: &walls, ..situation(&body, &nearby[..others]) };
+    Approach::new(&situation, Vec2::new(goal[0], goal[1])).map(|approach| approach.is_narrow)
+}
+
+#[test]
+fn the_rule_applies_near_doors_with_robots_and_at_narrow_ones_that_are_the_only_way() {
+    // 14 radii are 2.1 m; 4.15 radii, 0.6225 m, are narrow; 2.02 to 9 radii are a door.
+    assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 0.0], 1)), [Some(true), None]);
+    assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 0.0], 0)), [None, None]);
+    assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 3.0], 0)), [Some(true), Some(true)]);
+    assert_eq!([2.09, 2.11].map(|x| applies(x, 0.4, [5.0, 3.0], 0)), [None, None]);
+    assert_eq!([2.0, 2.05].map(|x| applies(x, 0.4, [5.0, 3.0], 1)), [Some(false), Some(false)]);
+    let narrow = [0.311, 0.312].map(|half| applies(1.0, half, [5.0, 0.0], 1));
+    assert_eq!(narrow, [Some(true), Some(false)]);
+    let doors = [0.151, 0.152, 0.674, 0.676].map(|half| applies(1.0, half, [5.0, 0.0], 1).is_some());
+    assert_eq!(doors, [false, true, true, false]);
+    // Two radii behind a door the robot still moves straight ahead.
+    assert_eq!([-0.29, -0.31].map(|x| applies(x, 0.2, [5.0, 0.0], 1).is_some()), [true, false]);
+    let (body, walls) = (body(5, [0.0; 2]), door_walls(1.0, 0.2));
+    let nearby = [robot(9, [-0.6, 0.0], [0.0; 2])];
+    let still = Situation { obstacles: &walls, wish: Vec2::ZERO, ..situation(&body, &nearby) };
+    assert!(Approach::new(&still, Vec2::new(5.0, 0.0)).is_none(), "a robot that stands needs no way");
 }
