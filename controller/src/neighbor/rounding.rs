@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn each_cause_alone_can_be_too_coarse() {
         let fine = Rounding { step: Duration::from_millis(100), fastest_mmps: 1000, range_m: 100, is_in_space: false };
-        assert_eq!((fine.error_um(), fine.check()), (1484 + 5 + 60, Ok(())));
+        assert_eq!((fine.error_um(), fine.check()), (1485 + 5 + 60, Ok(())));
         let space = Rounding { is_in_space: true, ..fine };
         assert_eq!((space.error_um(), space.check()), (1818 + 5 + 60, Ok(())));
         for coarse in [
