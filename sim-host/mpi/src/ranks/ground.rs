@@ -30,7 +30,8 @@ pub trait Part {
     /// Data that a neighbour needs about bodies near `region` before they move.
     fn wishes(&self, tick: u32, region: &Region, commands: &[Command<f32>]) -> Vec<u8>;
 
-    /// Moves the bodies by commands with their ages. Returns the number of collisions of bodies of this rank with each other.
+    /// Moves the bodies by commands with their ages. Returns the number of collisions of bodies of
+    /// this rank with each other.
     fn advance_beside(
         &mut self,
         tick: u32,

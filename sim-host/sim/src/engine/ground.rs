@@ -59,8 +59,8 @@ pub trait Ground: Send + Sync {
     /// Motion of a body at the start of `tick`.
     fn motion(&self, index: usize, tick: u32) -> Motion;
 
-    /// Moves the bodies according to the commands, which have these ages. Returns the number of collisions after `tick`,
-    /// from the positions of the bodies alone.
+    /// Moves the bodies according to the commands, which have these ages. Returns the number of
+    /// collisions after `tick`, from the positions of the bodies alone.
     fn advance(&mut self, tick: u32, commands: &[Command<f32>], ages: &[CommandAge]) -> u64;
 
     /// State of a body after `tick`, for the trace hash.

@@ -1,10 +1,13 @@
 //! The simulation loop, with one [`Agent`] per robot. [`simulate`] runs a whole scenario.
 //!
 //! A tick ([`Engine::step`]) has two phases. In the first, all robots that are due decide in
-//! parallel; `[clocks]` of a scenario says when they are, by default in each tick. Each robot sees only its own pose and cell, the land around it and the bytes that the radio
-//! delivered. In the second, the radio transmits the frames and the world moves the bodies. An
-//! action therefore affects other robots in the next tick at the earliest, and neither the number
-//! of threads nor the order of robots matters.
+//! parallel: by default in each tick, otherwise as the scenario's [`Clocks`] say. Each robot sees
+//! only its own pose and cell, the land around it and the bytes that the radio delivered. In the
+//! second, the radio transmits the frames and the world moves the bodies. An action therefore
+//! affects other robots in the next tick at the earliest, and neither the number of threads nor the
+//! order of robots matters.
+//!
+//! [`Clocks`]: crate::scenario::Clocks
 
 mod attacker;
 mod body;
