@@ -213,7 +213,7 @@ pub struct Agent<S: Scalar, L: Law<S>, const N: usize, A = Unguarded, W = Postca
     commanded_mps: Vec3<S>,
 }
 
-/// What the last step leaves to the next one.
+/// State that the last step leaves to the next one.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Last {
     situation: Situation,

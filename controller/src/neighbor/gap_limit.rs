@@ -12,8 +12,8 @@ use heapless::Vec;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 
-/// What a velocity that is turned aside takes less of a gap than it may, micrometres: more than the
-/// rounding of the operations.
+/// Part of a gap that a velocity which is turned aside leaves in addition, micrometres: more than
+/// the rounding of the operations.
 const GRAIN_UM: i32 = 20;
 const ROUNDS: u8 = 6;
 
@@ -28,12 +28,12 @@ const ROUNDS: u8 = 6;
 /// [`growth_mps`]: StalenessInflation::growth_mps
 /// [`max_m`]: StalenessInflation::max_m
 ///
-/// A command is carried out for one step; then a body without inertia stands. Gaps are measured from
-/// the end of the own path to the end of the other one. In a step the robot takes at most half of
-/// the gap to a neighbour, or all of it if that neighbour does not give way, minus the neighbour's
-/// own approach. A robot inside such a ball stands still. The guarantee holds at any packet loss and
-/// in any blackout, as long as no robot is faster than `growth_mps` and bodies follow their
-/// commands.
+/// A command is carried out for one step; then a body without inertia stands. Gaps are measured
+/// from the end of the own path to the end of the other one. In a step the robot takes at most half
+/// of the gap to a neighbour, or all of it if that neighbour does not give way, minus the
+/// neighbour's own approach. A robot inside such a ball stands still. The guarantee holds at any
+/// packet loss and in any blackout, as long as no robot is faster than `growth_mps` and bodies
+/// follow their commands.
 ///
 /// *Why half:* two robots that both take at most half of the gap in a step cannot touch, however
 /// long the step is (D. Zhou, Z. Wang, S. Bandyopadhyay, M. Schwager, "Fast, on-line collision
@@ -41,11 +41,11 @@ const ROUNDS: u8 = 6;
 /// limits the ball of a silent neighbour that gives way: of half of the last gap, what the own
 /// motion has not taken is left in any case.
 ///
-/// *Direction:* a motion takes the largest approach to any place where the neighbour may be. Towards
-/// a ball that is the approach to the nearest direction of its cone.
+/// *Direction:* a motion takes the largest approach to any place where the neighbour may be.
+/// Towards a ball that is the approach to the nearest direction of its cone.
 ///
-/// *Out of phase:* robots decide at any instants. A neighbour that recedes may still be on its path,
-/// anywhere from its start on, so the own path also stays off the nearest point of that path.
+/// *Out of phase:* robots decide at any instants. A neighbour that recedes may still be on its
+/// path, anywhere from its start on, so the own path also stays off the nearest point of that path.
 ///
 /// *Inertia:* the ball follows the last course of the body and grows by half of its acceleration
 /// times t^2, if that is less. The own robot takes no more of a gap than it can brake within.
@@ -244,7 +244,8 @@ impl<S: Scalar> GapLimit<'_, S> {
                 taken_mps = taken_mps.max(limit.approach(&own));
             }
             if !self.is_synchronous {
-                // The other robot may decide after this motion, and take half of what it adds.
+                // The other robot may decide after this motion, and take half of the gap that it
+                // adds.
                 taken_mps = taken_mps.max(S::ZERO);
             }
             if !other.is_lost() {
@@ -268,8 +269,8 @@ impl<S: Scalar> GapLimit<'_, S> {
     fn silent_steps(&self, age_us: i32) -> i32 {
         let (tick_us, first_us) = (self.tick.as_micros(), self.latency.min(self.tick).as_micros());
         let silent_us = age_us.saturating_sub(first_us);
-        // Half of a step is left for delays that cannot be known exactly: a quarter for the radio, and
-        // an eighth each for the step that received the beacon and for this one.
+        // Half of a step is left for delays that cannot be known exactly: a quarter for the radio,
+        // and an eighth each for the step that received the beacon and for this one.
         let late_us = tick_us - (tick_us >> 3) - 1;
         let steps = silent_us.saturating_add(late_us).checked_div(tick_us).unwrap_or(0);
         if silent_us > 0 { steps } else { 0 }
@@ -352,9 +353,9 @@ impl<S: Scalar> GapLimit<'_, S> {
         (limit, is_silent && reach_m >= distance)
     }
 
-    /// Limits the approach to the nearest point of the path `told_m`, which ends at `end_m` and which
-    /// a robot may still be on: the whole gap, since that path does not change. Without a gap the
-    /// motion must lead away from all of the path.
+    /// Limits the approach to the nearest point of the path `told_m`, which ends at `end_m` and
+    /// which a robot may still be on: the whole gap, since that path does not change. Without a gap
+    /// the motion must lead away from all of the path.
     fn keep_off_path(&self, limit: &mut Limit<S>, end_m: Vec3<S>, told_m: Vec3<S>, radii_m: S) {
         let back = end_m.dot(told_m).checked_div(told_m.norm_squared()).unwrap_or(S::ZERO);
         let nearest_m = end_m - told_m * back.max(S::ZERO).min(S::ONE);

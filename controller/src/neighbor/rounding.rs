@@ -23,7 +23,7 @@ const _: () = assert!(
     "the gap that remains does not cover rounding"
 );
 
-/// What the rounding error of the offset between two robots depends on.
+/// The causes of the rounding error of the offset between two robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rounding {
     /// Time between two decisions of a robot.
@@ -75,7 +75,8 @@ impl Rounding {
     }
 }
 
-// At a metre a second and up to 100 m, steps of 0.8 s in the plane and of 0.3 s in space are covered.
+// At a metre a second and up to 100 m, steps of 0.8 s in the plane and of 0.3 s in space are
+// covered.
 const _: () = {
     let plane = Rounding { step: Duration::from_millis(800), fastest_mmps: 1000, range_m: 100, is_in_space: false };
     let space = Rounding { step: Duration::from_millis(300), is_in_space: true, ..plane };

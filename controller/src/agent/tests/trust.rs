@@ -1,4 +1,4 @@
-//! What other robots may take for granted: a robot that gives no way stands, says so, and does not
+//! Facts that other robots rely on: a robot that does not give way stands, says so, and does not
 //! count on its own bounds in the step after that.
 
 use super::plane::{Robot, STEP, body_at, in_plane, orca, said, step_number};
@@ -49,7 +49,7 @@ fn a_robot_that_recovers_stands_for_another_step_and_forgets_its_bounds() {
     let mut robot = car(&config);
     for n in 0..12 {
         robot.agent.law_mut().is_broken = (4..6).contains(&n);
-        // Nothing is heard from step 3 on, so the bound of before would count.
+        // Nothing is heard from step 3 on, so a stored bound would count.
         let inbox = if n < 3 { beside(n) } else { Vec::new() };
         let out = robot.step(step_number(n.into()), &inbox);
         let pauses = (4..7).contains(&n);

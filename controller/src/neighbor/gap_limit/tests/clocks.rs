@@ -3,7 +3,7 @@
 use super::duel::{Duel, Rules, towards};
 use super::*;
 
-/// What the robots of a random duel do.
+/// The losses, delays and clocks of a random duel.
 #[derive(Clone, Copy, Debug)]
 struct Chances {
     /// Losses of single packets, and the share of time in fades of a link, percent.
@@ -32,7 +32,7 @@ fn wish(duel: &Duel, me: usize, rng: &mut Rng) -> Vec3<f64> {
     }
 }
 
-/// The least gap of random robots in a ring, metres, over so many decisions.
+/// The least gap of random robots in a ring, metres, over a number of decisions.
 fn least_gap(rules: Rules, chances: Chances, (robots, gap_m): (usize, f64), decisions: u32, seed: u32) -> f64 {
     let step_us = i64::from(rules.step_ms) * 1000;
     let mut rng = Rng::keyed(u64::from(seed), 1, 0, 0);
@@ -61,7 +61,7 @@ fn least_gap(rules: Rules, chances: Chances, (robots, gap_m): (usize, f64), deci
         };
         let delay_us = step_us * i64::from(rng.below(chances.delay + 1)) / 100;
         let is_late = !rules.is_synchronous && rng.below(100) < chances.late;
-        // Often a little, now and then by some steps.
+        // Mostly a little, sometimes by several steps.
         let most_us = if rng.below(4) == 0 { 3 * step_us } else { step_us / 3 };
         let late_us = if is_late { i64::from(rng.below(most_us as u32)) } else { 0 };
         let drift_us = step_us * drifts[deciding[0]] / 1_000_000;

@@ -3,7 +3,7 @@
 
 use super::*;
 
-/// What all robots of a duel have in common.
+/// Properties that all robots of a duel share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rules {
     pub step_ms: i32,
@@ -69,7 +69,7 @@ pub(super) struct Duelist {
     /// When it decided and decides again.
     since_us: i64,
     pub due_us: i64,
-    /// What it said, when that arrives at the other robots; the last one received by number.
+    /// Its last two beacons, and when each arrives at the other robots.
     said: StdVec<(i64, Neighbor<f32>)>,
     has_decided: bool,
 }

@@ -1,5 +1,5 @@
-//! Decisions of the code against the hypotheses of the proof (`controller/proof`), computed again in
-//! double precision: a random table and a random wish, one call of the rule.
+//! Decisions of the code against the hypotheses of the proof (`controller/proof`), computed again
+//! in double precision: a random table and a random wish, one call of the rule.
 
 use super::*;
 use crate::neighbor::Trace;
@@ -33,7 +33,7 @@ struct Case {
     is_synchronous: bool,
 }
 
-/// What the own motion violates, metres; at most 0 if nothing.
+/// Violations of the hypotheses by the own motion, metres; at most 0 if there are none.
 #[derive(Debug)]
 struct Excess {
     /// Motion beyond what the gap allows.
