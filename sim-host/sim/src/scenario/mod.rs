@@ -325,6 +325,7 @@ impl Scenario {
         };
         let plane = movement.plane();
         check::numbers(draft, &robots, plane.map_or(0, PlaneSetup::heard))?;
+        check::radio_faults(draft, &robots)?;
         let laws = Laws {
             added: law::law(draft, plane, land.as_ref())?,
             maps: maps::sharing(draft, &route, plane)?,
