@@ -1,6 +1,7 @@
 //! Helpers shared by the cross-crate tests.
 
 pub mod mutants;
+pub mod scenes;
 mod story;
 
 pub use story::gaps;

@@ -42,9 +42,14 @@ fn events(scenario: &Scenario) -> Vec<(&'static str, u32)> {
     let orders = scenario.plane().into_iter().flat_map(|plane| &plane.orders);
     let rolls = scenario.key_rotation().into_iter().flat_map(|keeping| &keeping.rolls);
     let blackouts = scenario.radio.blackout_s.iter().map(|&[from_s, to_s]| ends(tick(from_s), tick(to_s)));
+    let radio_faults = scenario.radio.fault.iter().map(|fault| {
+        let to = fault.for_s.map_or(scenario.ticks, |for_s| tick(fault.at_s + for_s));
+        ends(tick(fault.at_s), to)
+    });
     let mut events: Vec<_> = orders.map(|order| ("an order", order.tick)).collect();
     events.extend(rolls.map(|roll| ("a key change", roll.tick)));
     events.extend(blackouts.map(|tick| ("a blackout", tick)));
+    events.extend(radio_faults.map(|tick| ("a fault of a radio", tick)));
     events.extend(scenario.events.interventions.iter().map(|(tick, _)| ("an intervention", *tick)));
     events.extend(scenario.land.changes.iter().map(|change| ("a change of the land", change.first)));
     events.extend(scenario.events.faults.iter().map(|fault| ("a fault", ends(fault.from_tick, fault.to_tick))));

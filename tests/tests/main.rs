@@ -16,4 +16,5 @@ mod movingai;
 mod negotiation;
 mod parameters;
 mod programs;
+mod scenes;
 mod threads;

@@ -48,6 +48,13 @@ reorder_ms = 50
 bit_error_rate = 0.001
 bandwidth_bytes_per_s = 5000
 blackout_s = [[1, 2], [4, 5.5]]
+[[radio.fault]]
+from = [1]
+to = [2, 3]
+both_ways = true
+loss = 0.95
+at_s = 1
+for_s = 2.5
 [robots]
 formation = { rows = 2, columns = 2, spacing = [2, 2], start = [1, 1], goal = [7, 2] }
 [route]

@@ -112,6 +112,7 @@ const GRID: &str = "name = 'grid'\nseed = 3\nticks = 60\n[terrain.natural]\nwidt
     [robots.scattered]\ncount = 260\ntravel = 25\n[radio]\nrange_m = 7\nloss = 0.1\ndelay_ms = 400\njitter_ms = 1500\n\
     duplicate = 0.1\nreorder = 0.1\nreorder_ms = 900\nbit_error_rate = 0.0005\nbandwidth_bytes_per_s = 90\n\
     blackout_s = [[9, 11]]\nburst = { share = 0.2, mean_ms = 3000 }\n\
+    [[radio.fault]]\nfrom = [5, 150]\nboth_ways = true\nloss = 0.7\nat_s = 3\nfor_s = 30\n\
     [[fault]]\nrobot = 7\nat_s = 5\ndown_s = 9\n[[fault]]\nrobot = 200\nat_s = 8\ndown_s = 3\n\
     [[intervention]]\nat_s = 6\ndo = { kind = 'cell', cell = [20, 15], class = 0 }\n\
     [[intervention]]\nat_s = 6\ndo = { kind = 'cell', cell = [11, 10], class = 0 }\n\
@@ -123,6 +124,7 @@ const GRID: &str = "name = 'grid'\nseed = 3\nticks = 60\n[terrain.natural]\nwidt
 /// Crossing discs with radio faults, an intruder and interventions.
 const PLANE: &str = "name = 'plane'\nseed = 5\nticks = 80\ntick_s = 0.1\n[radio]\nrange_m = 3\nloss = 0.1\ndelay_ms = 120\n\
     jitter_ms = 150\nduplicate = 0.1\nreorder = 0.1\nbit_error_rate = 0.0005\nbandwidth_bytes_per_s = 500\n\
+    [[radio.fault]]\nfrom = [3]\nto = [4, 23, 24]\nat_s = 1\n\
     [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[plane.robots.circle]\ncount = 40\nradius_m = 5\nnoise_m = 0.1\n\
     [[plane.intruder]]\nstart_m = [-6, 0]\nvelocity_mps = [1, 0]\nradius_m = 0.3\n\
     [[fault]]\nrobot = 7\nat_s = 2\ndown_s = 2\n\

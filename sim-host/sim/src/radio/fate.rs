@@ -1,7 +1,8 @@
 //! Loss, delay and damage of a packet on its way to one receiver.
 
+use super::fault::Faults;
 use super::medium::Packet;
-use super::params::{Burst, RadioParams};
+use super::params::{Burst, RadioParams, q32};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 
@@ -37,6 +38,7 @@ pub(super) struct Fates {
     /// ln(1 - bit error rate); 0: no errors.
     ln_intact: f64,
     blackouts: Vec<[f64; 2]>,
+    faults: Faults,
 }
 
 impl RadioParams {
@@ -73,6 +75,7 @@ impl Fates {
             reorder_us: us(params.reorder_ms),
             ln_intact: libm::log1p(-params.bit_error_rate),
             blackouts: params.blackout_s.iter().map(|span| span.map(|s| s * 1e6)).collect(),
+            faults: Faults::new(&params.fault),
         }
     }
 
@@ -101,6 +104,7 @@ impl Fates {
         if draws.chance_q32(self.loss)
             || (burst_loss > 0 && draws.chance_q32(burst_loss))
             || self.blackouts.iter().any(silent)
+            || self.faults.remove(packet, receiver, now_us)
         {
             return Verdict::Lost;
         }
@@ -189,9 +193,4 @@ impl Channel {
             })
             .unwrap_or(false)
     }
-}
-
-/// `u32::MAX` means always.
-fn q32(probability: f64) -> u32 {
-    (probability * 4_294_967_296.0) as u32
 }

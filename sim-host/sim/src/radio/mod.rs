@@ -7,6 +7,7 @@
 
 mod border;
 mod fate;
+mod fault;
 mod late;
 mod medium;
 mod params;
@@ -15,7 +16,7 @@ mod wire;
 
 #[doc(hidden)]
 pub use border::Sent;
-pub use params::{Burst, RadioParams};
+pub use params::{Burst, RadioFault, RadioParams};
 pub(crate) use state::{End, Weather};
 pub use wire::{HostWire, PEERS, operator, own_wire, ring_wire, wire};
 
@@ -37,7 +38,7 @@ pub struct Counts {
     pub throttled: u64,
     /// Receptions, duplicates included.
     pub delivered: u64,
-    /// Failed receptions: loss, bursts, blackouts.
+    /// Failed receptions: loss, bursts, blackouts, faults of radios.
     pub lost: u64,
     /// Receptions with at least one flipped bit; also counted as delivered.
     pub damaged: u64,

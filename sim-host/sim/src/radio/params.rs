@@ -18,7 +18,29 @@ table! {
 }
 
 table! {
-    /// The radio of a scenario, equal for all robots. Defaults: a perfect radio of 100 m.
+    /// `[[radio.fault]]`: a fault of single radios or links, in addition to all other losses. A
+    /// packet that several faults concern must pass each of them.
+    #[derive(PartialEq)]
+    pub struct RadioFault {
+        /// Ids of the robots whose packets are lost. Default: all senders.
+        pub from: Option<Vec<u32>>;
+        /// Ids of the robots that do not receive them. Default: all receivers.
+        pub to: Option<Vec<u32>>;
+        /// Whether packets in the opposite direction, from `to` to `from`, are lost too. Default:
+        /// false.
+        pub both_ways: bool = false;
+        /// Probability that such a packet is lost. Default: 1, a dead radio or link.
+        pub loss: f64 = 1.0, 0.0..=1.0, "probability";
+        /// Begin of the fault, seconds after the start. Default: 0.
+        pub at_s: f64 = 0.0, 0.0..=1e9, "seconds";
+        /// Duration of the fault, seconds. Default: until the end.
+        pub for_s: Option<f64>, 0.0..=1e9, "seconds";
+    }
+}
+
+table! {
+    /// The radio of a scenario, equal for all robots except for faults. Defaults: a perfect radio
+    /// of 100 m.
     #[derive(PartialEq)]
     pub struct RadioParams {
         /// Wire format: `postcard` (Staya's frames) or `mavlink` (MAVLink 2, ids up to 254).
@@ -48,8 +70,15 @@ table! {
         pub bandwidth_bytes_per_s: Option<u32>;
         /// Spans `[from, to]` of seconds after the start during which every packet is lost.
         pub blackout_s: Vec<[f64; 2]> = Vec::new();
+        /// Faults of single radios and links.
+        pub fault: Vec<RadioFault> = Vec::new();
     }
 }
 
-defaults!(RadioParams);
+defaults!(RadioParams, RadioFault);
 names!(Format);
+
+/// A probability as Q0.32; `u32::MAX` means always.
+pub(super) fn q32(probability: f64) -> u32 {
+    (probability * 4_294_967_296.0) as u32
+}

@@ -182,6 +182,85 @@ fn a_blackout_loses_everything_while_it_lasts() {
     assert_eq!(radio.total().lost, 10);
 }
 
+/// For each of three robots, the ticks of its receptions with the sender's number.
+fn heard_with(fault: Vec<RadioFault>, ticks: u32) -> Vec<Vec<(u32, u8)>> {
+    let mut radio = radio(RadioParams { fault, ..RadioParams::default() }, 3);
+    let frames: Vec<_> = (1..=3).map(|i| [i, 9, 9, 0]).collect();
+    let mut heard = vec![Vec::new(); 3];
+    for tick in 0..ticks {
+        radio.carry(tick, &line(3), |i| &frames[i]);
+        for (index, heard) in heard.iter_mut().enumerate() {
+            let inbox = radio.inbox(index).to_vec();
+            heard.extend(inbox.chunks(4).map(|frame| (tick, frame[0])));
+        }
+    }
+    heard
+}
+
+/// Number of packets that each robot receives from each other one in 30 ticks.
+fn links_with(fault: RadioFault) -> [usize; 6] {
+    let heard = heard_with(vec![fault], 30);
+    let count = |receiver: usize, sender| heard[receiver].iter().filter(|(_, from)| *from == sender).count();
+    [count(0, 2), count(0, 3), count(1, 1), count(1, 3), count(2, 1), count(2, 2)]
+}
+
+#[test]
+fn a_fault_concerns_only_its_senders_and_receivers() {
+    let from = |ids: &[u32]| RadioFault { from: Some(ids.to_vec()), ..RadioFault::default() };
+    let to = |ids: &[u32], fault| RadioFault { to: Some(ids.to_vec()), ..fault };
+    let both = |fault| RadioFault { both_ways: true, ..fault };
+    // Receptions 1 <- 2, 1 <- 3, 2 <- 1, 2 <- 3, 3 <- 1, 3 <- 2.
+    for (fault, links) in [
+        (from(&[1]), [30, 30, 0, 30, 0, 30]),
+        (to(&[1], RadioFault::default()), [0, 0, 30, 30, 30, 30]),
+        (to(&[2], from(&[1])), [30, 30, 0, 30, 30, 30]),
+        (both(to(&[2], from(&[1]))), [0, 30, 0, 30, 30, 30]),
+        (both(from(&[3])), [30, 0, 30, 0, 0, 0]),
+        (to(&[3], from(&[2, 1])), [30, 30, 30, 30, 0, 0]),
+        (RadioFault::default(), [0; 6]),
+        (RadioFault { loss: 0.0, ..from(&[1]) }, [30; 6]),
+    ] {
+        assert_eq!(links_with(fault.clone()), links, "{fault:?}");
+    }
+}
+
+#[test]
+fn a_fault_lasts_from_its_begin_until_its_end() {
+    for (at_s, for_s, silent) in
+        [(0.0, Some(1.0), 0..10), (1.0, Some(0.5), 10..15), (2.0, None, 20..30), (1.0, Some(0.0), 0..0)]
+    {
+        let fault = RadioFault { from: Some(vec![1]), to: Some(vec![2]), at_s, for_s, ..RadioFault::default() };
+        let heard = heard_with(vec![fault], 30);
+        let ticks: Vec<u32> = heard[1].iter().filter(|(_, from)| *from == 1).map(|(tick, _)| *tick).collect();
+        assert_eq!(ticks, (0..30).filter(|tick| !silent.contains(tick)).collect::<Vec<_>>(), "{at_s} {for_s:?}");
+    }
+}
+
+#[test]
+fn faults_on_one_link_lose_independently() {
+    let bad = |id| RadioFault { from: Some(vec![id]), both_ways: true, loss: 0.5, ..RadioFault::default() };
+    let heard = heard_with(vec![bad(1), bad(2)], 20_000);
+    for (receiver, sender, low, high) in
+        [(0, 2, 0.23, 0.27), (1, 1, 0.23, 0.27), (2, 1, 0.48, 0.52), (1, 3, 0.48, 0.52)]
+    {
+        let received = heard[receiver].iter().filter(|(_, from)| *from == sender).count();
+        let received = share(received as u64, 20_000);
+        assert!((low..high).contains(&received), "{receiver} <- {sender}: {received}");
+    }
+}
+
+#[test]
+fn a_fault_removes_packets_and_changes_no_other() {
+    let fault = vec![RadioFault { from: Some(vec![1]), loss: 0.5, ..RadioFault::default() }];
+    let bad = RadioParams { delay_ms: 0.0, jitter_ms: 0.0, reorder: 0.0, bandwidth_bytes_per_s: None, ..harsh() };
+    let bad = RadioParams { fault: Vec::new(), ..bad };
+    let (whole, all) = one_way(bad.clone(), 2_000);
+    let (part, some) = one_way(RadioParams { fault, ..bad }, 2_000);
+    assert!(all.iter().zip(&some).all(|(all, some)| some == all || some.is_empty()));
+    let kept = share(part.total().delivered, whole.total().delivered);
+    assert!((0.47..0.53).contains(&kept), "{kept}");
+}
+
 fn harsh() -> RadioParams {
     RadioParams {
         range_m: 3.0,
@@ -193,6 +272,13 @@ fn harsh() -> RadioParams {
         reorder: 0.1,
         bit_error_rate: 0.001,
         bandwidth_bytes_per_s: Some(70),
+        fault: vec![RadioFault {
+            from: Some(vec![3, 1]),
+            both_ways: true,
+            loss: 0.4,
+            at_s: 0.3,
+            ..RadioFault::default()
+        }],
         ..RadioParams::default()
     }
 }

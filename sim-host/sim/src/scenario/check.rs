@@ -28,8 +28,9 @@ pub(super) fn times(draft: &Draft<'_>, ticks: u32) -> Checked {
     let orders = file.plane.iter().flat_map(|plane| &plane.order);
     let changes = file.terrain.iter().flat_map(|terrain| &terrain.change);
     let rolls = file.authentication.iter().flat_map(|table| &table.roll);
-    let lists: [(_, _, Vec<f64>); 6] = [
+    let lists: [(_, _, Vec<f64>); 7] = [
         ("fault", "at_s", file.fault.iter().map(|fault| fault.at_s).collect()),
+        ("radio.fault", "at_s", file.radio.fault.iter().map(|fault| fault.at_s).collect()),
         ("intervention", "at_s", file.intervention.iter().map(|table| table.at_s).collect()),
         ("attack", "from_s", file.attack.iter().map(|attack| attack.from_s).collect()),
         ("plane.order", "at_s", orders.map(|order| order.at_s).collect()),
@@ -71,6 +72,26 @@ pub(super) fn radio(draft: &Draft<'_>) -> Checked {
         let remedy = "give [from, to] in seconds after the start with 0 <= from < to";
         let is_span = *from >= 0.0 && from < to && to.is_finite();
         draft.require(is_span, &format!("radio.blackout_s[{index}]"), what, remedy)?;
+    }
+    Ok(())
+}
+
+pub(super) fn radio_faults(draft: &Draft<'_>, robots: &[Robot]) -> Checked {
+    for (index, fault) in draft.file.radio.fault.iter().enumerate() {
+        let at = draft.at(format!("radio.fault[{index}]"));
+        for (name, numbers) in [("from", &fault.from), ("to", &fault.to)] {
+            let Some(numbers) = numbers else { continue };
+            at.require(!numbers.is_empty(), name, "the list is empty", "give robots, or leave it out for all")?;
+            for (place, &robot) in numbers.iter().enumerate() {
+                known(draft, robots, &at.field(&format!("{name}[{place}]")), robot)?;
+            }
+        }
+        if let (Some([from]), Some([to])) = (fault.from.as_deref(), fault.to.as_deref()) {
+            at.require(from != to, "to", format!("robot {to} has no link to itself"), "give another robot")?;
+        }
+        let is_one_way = !fault.both_ways || fault.from.is_some() || fault.to.is_some();
+        let what = "a fault of all radios has both directions anyway";
+        at.require(is_one_way, "both_ways", what, "give `from` or `to`, or leave it out")?;
     }
     Ok(())
 }

@@ -331,6 +331,7 @@ impl Scenario {
         let plane = movement.plane();
         clocks.has_own_phases = plane.is_some_and(PlaneSetup::has_phases);
         check::numbers(draft, &robots, plane.map_or(0, PlaneSetup::heard))?;
+        check::radio_faults(draft, &robots)?;
         let laws = Laws {
             added: law::law(draft, plane, land.as_ref())?,
             maps: maps::sharing(draft, &route, plane)?,

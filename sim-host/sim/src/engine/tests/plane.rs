@@ -37,6 +37,20 @@ fn neither_a_run_in_the_plane_nor_its_hash_depends_on_the_number_of_threads() {
     assert_ne!(trace(&scenario, 1).0.trace_hash, one.trace_hash);
 }
 
+#[test]
+fn a_radio_fault_without_effect_leaves_the_trace() {
+    let robots = "[plane.robots.circle]\ncount = 6\nradius_m = 3\n";
+    let hash = |fault: &str| {
+        let scenario = in_plane(robots, &format!("{LOSSY}[[radio.fault]]\n{fault}\n"));
+        simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("placed").trace_hash
+    };
+    let scenario = in_plane(robots, LOSSY);
+    let without = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("placed").trace_hash;
+    assert_eq!(hash("from = [2]\nloss = 0"), without);
+    assert_eq!(hash("from = [2]\nfor_s = 0"), without);
+    assert_ne!(hash("from = [2]\nfor_s = 1"), without);
+}
+
 /// Number of robots that pass one that goes down in the way of the first, and the final x of the
 /// first. `company` adds a robot within radio range.
 fn past_one_that_is_down(company: &str, silence: &str) -> (usize, f64) {

@@ -113,7 +113,8 @@ fn runs_with_radio_faults_resume_in_every_format() {
     let faults = [
         "delay_ms = 700\njitter_ms = 2500\n",
         "duplicate = 0.4\nreorder = 0.5\nreorder_ms = 1800\n",
-        "loss = 0.3\nburst = { share = 0.3, mean_ms = 2000 }\nblackout_s = [[3, 6]]\n",
+        "loss = 0.3\nburst = { share = 0.3, mean_ms = 2000 }\nblackout_s = [[3, 6]]\n\
+         [[radio.fault]]\nfrom = [1]\nloss = 0.6\nat_s = 1\nfor_s = 9\n",
         "bit_error_rate = 0.002\nbandwidth_bytes_per_s = 90\n",
     ];
     for (index, fault) in faults.into_iter().enumerate() {

@@ -50,12 +50,37 @@ fn lists_of_another_length_and_lists_for_tables_are_refused() {
 }
 
 #[test]
+fn faults_of_radios_without_effect_or_robots_are_refused() {
+    let fault = |fields: &str| cells(&format!("[[radio.fault]]\n{fields}\n"));
+    for (fields, expected) in [
+        (
+            "from = [1, 9]",
+            "s.toml:8:12: radio.fault[0].from[1]: there is no robot 9; give the number of a robot of this",
+        ),
+        ("to = []", "s.toml:8:6: radio.fault[0].to: the list is empty; give robots, or leave it out for all"),
+        ("from = 1", "s.toml:8:8: radio.fault[0].from: 1 is not a list; "),
+        ("from = [1]\nto = [1]", "s.toml:9:6: radio.fault[0].to: robot 1 has no link to itself; give another robot"),
+        (
+            "both_ways = true",
+            "s.toml:8:13: radio.fault[0].both_ways: a fault of all radios has both directions anyway; ",
+        ),
+        ("loss = 1.5", "s.toml:8:8: radio.fault[0].loss: 1.5 is not a probability; give a number from 0 to 1"),
+        ("for_s = -1", "s.toml:8:9: radio.fault[0].for_s: -1 is out of range; give 0 to 1000000000 seconds"),
+        ("form = [1]", "s.toml:8:1: radio.fault[0].form: unknown field `form`; did you mean `from`?"),
+    ] {
+        let refusal = refusal(&fault(fields));
+        assert!(refusal.starts_with(expected), "expected {expected}\n     got {refusal}");
+    }
+}
+
+#[test]
 fn events_after_the_end_are_refused() {
     let late = "is after the end of the run at 5 s; give an earlier time or more ticks, or leave it out";
     let master = "[authentication]\nmaster = \"passphrase: a\"\n[[authentication.roll]]\nat_s = 6\n";
     let robots = "robots = { list = [{ start_m = [0, 0], goal_m = [1, 1] }] }\n";
     for (text, field) in [
         (cells("[[fault]]\nrobot = 1\nat_s = 6\n"), "9:8: fault[0].at_s"),
+        (cells("[[radio.fault]]\nfrom = [1]\nat_s = 6\n"), "9:8: radio.fault[0].at_s"),
         (cells("[[intervention]]\nat_s = 6\ndo = { kind = \"down\", robot = 1 }\n"), "8:8: intervention[0].at_s"),
         (
             cells("[[attack]]\nkind = \"unsigned\"\nplace_m = [0, 0]\nlure_m = [1, 1]\nfrom_s = 6\n"),
