@@ -58,11 +58,11 @@ impl Rounding {
     #[must_use]
     pub const fn error_um(self) -> i64 {
         let (step_us, speed, range_m) = (self.step.as_micros() as i64, self.fastest_mmps as i64, self.range_m as i64);
-        let axis_um = 2 * HALF_UM + HALF_UM * step_us / 1_000_000;
+        let axis_um = 2 * HALF_UM + per(HALF_UM * step_us, 1_000_000);
         // Times the square root of the number of axes.
-        let length_um = axis_um * if self.is_in_space { 17_321 } else { 14_143 } / 10_000;
-        let clocks_um = speed * step_us / 1_000_000 * DRIFT_PPM / 1000;
-        length_um + clocks_um + range_m * FLOAT_NM_PER_M / 1000
+        let length_um = per(axis_um * if self.is_in_space { 17_321 } else { 14_143 }, 10_000);
+        let clocks_um = per(per(speed * step_us, 1_000_000) * DRIFT_PPM, 1000);
+        length_um + clocks_um + per(range_m * FLOAT_NM_PER_M, 1000)
     }
 
     /// Returns whether the gaps between robots cover that error.
@@ -72,6 +72,13 @@ impl Rounding {
     pub const fn check(self) -> Result<(), TooCoarse> {
         let error_um = self.error_um();
         if error_um > OFFSET_ERROR_UM as i64 { Err(TooCoarse { error_um }) } else { Ok(()) }
+    }
+}
+
+const fn per(value: i64, divisor: i64) -> i64 {
+    match value.checked_div(divisor) {
+        Some(value) => value,
+        None => i64::MAX,
     }
 }
 

@@ -24,7 +24,7 @@ fn wish(duel: &Duel, me: usize, rng: &mut Rng) -> Vec3<f64> {
     let angle = side * f64::from(rng.below(1000)) / 1e3;
     match rng.below(8) {
         0..=2 => towards(duel, me, duel.at_m(other), 0.3 * angle),
-        3 => towards(duel, me, duel.from_m(other), 0.3 * angle),
+        3 => towards(duel, me, duel.begun_m(other), 0.3 * angle),
         4 => towards(duel, me, duel.robots[other].to_m, side * core::f64::consts::FRAC_PI_2 + 0.2 * angle),
         5 => towards(duel, me, duel.at_m(other), core::f64::consts::PI + angle),
         6 => towards(duel, me, duel.at_m(other), core::f64::consts::PI * angle),

@@ -131,7 +131,7 @@ impl Duel {
     }
 
     /// Where a robot started on the path that it is on.
-    pub fn from_m(&self, index: usize) -> Vec3<f64> {
+    pub fn begun_m(&self, index: usize) -> Vec3<f64> {
         self.robots[index].from_m
     }
 
