@@ -50,7 +50,10 @@ impl<W: Wire> Controller<W> {
     /// companion died keeps moving for a while.
     pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, error_m: f64, wire: W) -> Self {
         let (config, task) = ground.setup(index, 0);
-        let config = AgentConfig { boot, seed: scenario.seed, plausibility: scenario.trust.plausibility, ..config };
+        // Each companion decides by a clock of its own.
+        let is_synchronous = false;
+        let (seed, plausibility) = (scenario.seed, scenario.trust.plausibility);
+        let config = AgentConfig { boot, seed, plausibility, is_synchronous, ..config };
         // No operator sends goals here, so speed and tolerance are unused.
         let law = Guided::new(scenario.guidance(index).law(()), 0.0, 0.0);
         let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).safety(), wire));
