@@ -26,12 +26,11 @@ const TESTED_OF_SAMPLE: [&str; 6] =
 /// Long simulations and random bytes, which take most of the time: the other tests must suffice.
 const SKIPPED: [&str; 2] = ["simulation", "tests::nonsense"];
 /// Tests that take most of the rest of the time.
-const SKIPPED_OF_SAMPLE: [&str; 9] = [
+const SKIPPED_OF_SAMPLE: [&str; 8] = [
     "a_working_robot_is_not",
     "an_expired_stop_does_not",
     "any_law",
     "false_maps_cost_time",
-    "gap_limit",
     "land::",
     "radio_outages",
     "robots_with_one_goal",

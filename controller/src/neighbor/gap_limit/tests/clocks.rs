@@ -88,8 +88,6 @@ fn chances() -> impl Strategy<Value = Chances> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
-
     #[test]
     fn robots_with_any_clocks_do_not_touch_at_any_wishes_and_losses(
         rules in rules(), chances in chances(), robots in 2..5_usize, gap in 0..1000_u32, seed in any::<u32>(),

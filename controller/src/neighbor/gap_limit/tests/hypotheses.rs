@@ -193,8 +193,11 @@ fn decision(number: u32) -> (StdVec<Excess>, bool) {
 
 #[test]
 fn a_million_decisions_satisfy_the_hypotheses_of_the_proof() {
+    // Fewer where random cases are few, too.
+    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
+    let count = cases.map_or(1_000_000, |cases: u32| cases.min(1000) * 1000);
     let (mut moved, mut judged) = (0, 0);
-    for number in 0..1_000_000 {
+    for number in 0..count {
         let (all, moves) = decision(number);
         moved += u32::from(moves);
         for excess in all {
@@ -203,5 +206,5 @@ fn a_million_decisions_satisfy_the_hypotheses_of_the_proof() {
             assert!(taken_m <= FLOAT_M && kept_m <= FLOAT_M && hidden_m == 0.0, "decision {number}: {excess:?}");
         }
     }
-    assert!(moved > 400_000 && judged > 1_000_000, "{moved} motions, {judged} judged");
+    assert!(moved > count / 5 * 2 && judged > count, "{moved} motions, {judged} judged");
 }
