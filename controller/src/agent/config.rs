@@ -36,8 +36,9 @@ pub struct AgentConfig<S> {
     /// body that follows at once. A body has the same one in all directions.
     pub lag_s: S,
     /// Greatest age of a beacon when it is first used; at least 0. Neighbours are extrapolated over
-    /// this time. In the plane, a tick for a radio that takes less than a quarter of a tick, if each
-    /// step reads all packets that have arrived; a tick more for each further tick that it may take.
+    /// this time. In the plane, a tick for a radio that takes less than a quarter of a tick, if
+    /// each step reads all packets that have arrived; a tick more for each further tick that it may
+    /// take.
     pub latency: Duration,
     /// Ages at which the state of a neighbour counts as stale and as expired.
     pub ages: Ages,
@@ -100,8 +101,8 @@ impl<S: Scalar> AgentConfig<S> {
     ///
     /// Defaults: seed 0, boot 0, flock 0, a beacon per tick, states stale after 4 ticks and expired
     /// after 30, messages resent every 3 ticks, valid for 12 ticks, no inertia, no lag, no
-    /// latency (set [`latency`](Self::latency) for a real radio in the plane), steps at any instants,
-    /// and no plausibility limits.
+    /// latency (set [`latency`](Self::latency) for a real radio in the plane), steps at any
+    /// instants, and no plausibility limits.
     #[must_use]
     pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
         Self {

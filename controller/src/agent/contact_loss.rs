@@ -123,24 +123,36 @@ impl ContactState {
     }
 }
 
-/// How long a robot has been running, as far as it matters.
+/// How long a robot has been running, and when its last step was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Listening {
     NotStarted,
+    /// The time of the first step.
     Since(Instant),
-    Over,
+    /// The time of the last step.
+    Over(Instant),
 }
 
 impl Listening {
     /// Updates the state; returns whether the robot still listens. Call it in each step.
     pub(super) fn passes(&mut self, now: Instant, listen: Duration) -> bool {
         let start = match *self {
-            Self::NotStarted => now,
-            Self::Since(start) => start,
-            Self::Over => return false,
+            Self::NotStarted => Some(now),
+            Self::Since(start) => Some(start),
+            Self::Over(_) => None,
         };
-        let listens = now.since(start) < listen;
-        *self = if listens { Self::Since(start) } else { Self::Over };
-        listens
+        *self = match start {
+            Some(start) if now.since(start) < listen => Self::Since(start),
+            _ => Self::Over(now),
+        };
+        matches!(self, Self::Since(_))
+    }
+
+    /// The time since the last step, at least a tick; a tick while the robot listens.
+    pub(super) fn elapsed(self, now: Instant, tick: Duration) -> Duration {
+        match self {
+            Self::Over(last) => now.since(last).max(tick),
+            Self::NotStarted | Self::Since(_) => tick,
+        }
     }
 }

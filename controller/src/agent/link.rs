@@ -159,11 +159,6 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         });
     }
 
-    /// The time since the previous step; a tick for the first one.
-    pub(super) fn elapsed(&self, previous: Instant, now: Instant, tick: Duration) -> Duration {
-        if self.has_sent { now.since(previous).max(tick) } else { tick }
-    }
-
     pub(super) fn next_frame<'a>(&self, inbox: &mut &'a [u8]) -> Option<&'a [u8]> {
         self.wire.next_frame(inbox)
     }

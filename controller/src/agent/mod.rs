@@ -147,7 +147,6 @@ use crate::grid::{Cell, Dir};
 use crate::robot::Mode;
 use crate::scalar::Scalar;
 use crate::supervisor::Situation;
-use crate::time::Instant;
 use crate::wire::{Postcard, Wire};
 use link::Link;
 use serde::{Deserialize, Serialize};
@@ -182,7 +181,7 @@ const BYTES: [usize; 4] =
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
 const _: () = assert!(BYTES[0] <= 4488 && BYTES[1] <= 4752 && BYTES[2] <= 1776 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4528, 4800, 1808, 2720]));
+const _: () = assert!(matches!(BYTES, [4520, 4792, 1800, 2720]));
 
 /// The controller of one robot: law `L`, at most `N` known neighbours, safety layer `A`, wire
 /// format `W`, perception `P`.
@@ -191,9 +190,9 @@ const _: () = assert!(matches!(BYTES, [4528, 4800, 1808, 2720]));
 ///
 /// | type | 32-bit part | 64-bit host |
 /// | --- | --- | --- |
-/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4488 | 4528 |
-/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4752 | 4800 |
-/// | [`OrcaAgent`] | at most 1776 | 1808 |
+/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4488 | 4520 |
+/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4752 | 4792 |
+/// | [`OrcaAgent`] | at most 1776 | 1800 |
 /// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
 ///
 /// With the feature `host`, lists take only the memory of their entries.
@@ -214,13 +213,11 @@ pub struct Agent<S: Scalar, L: Law<S>, const N: usize, A = Unguarded, W = Postca
 }
 
 /// State that the last step leaves to the next one.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Last {
     situation: Situation,
     cell: Cell,
     heading: Dir,
-    /// When it was.
-    step: Instant,
 }
 
 impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, L, N, A, W> {
@@ -259,7 +256,6 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 },
                 cell: Cell::new(0, 0),
                 heading: Dir::Stay,
-                step: Instant::from_micros(0),
             },
             commanded_mps: Vec3::ZERO,
         }

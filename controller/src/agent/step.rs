@@ -91,7 +91,6 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         self.supervise(inputs, decision.as_ref(), out);
         self.keep_clear(inputs, decision.as_ref(), &mut nearby, (before, now), &mut rng, out);
         self.speak(inputs, (before, now), out);
-        self.last.step = now;
     }
 
     #[inline(never)]
@@ -154,7 +153,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
         // Frames may have waited since the previous step, and their senders have decided since.
         let tick_us = config.tick.as_micros();
-        let late_us = link.elapsed(last.step, now, config.tick).as_micros() - tick_us;
+        let late_us = link.listening.elapsed(now, config.tick).as_micros() - tick_us;
         let is_late = keeps_clear && late_us > tick_us >> 3;
         let heard_at = now - config.latency - Duration::from_micros(if is_late { late_us } else { 0 });
         let fastest_mps = safety.inflation().map(|inflation| inflation.growth_mps);
@@ -334,6 +333,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         // In the step after such a mode others may still take the whole gap.
         let is_trusted = !before.gives_way() && self.safety.inflation().is_some();
         if !self.mode.gives_way() || is_trusted {
+            let _ = self.link.listening.passes(now, self.config.contact_loss.listen);
             self.link.table.forget_gaps();
             self.commanded_mps = Vec3::ZERO;
             out.command = Command::Hold;
@@ -345,8 +345,8 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             _ => (Vec3::ZERO, None),
         };
         let (body, steered) = (self.body(inputs), self.steered(inputs).position);
-        let Self { link, safety, config, last, .. } = self;
-        let elapsed = link.elapsed(last.step, now, config.tick);
+        let Self { link, safety, config, .. } = self;
+        let elapsed = link.listening.elapsed(now, config.tick);
         let (table, inflation) = (&mut link.table, safety.inflation());
         let mut wish_mps = wish_mps;
         if let Some(inflation) = inflation {

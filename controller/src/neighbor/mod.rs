@@ -61,8 +61,8 @@ pub struct Neighbor<S, P = ()> {
     pub mode: Mode,
     /// How its last beacon was received.
     pub trace: Trace,
-    /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`]. Of a
-    /// [lost](Trace::Lost) robot: how far it may have been from `position` when it fell silent.
+    /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`]. Of
+    /// a [lost](Trace::Lost) robot: how far it may have been from `position` when it fell silent.
     pub gap_m: S,
     /// The last payload of its law; `None` for a law with another protocol.
     pub payload: Option<P>,

@@ -50,8 +50,8 @@ pub trait Ground: Send + Sync {
     /// Sensor data of the robot of body `index` at the start of `tick`; the inbox is empty.
     fn sense<'a>(&'a self, index: usize, tick: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32>;
 
-    /// Replaces `sightings` with the robots that body `index` detects at the start of `tick`, if its
-    /// sensor is due then or was due in the `within_ticks` ticks that end there.
+    /// Replaces `sightings` with the robots that body `index` detects at the start of `tick`, if
+    /// its sensor is due then or was due in the `within_ticks` ticks that end there.
     fn sightings(&self, _index: usize, _tick: u32, _within_ticks: u32, sightings: &mut Vec<Sighting<f32>>) {
         sightings.clear();
     }

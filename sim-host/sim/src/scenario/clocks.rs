@@ -150,8 +150,8 @@ impl Clocks {
     /// takes `delay_us` at most. A packet arrives in the next tick or later.
     ///
     /// Robots that decide in each tick use a beacon in the tick of its arrival. Other robots use it
-    /// up to a step later. Their ages are rounded to whole steps: one step for a delay up to a quarter
-    /// of a step, two for a delay up to one and a quarter
+    /// up to a step later. Their ages are rounded to whole steps: one step for a delay up to a
+    /// quarter of a step, two for a delay up to one and a quarter
     /// ([`AgentConfig::latency`](staya_controller::agent::AgentConfig::latency)).
     #[must_use]
     pub fn latency_us(&self, delay_us: u32) -> u32 {

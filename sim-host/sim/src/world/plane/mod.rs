@@ -316,10 +316,10 @@ impl Plane {
     /// or a command for cells makes it brake.
     ///
     /// A new command changes the velocity at once, by as much as the body can change it in a step
-    /// ([`Body::reach`](staya_controller::body::Body::reach)); then the velocity stays for the step.
-    /// So the number of ticks in a step does not change the motion that the robot has planned. A
-    /// body with a lag approaches this velocity during the step. A body whose command has expired
-    /// brakes in each tick, within its acceleration.
+    /// ([`Body::reach`](staya_controller::body::Body::reach)); then the velocity stays for the
+    /// step. So the number of ticks in a step does not change the motion that the robot has
+    /// planned. A body with a lag approaches this velocity during the step. A body whose command
+    /// has expired brakes in each tick, within its acceleration.
     ///
     /// # Panics
     /// If there are fewer commands or ages than bodies.
