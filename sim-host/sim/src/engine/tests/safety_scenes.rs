@@ -278,3 +278,52 @@ fn robots_that_expect_others_wait_for_the_end_of_a_blackout() {
     }));
     assert!(failed.is_empty(), "{failed:#?}");
 }
+
+/// The scene with robots that decide out of phase, by slow clocks, and now and then late.
+fn with_own_clocks(text: &str) -> String {
+    let value = |key: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix(key)).expect("a field");
+        line.parse::<f64>().expect("a number")
+    };
+    let (step_s, ticks) = (value("tick_s = "), value("ticks = "));
+    let clocks = format!(
+        "[clocks]\nstep_s = {step_s}\nphases = \"random\"\ndrift_ppm = 50\nlate = 0.02\nlate_s = {}\n[plane]\n",
+        2.0 * step_s
+    );
+    text.replace(&format!("tick_s = {step_s}\n"), &format!("tick_s = {}\n", step_s / 8.0))
+        .replace(&format!("ticks = {ticks}\n"), &format!("ticks = {}\n", 8.0 * ticks))
+        .replacen("[plane]\n", &clocks, 1)
+}
+
+/// Prints the last arrivals with own clocks over those with equal phases.
+#[test]
+fn no_robots_with_clocks_of_their_own_touch() {
+    let plain = |seed: u32| deaths(seed).split("[[fault]]").next().expect("a part").to_owned();
+    let kinds: [(&str, &dyn Fn(u32) -> String); 4] = [
+        ("robots on random ways", &plain),
+        ("robots of which some die", &deaths),
+        ("robots with a slow radio", &delayed),
+        ("bodies with inertia", &crossing),
+    ];
+    for (name, scene) in kinds {
+        let (mut ratios, mut failed) = (Vec::new(), Vec::new());
+        for seed in seeds(10) {
+            let run = |text: &str| {
+                let scene = scenario(text);
+                let outcome = simulate(&scene, |_, _| ControlFlow::Continue(())).expect("placed");
+                (outcome.arrived == scene.robots.len(), outcome.seconds, outcome.collisions)
+            };
+            let text = scene(seed);
+            let (equal, own) = (run(&text), run(&with_own_clocks(&text)));
+            if own.2 > 0 {
+                failed.push(seed);
+            }
+            if equal.0 && own.0 {
+                ratios.push(libm::log(own.1 / equal.1));
+            }
+        }
+        let mean = libm::exp(ratios.iter().sum::<f64>() / ratios.len().max(1) as f64);
+        println!("{name}: last arrival {mean:.3} of that with equal phases, in {} scenes", ratios.len());
+        assert!(failed.is_empty(), "{name}: overlaps in {failed:?}");
+    }
+}
