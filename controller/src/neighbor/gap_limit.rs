@@ -204,9 +204,14 @@ impl<S: Scalar> GapLimit<'_, S> {
             for limit in &limits {
                 let left_m = (limit.left_m - limit.growth_mps * brake_s).max(S::ZERO);
                 let per_s = S::ONE.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO);
-                if limit.approach(&pace) > left_m * per_s {
+                // A robot is turned away from another one only if it could not move otherwise.
+                let turns_away = left_m <= S::from_micro(TOLERANCE_UM);
+                let closing = pace.velocity_mps.dot(limit.ahead);
+                if limit.approach(&pace) > left_m * per_s && (turns_away || closing > S::ZERO) {
                     let aim_m = left_m - S::from_micro(GRAIN_UM);
-                    v += self.along(limit.ahead) * limit.turn(&pace, aim_m * per_s);
+                    let change = limit.turn(&pace, aim_m * per_s);
+                    let change = if turns_away { change } else { change.max(-closing) };
+                    v += self.along(limit.ahead) * change;
                     (pace, brake_s) = (self.pace(v), self.brake_s(v));
                     is_turned = true;
                 }

@@ -8,12 +8,11 @@ use super::body::Group;
 use super::flocks;
 use super::table::OrcaTable;
 use crate::world::plane::Abilities;
-use staya_controller::agent::{AgentConfig, ContactLossPolicy, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
+use staya_controller::agent::{ContactLossPolicy, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::TOLERANCE;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
-use staya_controller::robot::RobotId;
 use staya_controller::template::Template;
 use staya_controller::time::Duration;
 
@@ -74,18 +73,6 @@ pub(super) fn grow_as_the_fastest(general: &mut RobotGroup, groups: &mut [RobotG
             inflation.growth_mps = fastest_mps;
         }
     }
-}
-
-/// Refuses a step or a speed for which the gaps between robots do not cover rounding.
-pub(super) fn check_rounding(draft: &Draft<'_>, group: &RobotGroup) -> Checked<()> {
-    let (SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. }) = group.safety else {
-        return Ok(());
-    };
-    let config = AgentConfig::<f32>::new(RobotId(1), group.radius_m as f32, duration(draft.step_s()));
-    let coarse = config.check_rounding(inflation.growth_mps, group.safety.kind() == SafetyKind::Fly).err();
-    let key = if draft.has("clocks") { "clocks.step_s" } else { "tick_s" };
-    let what = coarse.map(|coarse| coarse.to_string()).unwrap_or_default();
-    draft.require(coarse.is_none(), key, what, "give a shorter step, or slower robots")
 }
 
 impl Group<'_> {

@@ -218,9 +218,6 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
     let starts::Placing { mut groups, starts, .. } = placing;
     parts.retain(|part| has_groups && !part.members.is_empty());
     group::grow_as_the_fastest(&mut general, &mut groups);
-    for group in groups.iter().chain([&general]) {
-        group::check_rounding(draft, group)?;
-    }
     let mut setup = PlaneSetup {
         general,
         groups,
