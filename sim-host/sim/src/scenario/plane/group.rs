@@ -1,6 +1,5 @@
 //! Groups of identical robots: body, law and safety layer.
 
-use super::super::Draft;
 use super::super::params;
 use super::super::ranges::{duration, micros, short};
 use super::super::source::Checked;
