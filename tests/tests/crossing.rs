@@ -98,7 +98,7 @@ fn discs_that_route_among_walls_all_arrive() {
     let path = root().join("scenarios/twenty-discs.toml");
     let text = fs::read_to_string(&path).unwrap();
     let crowd = text.replace("count = 20", "count = 40");
-    for (text, seed, robots) in [(&text, 2, 20), (&text, 9, 20), (&crowd, 5, 39)] {
+    for (text, seed, robots) in [(&text, 2, 20), (&text, 9, 20), (&crowd, 5, 40)] {
         let overrides = Overrides { seed: Some(seed), ticks: Some(2000) };
         let scenario = Scenario::parse(text, &path, &overrides).unwrap();
         let outcome = run(&scenario).0;
