@@ -106,8 +106,6 @@ struct Limit<S> {
     slant: S,
     /// Its cosine; 1 if the angle is that of rounding only.
     cos: S,
-    /// Whether the neighbour is lost.
-    is_lost: bool,
     /// Permitted approach until the robot stands, metres; negative, within tolerance, without a
     /// gap.
     left_m: S,
@@ -206,8 +204,8 @@ impl<S: Scalar> GapLimit<'_, S> {
             for limit in &limits {
                 let left_m = (limit.left_m - limit.growth_mps * brake_s).max(S::ZERO);
                 let per_s = S::ONE.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO);
-                // A robot is turned away from a lost one only if it could not move otherwise.
-                let turns_away = !limit.is_lost || left_m <= S::from_micro(TOLERANCE_UM);
+                // A robot is turned away from another one only if it could not move otherwise.
+                let turns_away = left_m <= S::from_micro(TOLERANCE_UM);
                 let closing = pace.velocity_mps.dot(limit.ahead);
                 if limit.approach(&pace) > left_m * per_s && (turns_away || closing > S::ZERO) {
                     let aim_m = left_m - S::from_micro(GRAIN_UM);
@@ -347,7 +345,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         let rounded_m = if is_silent { S::ZERO } else { reach_m * S::HALF };
         let slant = reach_m.checked_div(distance - rounded_m).unwrap_or(S::ONE);
         let cos = if is_silent { cos_of(reach_m, distance) } else { S::ONE };
-        let mut limit = Limit { ahead, slant, cos, is_lost: other.is_lost(), left_m, growth_mps };
+        let mut limit = Limit { ahead, slant, cos, left_m, growth_mps };
         if !is_silent && !self.is_synchronous && (told_mps < S::ZERO || gap < S::ZERO) {
             let told_m = self.lowered(other.velocity_mps) * body.step_s;
             self.keep_off_path(&mut limit, offset_m, told_m, radii_m);
