@@ -77,7 +77,6 @@ fn golden_experiment_goals() {
 }
 
 #[test]
-#[ignore = "splits behind the limit of gaps, since its beacons are several steps late"]
 fn a_settled_flock_stays_connected() {
     for seed in 1..4 {
         let scenario = seeded("late-flock", seed);

@@ -31,7 +31,7 @@ pub fn run(s: &mut Session) {
 /// swarms.
 pub fn run_short(s: &mut Session, parts: &[Part]) {
     for part in parts {
-        replay(s, part, FIRMWARE, &["lockstep", "replay", "replay_mavlink"]);
+        replay(s, part, FIRMWARE, &["lockstep", "replay", "replay_rest"]);
     }
 }
 
@@ -42,7 +42,7 @@ fn replay(s: &mut Session, part: &Part, profile: &Profile, bins: &[&str]) {
         let run = |bin| emulate::run(repo, part, &profile.elf(repo, part, bin), "none", &[]);
         let mut output = run("replay")?;
         if is_small(part) {
-            output += &run("replay_mavlink")?;
+            output += &run("replay_rest")?;
         }
         compare(repo, &output, |row| is_for(part, row))
     });

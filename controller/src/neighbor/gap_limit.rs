@@ -190,18 +190,37 @@ impl<S: Scalar> GapLimit<'_, S> {
         let mut limits = Vec::<Limit<S>, N>::new();
         let mut is_hidden = false;
         for other in &mut table.entries {
-            let (limit, is_here) = self.limit_of(other, is_bad);
+            // One machine code for all payloads.
+            let mut bare = other.map(|_| None);
+            let (limit, is_here) = self.limit_of(&mut bare, is_bad);
+            other.gap_m = bare.gap_m;
             is_hidden |= is_here;
             // Both have capacity N.
             let _ = limits.push(limit);
         }
+        let wanted_mps = if is_hidden { Vec3::ZERO } else { velocity_mps };
+        let aside_mps = self.aside(&limits, wanted_mps);
+        // The safety layer has considered obstacles for the original velocity, without braking.
+        let is_checked = !self.brakes_for_walls() && aside_mps == velocity_mps;
+        let v = if is_checked { aside_mps } else { self.before(obstacles, aside_mps) };
+        let (v, reached_mps) = self.shortened(&limits, obstacles, v);
+        let (pace, own) = (self.pace(reached_mps), self.pace(self.own_mps));
+        for (other, limit) in table.entries.iter_mut().zip(&limits) {
+            if !other.is_lost() {
+                other.gap_m = other.gap_m * S::HALF - self.taken_m(limit, &pace, &own);
+            }
+        }
+        (!is_hidden).then_some(v)
+    }
+
+    /// Turns a velocity aside, as far as that takes few rounds. O(limits).
+    #[inline(never)]
+    fn aside(&self, limits: &[Limit<S>], mut v: Vec3<S>) -> Vec3<S> {
         let step_s = self.body.step_s;
-        let brakes_for_walls = self.brakes_for_walls();
-        let mut v = if is_hidden { Vec3::ZERO } else { velocity_mps };
         let (mut pace, mut brake_s) = (self.pace(v), self.brake_s(v));
         for _ in 0..ROUNDS {
             let mut is_turned = false;
-            for limit in &limits {
+            for limit in limits {
                 let left_m = (limit.left_m - limit.growth_mps * brake_s).max(S::ZERO);
                 let per_s = S::ONE.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO);
                 // A robot is turned away from another one only if it could not move otherwise.
@@ -220,44 +239,44 @@ impl<S: Scalar> GapLimit<'_, S> {
                 break;
             }
         }
-        v = v.clamp_norm(self.body.max_speed_mps);
-        // The safety layer has considered obstacles for the original velocity, without braking.
-        if brakes_for_walls || v != velocity_mps {
-            v = self.before(obstacles, v);
-        }
+        v.clamp_norm(self.body.max_speed_mps)
+    }
+
+    /// Shortens a velocity to what the gaps allow; returns it, and the velocity that the body
+    /// reaches with it in this step. O(limits + obstacles).
+    #[inline(never)]
+    fn shortened(&self, limits: &[Limit<S>], obstacles: &[Obstacle<S>], v: Vec3<S>) -> (Vec3<S>, Vec3<S>) {
         let allowed = |v: Vec3<S>| {
             let (brake_s, pace) = (self.brake_s(v), self.pace(v));
-            let shares = limits.iter().map(|limit| limit.share(&pace, step_s, brake_s));
+            let shares = limits.iter().map(|limit| limit.share(&pace, self.body.step_s, brake_s));
             shares.fold(S::ONE, Scalar::min)
         };
-        let mut v = v * allowed(v);
-        let mut reached = v;
-        if self.body.has_inertia() {
-            reached = self.body.reach(v);
-            // From the present velocity the body may reach none that is allowed.
-            let off_mps = if brakes_for_walls { self.before(obstacles, reached) - reached } else { Vec3::ZERO };
-            if allowed(reached) < S::ONE || off_mps.norm() > S::from_micro(TOLERANCE_UM) {
-                v = Vec3::ZERO;
-                reached = self.body.reach(v);
-            }
+        let v = v * allowed(v);
+        if !self.body.has_inertia() {
+            return (v, v);
         }
-        let (pace, own) = (self.pace(reached), self.pace(self.own_mps));
-        for (other, limit) in table.entries.iter_mut().zip(&limits) {
-            let mut taken_mps = limit.approach(&pace);
-            if self.lag_s > S::ZERO {
-                // The body moves at a velocity between the present one and the commanded one.
-                taken_mps = taken_mps.max(limit.approach(&own));
-            }
-            if !self.is_synchronous {
-                // The other robot may decide after this motion, and take half of the gap that it
-                // adds.
-                taken_mps = taken_mps.max(S::ZERO);
-            }
-            if !other.is_lost() {
-                other.gap_m = other.gap_m * S::HALF - taken_mps * step_s;
-            }
+        let reached = self.body.reach(v);
+        // From the present velocity the body may reach none that is allowed.
+        let off_mps = if self.brakes_for_walls() { self.before(obstacles, reached) - reached } else { Vec3::ZERO };
+        if allowed(reached) < S::ONE || off_mps.norm() > S::from_micro(TOLERANCE_UM) {
+            return (Vec3::ZERO, self.body.reach(Vec3::ZERO));
         }
-        (!is_hidden).then_some(v)
+        (v, reached)
+    }
+
+    /// What a step at this pace takes of a gap, metres. `own` is the present pace.
+    #[inline(never)]
+    fn taken_m(&self, limit: &Limit<S>, pace: &Pace<S>, own: &Pace<S>) -> S {
+        let mut taken_mps = limit.approach(pace);
+        if self.lag_s > S::ZERO {
+            // The body moves at a velocity between the present one and the commanded one.
+            taken_mps = taken_mps.max(limit.approach(own));
+        }
+        if !self.is_synchronous {
+            // The other robot may decide after this motion, and take half of the gap that it adds.
+            taken_mps = taken_mps.max(S::ZERO);
+        }
+        taken_mps * self.body.step_s
     }
 
     /// Whether lost robots may be moving: their silence may be that of the own radio.
@@ -270,23 +289,25 @@ impl<S: Scalar> GapLimit<'_, S> {
         !self.may_be_alone && fresh + fresh < known.len() + lost
     }
 
-    /// How often a robot may have decided since a state of this age, without being heard.
+    /// How often a robot may have decided since a state of this age, without being heard; negative
+    /// before the state.
     fn silent_steps(&self, age_us: i32) -> i32 {
         let (tick_us, first_us) = (self.tick.as_micros(), self.latency.min(self.tick).as_micros());
         let silent_us = age_us.saturating_sub(first_us);
         // Half of a step is left for delays that cannot be known exactly: a quarter for the radio,
         // and an eighth each for the step that received the beacon and for this one.
         let late_us = tick_us - (tick_us >> 3) - 1;
-        let steps = silent_us.saturating_add(late_us).checked_div(tick_us).unwrap_or(0);
-        if silent_us > 0 { steps } else { 0 }
+        silent_us.saturating_add(late_us).checked_div_euclid(tick_us).unwrap_or(0)
     }
 
     /// Returns the limit, and whether the robot can be at the own position. Stores the gap bound.
-    fn limit_of<P>(&self, other: &mut Neighbor<S, P>, is_bad: bool) -> (Limit<S>, bool) {
+    #[inline(never)]
+    fn limit_of(&self, other: &mut Neighbor<S>, is_bad: bool) -> (Limit<S>, bool) {
         let GapLimit { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
         let steps = self.silent_steps(age.as_micros());
-        let (is_silent, silent_s) = (steps > 0, S::from_micro(self.tick.saturating_mul(steps).as_micros()));
+        let is_silent = steps > 0;
+        let silent_s = S::from_micro(self.tick.saturating_mul(steps.max(0)).as_micros());
         let is_parked = other.is_lost() && (!is_bad || age > self.stands_after);
         let mut grown = inflation.growth_mps * silent_s;
         if is_parked {

@@ -86,6 +86,8 @@ impl Case {
 
     /// Runs the case to its end. Stack: about 12 KiB, of `negotiation` 48 KiB, plus the stack
     /// of a step.
+    // Inlined, so that a program which names its cases contains only these.
+    #[inline(always)]
     pub fn run<S: Scalar, P: Probe<S>>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::route(probe),

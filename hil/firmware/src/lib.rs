@@ -35,6 +35,8 @@ mod part;
 pub mod runtime;
 #[cfg(target_os = "none")]
 pub mod stack;
+#[cfg(target_os = "none")]
+pub mod swarms;
 
 /// Makes `$run`, a `fn() -> !`, the part's program after reset. On the host, the program prints how
 /// to build it, and `$run` may be missing.

@@ -1,7 +1,7 @@
 use super::*;
 use crate::neighbor::Ages;
 use crate::rand::Rng;
-use crate::robot::RobotId;
+use crate::robot::{Mode, RobotId};
 use crate::scalar::Q16;
 use crate::wire::{Beacon, ProtocolId};
 use proptest::prelude::*;
@@ -227,6 +227,31 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
         mover.at_m += v.cast() * 0.1;
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);
         assert!(gaps.0 > 1e-3 && gaps.1 > 1e-3, "{gaps:?} in step {step}");
+    }
+}
+
+/// What is left of the gap to a robot that gives way is kept when its next beacon arrives late, but
+/// not if it may have decided twice since the own last decision.
+#[test]
+fn a_kept_gap_outlives_a_late_beacon_but_no_missed_decision() {
+    let other = Mover::<f32>::new(2, [2.0 * RADIUS_M + 0.1, 0.0, 0.0], f64::MAX);
+    let speed = |mode, steps, late_ms| {
+        let mut mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);
+        let own = Position::ORIGIN;
+        let _ = mover.table.put(Neighbor { mode, ..other.news(0) }, own, moment(1), |_| false);
+        still(&mover.body, own, moment(1)).limit(&mut mover.table, &[], Vec3::ZERO).unwrap();
+        let late = Duration::from_millis(late_ms);
+        // In a step beyond that of its beacon, it can have covered the gap.
+        let (now, latency) = (moment(2) + late, STEP.saturating_mul(steps));
+        let news = Neighbor { heard: now - latency - late, ..other.news(0) };
+        let _ = mover.table.put(news, own, now, |_| false);
+        let room = GapLimit { elapsed: now.since(moment(1)), latency, ..still(&mover.body, own, now) };
+        room.limit(&mut mover.table, &[], Vec3::new(1.0, 0.0, 0.0)).unwrap().x
+    };
+    assert!(speed(Mode::Cruise, 3, 0) > 0.2);
+    for (mode, steps, late_ms) in [(Mode::Cruise, 3, 60), (Mode::Cruise, 1, 60), (Mode::Fault, 3, 0)] {
+        let speed = speed(mode, steps, late_ms);
+        assert!(speed.abs() < 0.01, "{speed}: {mode:?}, {steps} steps, {late_ms} ms late");
     }
 }
 

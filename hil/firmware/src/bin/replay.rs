@@ -1,4 +1,5 @@
-//! Runs the canned swarms and prints the lines of `tests/golden/cases.txt`.
+//! Runs the canned swarms and prints the lines of `tests/golden/cases.txt`; on a part with little
+//! flash, those before the ones of `replay_rest`, in fixed point.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -6,24 +7,26 @@ staya_firmware::faults_are_printed!();
 
 #[cfg(target_os = "none")]
 mod program {
-    use staya_cases::Summary;
-    use staya_firmware::runtime;
+    use staya_firmware::{runtime, swarms};
 
     pub fn run() -> ! {
         runtime::start();
         #[cfg(not(part = "nrf51"))]
-        staya_cases::every(print);
+        staya_cases::every(swarms::print);
         #[cfg(part = "nrf51")]
-        for &case in staya_cases::Case::ALL {
-            // No FPU, and flash for one number format only; MAVLink is in `replay_mavlink`.
-            use staya_controller::scalar::Q16;
-            let summary = case.run::<Q16, _>(&mut staya_cases::Unmeasured);
-            print(case.name(), "Q16", &summary);
+        {
+            use staya_cases::Case;
+            swarms::replay(Case::Route);
+            swarms::replay(Case::Formation);
+            swarms::replay(Case::FormationReflexive);
+            swarms::replay(Case::Packets);
+            swarms::replay(Case::RouteInPlane);
+            swarms::replay(Case::OrcaAnalytic);
+            swarms::replay(Case::OrcaTemplate2k);
+            swarms::replay(Case::Doorway);
+            swarms::replay(Case::Fly);
+            swarms::replay(Case::PushOut);
         }
         runtime::exit(0)
-    }
-
-    fn print(name: &str, number: &str, summary: &Summary) {
-        runtime::print(format_args!("{name} {number} {summary}\n"));
     }
 }

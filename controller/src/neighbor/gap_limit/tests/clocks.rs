@@ -13,7 +13,7 @@ struct Chances {
     late: u32,
     /// Clocks are slow by up to this, millionths.
     drift_ppm: u32,
-    /// Longest time that the radio takes, percent of a step.
+    /// Longest time that the radio takes beyond the steps that are known, percent of a step.
     delay: u32,
 }
 
@@ -59,7 +59,8 @@ fn least_gap(rules: Rules, chances: Chances, (robots, gap_m): (usize, f64), deci
             let fades = Rng::keyed(u64::from(seed), 2, link, turn / 16).below(100) < chances.fading;
             !fades && Rng::keyed(u64::from(seed), 3, link, turn).below(100) >= chances.lost
         };
-        let delay_us = step_us * i64::from(rng.below(chances.delay + 1)) / 100;
+        let most = chances.delay + 100 * (rules.latency as u32 - 1);
+        let delay_us = step_us * i64::from(rng.below(most + 1)) / 100;
         let is_late = !rules.is_synchronous && rng.below(100) < chances.late;
         // Mostly a little, sometimes by several steps.
         let most_us = if rng.below(4) == 0 { 3 * step_us } else { step_us / 3 };
@@ -74,10 +75,13 @@ fn least_gap(rules: Rules, chances: Chances, (robots, gap_m): (usize, f64), deci
 fn rules() -> impl Strategy<Value = Rules> {
     let expires = prop_oneof![Just(0), 2..9_i32];
     let steps = prop_oneof![Just(20), Just(50), Just(100), Just(200)];
-    (steps, 0.1..3.0_f64, 1..10_u32, expires, 0..4_u32).prop_map(|(step_ms, fastest_mps, size, expires, kind)| {
+    let others = (expires, any::<bool>(), prop_oneof![Just(1), 1..5_i32]);
+    (steps, 0.1..3.0_f64, 1..10_u32, others).prop_map(|(step_ms, fastest_mps, size, others)| {
+        let (expires, is_synchronous, latency) = others;
         // A step covers at most twice the radius.
         let radius_m = (f64::from(size) * 0.05).max(fastest_mps * f64::from(step_ms) / 2e3);
-        Rules { step_ms, fastest_mps, radius_m: libm::round(radius_m * 1e3) / 1e3, expires, is_synchronous: kind == 0 }
+        let radius_m = libm::round(radius_m * 1e3) / 1e3;
+        Rules { step_ms, fastest_mps, radius_m, expires, is_synchronous, latency }
     })
 }
 

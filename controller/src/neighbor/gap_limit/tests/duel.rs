@@ -12,11 +12,13 @@ pub(super) struct Rules {
     /// Steps of silence after which a robot is lost; 0: never.
     pub expires: i32,
     pub is_synchronous: bool,
+    /// Age of a beacon when it is first used, steps; at least 1.
+    pub latency: i32,
 }
 
 impl Rules {
     pub const COMMON: Self =
-        Self { step_ms: 100, fastest_mps: 1.0, radius_m: RADIUS_M, expires: 0, is_synchronous: true };
+        Self { step_ms: 100, fastest_mps: 1.0, radius_m: RADIUS_M, expires: 0, is_synchronous: true, latency: 1 };
 
     fn step_us(&self) -> i64 {
         i64::from(self.step_ms) * 1000
@@ -24,6 +26,10 @@ impl Rules {
 
     fn step(&self) -> Duration {
         Duration::from_millis(self.step_ms)
+    }
+
+    fn latency(&self) -> Duration {
+        self.step().saturating_mul(self.latency)
     }
 
     fn step_s(&self) -> f64 {
@@ -40,7 +46,7 @@ impl Rules {
             tick: self.step(),
             elapsed,
             is_synchronous: self.is_synchronous,
-            latency: self.step(),
+            latency: self.latency(),
             inflation: StalenessInflation { growth_mps: self.fastest_mps as f32, max_m: self.radius_m as f32 },
             may_be_alone: false,
             // No silent robot counts as standing: all of them may move.
@@ -69,7 +75,7 @@ pub(super) struct Duelist {
     /// When it decided and decides again.
     since_us: i64,
     pub due_us: i64,
-    /// Its last two beacons, and when each arrives at the other robots.
+    /// Its last beacons, and when each arrives at the other robots.
     said: StdVec<(i64, Neighbor<f32>)>,
     has_decided: bool,
 }
@@ -195,8 +201,8 @@ impl Duel {
             let late = if late_us_before > rules.step_us() / 8 { late_us_before } else { 0 };
             let elapsed = Duration::from_micros(elapsed_us as i32);
             for news in heard {
-                // As an agent does: at its first use each beacon counts as one step old.
-                let heard = now - rules.step() - Duration::from_micros(late as i32);
+                // As an agent does: at its first use each beacon has the same age.
+                let heard = now - rules.latency() - Duration::from_micros(late as i32);
                 let _ = robot.table.put(Neighbor { heard, ..news }, own, now, |_| false);
             }
             let wish: Vec3<f32> = wish.cast();
@@ -212,7 +218,7 @@ impl Duel {
             let news = beacon(robot, now_us);
             robot.said.push((now_us + delay_us.max(1), news));
             // Earlier ones have arrived, or are superseded.
-            let old = robot.said.len().saturating_sub(2);
+            let old = robot.said.len().saturating_sub(1 + rules.latency as usize);
             robot.said.drain(..old);
         }
     }
