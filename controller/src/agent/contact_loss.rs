@@ -123,36 +123,52 @@ impl ContactState {
     }
 }
 
+/// Time after which a robot that still finds others starts to move.
+const LONGEST: Duration = Duration::from_millis(5000);
+
 /// How long a robot has been running, and when its last step was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Listening {
     NotStarted,
-    /// The time of the first step.
-    Since(Instant),
+    /// The time of the first step, and when it last found a robot.
+    Since {
+        start: Instant,
+        found: Instant,
+    },
     /// The time of the last step.
     Over(Instant),
 }
 
 impl Listening {
-    /// Updates the state; returns whether the robot still listens. Call it in each step.
+    /// Updates the state; returns whether the robot still listens: until it has found no robot for
+    /// `listen`, and for as long as it took to find the last one. Call it in each step.
     pub(super) fn passes(&mut self, now: Instant, listen: Duration) -> bool {
-        let start = match *self {
-            Self::NotStarted => Some(now),
-            Self::Since(start) => Some(start),
-            Self::Over(_) => None,
+        let (start, found) = match *self {
+            Self::NotStarted => (now, now),
+            Self::Since { start, found } => (start, found),
+            Self::Over(_) => {
+                *self = Self::Over(now);
+                return false;
+            }
         };
-        *self = match start {
-            Some(start) if now.since(start) < listen => Self::Since(start),
-            _ => Self::Over(now),
-        };
-        matches!(self, Self::Since(_))
+        let has_time = now.since(start) < LONGEST.max(listen);
+        let lasts = has_time && now.since(found) < found.since(start).max(listen);
+        *self = if lasts { Self::Since { start, found } } else { Self::Over(now) };
+        lasts
+    }
+
+    /// Notes that a robot was found at `now`.
+    pub(super) fn note(&mut self, now: Instant) {
+        if let Self::Since { found, .. } = self {
+            *found = now;
+        }
     }
 
     /// The time since the last step, at least a tick; a tick while the robot listens.
     pub(super) fn elapsed(self, now: Instant, tick: Duration) -> Duration {
         match self {
             Self::Over(last) => now.since(last).max(tick),
-            Self::NotStarted | Self::Since(_) => tick,
+            Self::NotStarted | Self::Since { .. } => tick,
         }
     }
 }

@@ -17,11 +17,11 @@ use crate::wire::{
     Ack, Addressed, Arrival, Beacon, Broadcast, Content, DecodeError, Due, EncodeError, Frame, Header,
     IncomingMessages, IncomingOrders, KeyHeld, MAX_PAYLOAD, Message, OutgoingMessages, SequenceWindow, Wire,
 };
-use lost::LostNews;
+use relay::Relay;
 use serde::{Deserialize, Serialize};
 
 mod identity;
-mod lost;
+mod relay;
 mod sight;
 
 const PENDING: usize = 4;
@@ -61,7 +61,7 @@ pub(super) struct Link<S, const N: usize, W, Q: Protocol> {
     orders: IncomingOrders<ORDERS>,
     beacon_due: Instant,
     has_sent: bool,
-    lost: LostNews,
+    relay: Relay,
     /// Constant in a run, so digests omit it.
     #[cfg(feature = "host")]
     #[serde(with = "crate::digest::uncounted")]
@@ -97,7 +97,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             orders: IncomingOrders::new(),
             beacon_due: Instant::from_micros(0),
             has_sent: false,
-            lost: LostNews::NEW,
+            relay: Relay::new(id),
             #[cfg(feature = "host")]
             torus: None,
         }
@@ -249,7 +249,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
                 let is_news = self.orders.is_news(header, number, subject);
                 return is_news.then_some(Received::Order(order, Receipt { header, number, subject }));
             }
-            Message::Lost(lost) if listener.fastest_mps.is_some() => self.hear_lost(lost, now, listener, out),
+            Message::Lost(told) if listener.fastest_mps.is_some() => self.hear_told(told, now, listener, out),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     let held = KeyHeld { to: header.sender, generation, phase };
@@ -279,9 +279,18 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         if matches!(put, Put::Inserted | Put::Evicted(_)) {
             let mut window = SequenceWindow::new();
             let _ = window.check(header);
-            // Cannot fail: there are as many windows as entries.
-            let _ = self.windows.push((id, window));
+            self.found(id, window, put, now);
             report(out, id.duplicate_of().map_or(Event::NeighborFound(id), Event::DuplicateId));
+        }
+    }
+
+    /// Notes a robot that was put into the table.
+    fn found(&mut self, id: RobotId, window: SequenceWindow, put: Put, now: Instant) {
+        // Cannot fail: there are as many windows as entries.
+        let _ = self.windows.push((id, window));
+        // In a full table others are found for ever.
+        if put == Put::Inserted {
+            self.listening.note(now);
         }
     }
 
@@ -332,7 +341,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         self.outgoing.is_empty()
     }
 
-    /// Sends due messages, the beacon if it is due, then a broadcast and a lost robot if they fit.
+    /// Sends due messages, the beacon if it is due, then a broadcast and a told state if they fit.
     pub(super) fn speak(
         &mut self,
         now: Instant,
@@ -359,8 +368,8 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             if let Some((protocol, content)) = outgoing.broadcast {
                 let _ = self.say(&Message::Broadcast(Broadcast { protocol, content }), 0, out);
             }
-            if let Some(lost) = self.lost_to_tell(now) {
-                let _ = self.say(&Message::Lost(lost), 0, out);
+            if let Some(told) = self.state_to_tell(now) {
+                let _ = self.say(&Message::Lost(told), 0, out);
             }
             self.has_sent = true;
             self.beacon_due = now + period;

@@ -181,7 +181,7 @@ const BYTES: [usize; 4] =
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
 const _: () = assert!(BYTES[0] <= 4488 && BYTES[1] <= 4752 && BYTES[2] <= 1776 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4520, 4792, 1800, 2720]));
+const _: () = assert!(matches!(BYTES, [4528, 4800, 1808, 2720]));
 
 /// The controller of one robot: law `L`, at most `N` known neighbours, safety layer `A`, wire
 /// format `W`, perception `P`.

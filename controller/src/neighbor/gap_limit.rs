@@ -1,7 +1,7 @@
 //! Limits a velocity so that robots cannot touch at any age of their neighbours' states.
 
 use super::rounding::{OFFSET_ERROR_UM, ROUNDING_MM, TOLERANCE_UM};
-use super::{Neighbor, NeighborTable, StalenessInflation};
+use super::{Neighbor, NeighborTable, StalenessInflation, Trace};
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
 use crate::obstacle::Obstacle;
@@ -16,6 +16,9 @@ mod tests;
 /// the rounding of the operations.
 const GRAIN_UM: i32 = 20;
 const ROUNDS: u8 = 6;
+/// Time in which others tell of a robot that they hear, in units of the silence after which it is
+/// lost.
+const TOLD_BY: i32 = 2;
 
 /// Limits a velocity by the gaps to the known robots, so that no two robots touch.
 ///
@@ -23,7 +26,8 @@ const ROUNDS: u8 = 6;
 /// | --- | --- |
 /// | up to date | on the path that it told, at the latest until the end of its step |
 /// | silent for t beyond a step | in a ball around that end, that grows at [`growth_mps`] |
-/// | lost | in that ball, at most [`max_m`] larger |
+/// | lost | in that ball; from twice the silence on, at most [`max_m`] larger |
+/// | told by another one | in a ball around that place, which grows at [`growth_mps`] |
 ///
 /// [`growth_mps`]: StalenessInflation::growth_mps
 /// [`max_m`]: StalenessInflation::max_m
@@ -186,13 +190,13 @@ impl<S: Scalar> GapLimit<'_, S> {
         obstacles: &[Obstacle<S>],
         velocity_mps: Vec3<S>,
     ) -> Option<Vec3<S>> {
-        let is_bad = self.is_bad(table);
+        let parked_after = self.parked_after(table);
         let mut limits = Vec::<Limit<S>, N>::new();
         let mut is_hidden = false;
         for other in &mut table.entries {
             // One machine code for all payloads.
             let mut bare = other.map(|_| None);
-            let (limit, is_here) = self.limit_of(&mut bare, is_bad);
+            let (limit, is_here) = self.limit_of(&mut bare, parked_after);
             other.gap_m = bare.gap_m;
             is_hidden |= is_here;
             // Both have capacity N.
@@ -279,6 +283,13 @@ impl<S: Scalar> GapLimit<'_, S> {
         taken_mps * self.body.step_s
     }
 
+    /// Silence after which a lost robot counts as standing: time enough for others to tell that they
+    /// hear it. Longer if its silence may be that of the own radio.
+    fn parked_after<const N: usize, P: Copy>(&self, table: &NeighborTable<S, N, P>) -> Duration {
+        let told_by = table.ages().expire_after.saturating_mul(TOLD_BY).min(self.stands_after);
+        if self.is_bad(table) { self.stands_after } else { told_by }
+    }
+
     /// Whether lost robots may be moving: their silence may be that of the own radio.
     fn is_bad<const N: usize, P: Copy>(&self, table: &NeighborTable<S, N, P>) -> bool {
         let (known, lost, ages) = (table.as_slice(), table.lost(), table.ages());
@@ -302,13 +313,13 @@ impl<S: Scalar> GapLimit<'_, S> {
 
     /// Returns the limit, and whether the robot can be at the own position. Stores the gap bound.
     #[inline(never)]
-    fn limit_of(&self, other: &mut Neighbor<S>, is_bad: bool) -> (Limit<S>, bool) {
+    fn limit_of(&self, other: &mut Neighbor<S>, parked_after: Duration) -> (Limit<S>, bool) {
         let GapLimit { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
         let steps = self.silent_steps(age.as_micros());
         let is_silent = steps > 0;
         let silent_s = S::from_micro(self.tick.saturating_mul(steps.max(0)).as_micros());
-        let is_parked = other.is_lost() && (!is_bad || age > self.stands_after);
+        let is_parked = other.is_lost() && age > parked_after;
         let mut grown = inflation.growth_mps * silent_s;
         if is_parked {
             grown = grown.min(inflation.max_m);
@@ -316,8 +327,9 @@ impl<S: Scalar> GapLimit<'_, S> {
         // A body with inertia leaves its course gradually: extrapolate it over its whole age.
         let most = body.max_acceleration_mps2;
         let swerve_mps = most * (silent_s + body.step_s);
-        let swerves = !is_parked && swerve_mps * S::HALF < inflation.growth_mps;
-        let told_mps = self.lowered(other.velocity_mps);
+        let has_course = other.trace != Trace::Told;
+        let swerves = !is_parked && has_course && swerve_mps * S::HALF < inflation.growth_mps;
+        let told_mps = if has_course { self.lowered(other.velocity_mps) } else { Vec3::ZERO };
         let ahead_s = if swerves { silent_s + body.step_s } else { body.step_s };
         let offset_m = self.lowered(other.position.since::<S>(self.own)) + told_mps * ahead_s;
         let distance = offset_m.norm();

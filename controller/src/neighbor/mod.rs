@@ -37,6 +37,8 @@ pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 
 /// Where a receding robot leaves radio range, thousandths of [`NeighborTable::reach_m`].
 const LEAVES_FROM: i32 = 900;
+/// Where a robot of which others tell is still expected to be heard, thousandths of the same.
+const WITHIN_REACH: i32 = 800;
 /// Age at which the state of a lost robot stops ageing, so that the 32-bit clock never wraps.
 /// In hundredths of a second it fits [`LostRobot::age_cs`](crate::wire::LostRobot::age_cs).
 const OLDEST: Duration = Duration::from_millis(650_000);
@@ -77,6 +79,8 @@ pub enum Trace {
     Heard,
     /// While it was about to leave radio range: its silence will mean that it has left.
     Leaving,
+    /// By another robot, which told where it heard it last; the velocity is not of that time.
+    Told,
     /// Too long ago: it stands, dead or without a radio, near the place that it last reported.
     Lost,
 }
@@ -327,16 +331,19 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
                 let mut others = self.as_slice().iter();
                 others.any(|entry| entry.id.duplicate() == silent.id.duplicate() && is_within(entry, ages.stale_after))
             };
-            if remembers && silent.trace == Trace::Heard && !is_moved() {
-                let speed_mps = silent.velocity_mps.norm();
+            if remembers && silent.trace != Trace::Leaving && !is_moved() {
+                let is_told = silent.trace == Trace::Told;
+                let speed_mps = if is_told { body.max_speed_mps } else { silent.velocity_mps.norm() };
                 let on_m = speed_mps * on_s * S::HALF;
                 let half_m = body.braking_m(speed_mps) * S::HALF + on_m;
-                let ahead_m = silent.velocity_mps.normalized().unwrap_or(Vec3::ZERO) * half_m;
+                let direction = if is_told { None } else { silent.velocity_mps.normalized() };
+                let ahead_m = direction.unwrap_or(Vec3::ZERO) * half_m;
                 let _ = self.entries.push(Neighbor {
                     trace: Trace::Lost,
                     position: silent.position.moved(ahead_m).unwrap_or(silent.position),
                     velocity_mps: Vec3::ZERO,
-                    radius_m: silent.radius_m + half_m,
+                    // In any direction, if that is unknown.
+                    radius_m: silent.radius_m + if is_told { half_m + half_m } else { half_m },
                     gap_m: on_m,
                     ..silent
                 });
@@ -419,6 +426,17 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     #[must_use]
     pub fn lost(&self) -> &[Neighbor<S, P>] {
         self.entries.get(self.count()..).unwrap_or_default()
+    }
+
+    /// The known robots, then the lost ones.
+    pub fn all(&self) -> impl Iterator<Item = &Neighbor<S, P>> {
+        self.entries.iter()
+    }
+
+    /// Whether a robot at this offset is well within radio range, as far as that is known.
+    #[must_use]
+    pub fn is_within_reach(&self, offset_m: Vec3<S>) -> bool {
+        offset_m.norm() <= self.reach_m * S::from_milli(WITHIN_REACH)
     }
 
     fn count(&self) -> usize {

@@ -26,6 +26,9 @@ use staya_controller::wire::Format;
 
 /// Most terrain walls that a robot sees at a time.
 const WALLS: usize = 16;
+/// Steps for which robots listen before they move, beyond the latency: time to be told of robots
+/// that are not heard.
+const LISTEN_STEPS: i32 = 6;
 /// A radio without a limit works this far, metres.
 const FARTHEST_M: f64 = 1e6;
 
@@ -193,7 +196,9 @@ impl PlaneGround {
             is_synchronous: self.clocks.is_synchronous(),
             latency,
             contact_loss: ContactLossPolicy {
-                listen: group.listen.unwrap_or(Duration::from_micros(silent_us.saturating_add(2 * step.as_micros()))),
+                listen: group
+                    .listen
+                    .unwrap_or(Duration::from_micros(silent_us.saturating_add(LISTEN_STEPS * step.as_micros()))),
                 reach_m: self.range_m,
                 ..group.contact_loss
             },

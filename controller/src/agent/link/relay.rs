@@ -1,0 +1,172 @@
+//! States of robots, told from robot to robot: a robot that is not heard is known all the same.
+//!
+//! Behind some beacons a robot tells the last known state of another one: first that of a robot of
+//! which an old state was told just now, then in turn one of a silent robot and one of any. A
+//! receiver stores a state that is newer than its own. It never stores one of itself, of an id that
+//! two robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown
+//! robot out of radio range, or at a place that the known robot cannot have reached.
+
+use super::{Link, Outputs, Protocol, ReceiveContext, report};
+use crate::agent::duplicate_id::is_within;
+use crate::agent::io::Event;
+use crate::neighbor::{Neighbor, Put, Trace};
+use crate::robot::{Mode, RobotId};
+use crate::scalar::Scalar;
+use crate::time::{Duration, Instant};
+use crate::wire::{Beacon, LostRobot, SequenceWindow, Wire};
+use serde::{Deserialize, Serialize};
+
+/// Beacons for each told state, while a robot is silent and while none is.
+const TELL_EVERY: [u8; 2] = [2, 4];
+/// Unit of [`LostRobot::age_cs`]. Ages are rounded up, and a state is newer only if it is newer by
+/// more than this, so that no state gets younger on its way.
+const UNIT: Duration = Duration::from_millis(10);
+
+/// Which state to tell next.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Relay {
+    /// Beacons since the last told state.
+    beacons: u8,
+    /// Whether a silent robot was told last.
+    was_silent: bool,
+    /// The silent robot that was told last.
+    silent: RobotId,
+    /// The last one that was told in the turn of all.
+    any: RobotId,
+    /// A robot of which another robot has told an old state.
+    outdated: RobotId,
+}
+
+impl Relay {
+    /// Each robot begins with those after itself, so that not all tell the same.
+    pub(super) const fn new(own: RobotId) -> Self {
+        Self { beacons: 0, was_silent: false, silent: own, any: own, outdated: RobotId::NONE }
+    }
+}
+
+impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
+    /// Stores the state of a third robot if it is newer, and notes an old one. O(N).
+    pub(super) fn hear_told(
+        &mut self,
+        told: &LostRobot,
+        now: Instant,
+        listener: &ReceiveContext<'_, S>,
+        out: &mut Outputs<S>,
+    ) {
+        let id = told.id;
+        let is_shared = self.table.get(id.duplicate(), now).known().is_some();
+        if id == self.header.sender || id > listener.plausibility.last || !id.is_some() || is_shared {
+            return;
+        }
+        if self.relay.outdated == id {
+            self.relay.outdated = RobotId::NONE;
+        }
+        // An operator clears a place without a body.
+        let is_alive = !told.is_lost && told.radius_mm > 0;
+        let mut heard = listener.heard_at - UNIT.saturating_mul(told.age_cs.into());
+        if is_alive {
+            // Its velocity is not told, so it may have decided once more.
+            heard = heard - listener.period;
+        }
+        let known = self.table.all().find(|known| known.id == id).copied();
+        if now.since(heard) < Duration::ZERO {
+            return;
+        }
+        if let Some(known) = known
+            && heard.since(known.heard) <= UNIT
+        {
+            if known.heard.since(heard) > self.table.ages().stale_after {
+                self.relay.outdated = id;
+            }
+            return;
+        }
+        let LostRobot { position_mm, radius_mm, .. } = *told;
+        // A robot that was never heard is taken to give way.
+        let mode = if is_alive { Mode::Cruise } else { Mode::Fault };
+        let beacon = Beacon { position_mm, radius_mm, mode, ..Beacon::default() };
+        let mut state = Neighbor::from_beacon(id, &beacon, Q::ID, heard);
+        state.position = self.image(state.position, listener.position);
+        let _ = listener.plausibility.cut(&mut state);
+        let in_contact = known.filter(|known| !known.is_lost());
+        let is_near = self.table.is_within_reach(state.position.since(listener.position));
+        state.trace = match (is_alive, is_near) {
+            (false, _) => Trace::Lost,
+            (true, true) => Trace::Told,
+            (true, false) => Trace::Leaving,
+        };
+        if let Some(known) = in_contact {
+            let fastest_mps = listener.fastest_mps.unwrap_or(S::MAX);
+            // One that is in contact is lost by its own silence only.
+            if !is_alive || !is_within(state.position, &known, heard.since(known.heard), fastest_mps) {
+                return;
+            }
+            let Neighbor { position, heard, radius_m, trace, .. } = state;
+            state = Neighbor { position, heard, radius_m, trace, ..known };
+        } else {
+            self.table.clear_lost(id);
+            if !told.is_lost && !(is_alive && is_near) {
+                return;
+            }
+        }
+        let put = self.table.put(state, listener.position, now, listener.needs);
+        self.note_eviction(put, out);
+        if is_alive && matches!(put, Put::Inserted | Put::Evicted(_)) {
+            self.found(id, SequenceWindow::new(), put, now);
+            report(out, Event::NeighborFound(id));
+        }
+    }
+
+    /// The next state to tell, if one is due. Call it for each beacon. O(N).
+    pub(super) fn state_to_tell(&mut self, now: Instant) -> Option<LostRobot> {
+        let outdated = core::mem::replace(&mut self.relay.outdated, RobotId::NONE);
+        let known = self.table.all().find(|known| known.id == outdated).copied();
+        let is_urgent = known.is_some() || self.table.all().any(|known| self.is_silent(known, now));
+        let [silent_every, every] = TELL_EVERY;
+        self.relay.beacons = self.relay.beacons.saturating_add(1);
+        if self.relay.beacons < if is_urgent { silent_every } else { every } {
+            self.relay.outdated = outdated;
+            return None;
+        }
+        let next = known.or_else(|| self.next_in_turn(now))?;
+        self.relay.beacons = 0;
+        Some(tell(&next, now))
+    }
+
+    fn next_in_turn(&mut self, now: Instant) -> Option<Neighbor<S, Q::Payload>> {
+        let silent = if self.relay.was_silent { None } else { self.next_after(self.relay.silent, now, true) };
+        self.relay.was_silent = silent.is_some();
+        if let Some(next) = silent {
+            self.relay.silent = next.id;
+            return silent;
+        }
+        let next = self.next_after(self.relay.any, now, false)?;
+        self.relay.any = next.id;
+        Some(next)
+    }
+
+    /// The robot with the next higher id, or the lowest one.
+    fn next_after(&self, last: RobotId, now: Instant, only_silent: bool) -> Option<Neighbor<S, Q::Payload>> {
+        let is_told = |known: &&Neighbor<S, Q::Payload>| {
+            let is_single = known.id.duplicate_of().is_none() && known.trace != Trace::Leaving;
+            is_single && (!only_silent || self.is_silent(known, now))
+        };
+        let all = self.table.all().filter(is_told);
+        all.min_by_key(|known| (known.id <= last, known.id)).copied()
+    }
+
+    fn is_silent(&self, known: &Neighbor<S, Q::Payload>, now: Instant) -> bool {
+        known.trace != Trace::Leaving && known.age(now).is_none_or(|age| age > self.table.ages().stale_after)
+    }
+}
+
+fn tell<S: Scalar, P>(known: &Neighbor<S, P>, now: Instant) -> LostRobot {
+    let micros = known.age(now).unwrap_or(Duration::MAX).as_micros();
+    let units = micros.checked_div(UNIT.as_micros()).unwrap_or(0).saturating_add(1);
+    LostRobot {
+        id: known.id,
+        is_lost: known.is_lost(),
+        age_cs: u16::try_from(units).unwrap_or(u16::MAX),
+        position_mm: known.position.mm,
+        radius_mm: u16::try_from(known.radius_m.to_milli().unwrap_or(0).max(0)).unwrap_or(u16::MAX),
+    }
+}
