@@ -246,8 +246,8 @@ impl<S: Scalar> GapLimit<'_, S> {
         v.clamp_norm(self.body.max_speed_mps)
     }
 
-    /// Shortens a velocity to what the gaps allow; returns it, and the velocity that the body
-    /// reaches with it in this step. O(limits + obstacles).
+    /// The part of a velocity that the gaps allow, and the velocity that the body reaches with it
+    /// in this step. O(limits + obstacles).
     #[inline(never)]
     fn shortened(&self, limits: &[Limit<S>], obstacles: &[Obstacle<S>], v: Vec3<S>) -> (Vec3<S>, Vec3<S>) {
         let allowed = |v: Vec3<S>| {
@@ -268,7 +268,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         (v, reached)
     }
 
-    /// What a step at this pace takes of a gap, metres. `own` is the present pace.
+    /// Length of a gap that a step at this pace takes, metres. `own` is the present pace.
     #[inline(never)]
     fn taken_m(&self, limit: &Limit<S>, pace: &Pace<S>, own: &Pace<S>) -> S {
         let mut taken_mps = limit.approach(pace);

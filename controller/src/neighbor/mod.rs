@@ -238,7 +238,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             self.entries.retain(|entry| entry.id != newcomer.id);
         }
         if let Some(entry) = place.and_then(|i| self.entries.get_mut(i)) {
-            // The bound holds whatever is heard of a robot that has given way.
+            // News of a robot that has given way do not change the bound.
             let gap_m = if entry.mode.gives_way() { entry.gap_m } else { S::ZERO };
             *entry = Neighbor { gap_m, ..newcomer };
             return Put::Updated;

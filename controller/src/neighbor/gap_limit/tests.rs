@@ -230,8 +230,8 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
     }
 }
 
-/// What is left of the gap to a robot that gives way is kept when its next beacon arrives late, but
-/// not if it may have decided twice since the own last decision.
+/// A late beacon of a robot that gives way does not end the bound of the gap, unless that robot may
+/// have decided twice since the own last decision.
 #[test]
 fn a_kept_gap_outlives_a_late_beacon_but_no_missed_decision() {
     let other = Mover::<f32>::new(2, [2.0 * RADIUS_M + 0.1, 0.0, 0.0], f64::MAX);

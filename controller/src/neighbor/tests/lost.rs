@@ -78,7 +78,8 @@ fn robots_are_forgotten_one_at_a_time() {
 fn all_robots_are_moved_to_their_images_and_lose_their_gaps() {
     let mut table = three_of_four_lost();
     let now = at(5_100_000);
-    let _ = put(&mut table, Neighbor { gap_m: 0.5, ..standing(2, 2.0, now) }, now);
+    table.entries[0].gap_m = 0.5;
+    assert_eq!(put(&mut table, standing(2, 2.0, now), now), Put::Updated, "news leave the gap");
     table.see_at(|place| Position::from_mm(place.mm.map(|mm| mm + 7)));
     let places = |robots: &[Neighbor<f32>]| robots.iter().map(|robot| robot.position.mm[1]).collect::<StdVec<_>>();
     assert_eq!((places(table.as_slice()), places(table.lost())), ([7].into(), [7; 3].into()));

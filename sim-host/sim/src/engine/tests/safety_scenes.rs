@@ -279,7 +279,7 @@ fn robots_that_expect_others_wait_for_the_end_of_a_blackout() {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// The scene with robots that decide out of phase, by slow clocks, and now and then late.
+/// The scene with robots that decide out of phase, by slow clocks, and sometimes late.
 fn with_own_clocks(text: &str) -> String {
     let value = |key: &str| {
         let line = text.lines().find_map(|line| line.strip_prefix(key)).expect("a field");
