@@ -452,6 +452,7 @@ mod on_grid;
 mod payload;
 mod plane;
 mod protocol;
+mod relay;
 mod sealed;
 mod setup;
 mod sighted;

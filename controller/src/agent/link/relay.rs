@@ -7,6 +7,7 @@
 //! robot out of radio range, or at a place that the known robot cannot have reached.
 
 use super::{Link, Outputs, Protocol, ReceiveContext, report};
+use crate::agent::contact_loss::Listening;
 use crate::agent::duplicate_id::is_within;
 use crate::agent::io::Event;
 use crate::neighbor::{Neighbor, Put, Trace};
@@ -118,6 +119,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
 
     /// The next state to tell, if one is due. Call it for each beacon. O(N).
     pub(super) fn state_to_tell(&mut self, now: Instant) -> Option<LostRobot> {
+        // Robots on a grid use no told states.
+        if self.listening == Listening::NotStarted {
+            return None;
+        }
         let outdated = core::mem::replace(&mut self.relay.outdated, RobotId::NONE);
         let known = self.table.all().find(|known| known.id == outdated).copied();
         let is_urgent = known.is_some() || self.table.all().any(|known| self.is_silent(known, now));

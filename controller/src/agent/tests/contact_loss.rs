@@ -6,7 +6,7 @@ use crate::neighbor::{PlausibilityLimits, StalenessInflation, Trace};
 use crate::orca::AvoidParams;
 use crate::rand::Rng;
 use crate::scalar::Q16;
-use crate::wire::{LostRobot, Message, decode};
+use crate::wire::{LostRobot, Message};
 
 pub(super) type Mover<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>>;
 
@@ -135,54 +135,6 @@ fn a_robot_listens_before_it_moves() {
         let wait = robot.step(step_number(n), &[]).wait;
         assert_eq!((length(robot.velocity_mps) > 0.0, wait), (n > 2, (n <= 2).then_some(Wait::Radio)), "step {n}");
     }
-}
-
-/// A robot announces a lost robot to one that never heard it, and the place is then avoided; a
-/// robot in contact is announced as such; and the sender does not take itself for lost.
-#[test]
-fn lost_robots_are_told_and_errors_corrected() {
-    let told = |id, is_lost, age_cs| {
-        let lost = LostRobot { id: RobotId(id), is_lost, age_cs, position_mm: [5000, 100, 0], radius_mm: 200 };
-        Message::Lost(lost)
-    };
-    let lost_in = |outbox: &[u8]| {
-        let frames = outbox.split(|byte| *byte == 0).filter_map(|frame| decode(frame).ok()?.message.into());
-        frames.filter_map(|said| if let Message::Lost(lost) = said { Some(lost) } else { None }).next()
-    };
-    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
-    let mut next = 0;
-    let mut hear = |n: u16, messages: &[Message]| {
-        for silent in next..n {
-            let _ = robot.step(step_number(silent.into()), &[]);
-        }
-        next = n + 1;
-        let out = robot.step(step_number(n.into()), &bytes(2, 0, n, messages));
-        (lost_in(&out.outbox), robot.agent.link.table.lost().iter().map(|lost| lost.id.0).collect::<Vec<_>>())
-    };
-    let near = || super::plane::body_at([-3000, 0], [0, 0], Mode::Idle);
-    let (said, lost) = hear(0, &[near(), told(3, true, 50)]);
-    let said = said.unwrap();
-    assert_eq!((said.id, said.is_lost, said.age_cs, said.position_mm), (RobotId(3), true, 51, [5000, 100, 0]));
-    assert_eq!(lost, [3]);
-    assert_eq!(hear(1, &[near()]).0, None, "four times a second");
-    // An older statement changes nothing, a newer one clears the place.
-    assert_eq!(hear(10, &[near(), told(3, false, 200)]).1, [3]);
-    assert_eq!(hear(20, &[near(), told(3, false, 0)]), (None, vec![]));
-    // Errors of others about robots that are there.
-    let (said, lost) = hear(30, &[near(), told(2, true, 40)]);
-    assert_eq!((said.map(|said| (said.id, said.is_lost)), lost), (Some((RobotId(2), false)), vec![]));
-    let (said, lost) = hear(40, &[near(), told(1, true, 40)]);
-    assert_eq!((said.map(|said| (said.id, said.is_lost)), lost), (Some((RobotId(1), false)), vec![]));
-    // Another robot has corrected it in the meantime.
-    assert_eq!(hear(50, &[near(), told(2, true, 40), told(2, false, 0)]), (None, vec![]));
-    let (mut ages, mut previous) = (0, 0);
-    for n in 60..70 {
-        let (said, _) = hear(n, &[near(), told(4 + u32::from(n % 2), true, 50)]);
-        let Some(said) = said else { continue };
-        assert_ne!(said.id.0, previous, "in turn");
-        (previous, ages) = (said.id.0, ages + 1);
-    }
-    assert!(ages >= 3);
 }
 
 /// What other robots tell about lost ones is limited as their own values are.

@@ -255,6 +255,22 @@ fn a_kept_gap_outlives_a_late_beacon_but_no_missed_decision() {
     }
 }
 
+/// The course of a robot that was told by another one is unknown, so it may have turned at once.
+#[test]
+fn a_told_robot_may_have_left_its_course() {
+    let mut other = Mover::<f32>::new(2, [1.2, 0.0, 0.0], 1.0);
+    other.body.velocity_mps = Vec3::new(0.0, 1.0, 0.0);
+    let ahead = |trace| {
+        let mut mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);
+        mover.body.max_acceleration_mps2 = 1.0;
+        let _ = mover.table.put(Neighbor { trace, ..other.news(0) }, Position::ORIGIN, moment(1), |_| false);
+        let room = still(&mover.body, Position::ORIGIN, moment(7));
+        room.limit(&mut mover.table, &[], Vec3::new(1.0, 0.0, 0.0)).unwrap().x
+    };
+    let [heard, told] = [Trace::Heard, Trace::Told].map(ahead);
+    assert!(told < 0.7 * heard, "{told}, heard {heard}");
+}
+
 /// 0.2 m behind a robot at 1 m/s, which brakes at 2 m/s^2 at most.
 #[test]
 fn a_robot_follows_closely_only_if_its_motion_is_agreed() {

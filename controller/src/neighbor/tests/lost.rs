@@ -58,6 +58,20 @@ fn a_robot_that_was_moved_is_not_remembered_where_it_was() {
     }
 }
 
+/// Half a second at up to 2 m/s, in any direction.
+#[test]
+fn a_told_robot_is_lost_in_a_ball_around_its_place() {
+    let mut table = NeighborTable::<f32, 4>::new(AGES);
+    let told = Neighbor { trace: Trace::Told, velocity_mps: Vec3::new(1.0, 0.0, 0.0), ..standing(2, 2.0, at(0)) };
+    let _ = put(&mut table, told, at(0));
+    table.expire((&BODY, 0.5), at(9_000_000), (AGES.expire_after, true), |_| {});
+    let lost = table.lost()[0];
+    assert_eq!((lost.position, lost.trace), (told.position, Trace::Lost));
+    let wider_m = lost.radius_m - told.radius_m;
+    let most_m = BODY.max_speed_mps * 0.5 + BODY.braking_m(BODY.max_speed_mps);
+    assert!((wider_m - most_m).abs() < 1e-5, "{wider_m} {most_m}");
+}
+
 #[test]
 fn robots_are_forgotten_one_at_a_time() {
     let mut table = three_of_four_lost();

@@ -1,0 +1,181 @@
+//! States that robots tell of each other.
+
+use super::plane::{Robot, STEP, body_at, in_plane, orca, step_number, waypoint};
+use super::*;
+use crate::agent::contact_loss::Listening;
+use crate::neighbor::{PlausibilityLimits, Trace};
+use crate::wire::{LostRobot, Message, decode};
+
+type Listener = Robot<f32, WaypointGuidance<f32>, OrcaSafety<f32, 16>>;
+
+/// Robot 1, and what it hears from robot 2.
+struct Pair {
+    robot: Listener,
+    next: i32,
+}
+
+impl Pair {
+    fn new(config: &AgentConfig<f32>) -> Self {
+        Self { robot: Robot::new(config, waypoint(), orca(), [0.0; 2]), next: 0 }
+    }
+
+    /// Steps without packets until step `n`, in which robot 2 says `messages`. Returns what robot 1
+    /// tells then.
+    fn hear(&mut self, n: i32, messages: &[Message]) -> Option<LostRobot> {
+        for silent in self.next..n {
+            let _ = self.robot.step(step_number(silent), &[]);
+        }
+        self.next = n + 1;
+        told_in(&self.robot.step(step_number(n), &bytes(2, 0, 8 * n as u16, messages)).outbox)
+    }
+
+    /// Place and way of reception of a robot.
+    fn known(&self, id: u32) -> Option<(i32, Trace)> {
+        let mut all = self.robot.agent.link.table.all();
+        all.find(|known| known.id == RobotId(id)).map(|known| (known.position.mm[0], known.trace))
+    }
+}
+
+fn told_in(outbox: &[u8]) -> Option<LostRobot> {
+    let said = outbox.split(|byte| *byte == 0).filter_map(|frame| Some(decode(frame).ok()?.message));
+    said.filter_map(|said| if let Message::Lost(told) = said { Some(told) } else { None }).next()
+}
+
+/// Near robot 1, far enough for any motion.
+fn near() -> Message {
+    body_at([-3000, 0], [0, 0], Mode::Idle)
+}
+
+fn told(id: u32, is_lost: bool, age_cs: u16, x_mm: i32) -> Message {
+    Message::Lost(LostRobot { id: RobotId(id), is_lost, age_cs, position_mm: [x_mm, 100, 0], radius_mm: 200 })
+}
+
+#[test]
+fn the_newest_state_of_a_robot_counts_whoever_tells_it() {
+    let mut pair = Pair::new(&in_plane(1));
+    pair.hear(0, &[near(), told(3, false, 20, 1000)]);
+    assert_eq!(pair.known(3), Some((1000, Trace::Told)));
+    pair.hear(1, &[near(), told(3, false, 60, 1100)]);
+    assert_eq!(pair.known(3), Some((1000, Trace::Told)), "older");
+    pair.hear(2, &[near(), told(3, false, 1, 1200)]);
+    assert_eq!(pair.known(3), Some((1200, Trace::Told)), "newer");
+    // Its own beacon, then a newer state of it.
+    let _ = pair.robot.step(step_number(3), &bytes(3, 0, 9, &[body_at([1300, 100], [0, 0], Mode::Cruise)]));
+    assert_eq!(pair.known(3), Some((1300, Trace::Heard)));
+    pair.next = 4;
+    pair.hear(12, &[near(), told(3, false, 2, 1400)]);
+    assert_eq!(pair.known(3), Some((1400, Trace::Told)));
+    // A robot in contact is not lost because another robot has lost it.
+    pair.hear(14, &[near(), told(3, true, 1, 1500)]);
+    assert_eq!(pair.known(3), Some((1400, Trace::Told)));
+    pair.hear(90, &[near()]);
+    assert_eq!(pair.known(3), Some((1400, Trace::Lost)));
+    pair.hear(91, &[near(), told(3, true, 1, 1600)]);
+    assert_eq!(pair.known(3), Some((1600, Trace::Lost)));
+    pair.hear(92, &[near(), told(3, true, 200, 1700)]);
+    assert_eq!(pair.known(3), Some((1600, Trace::Lost)), "older");
+    pair.hear(100, &[near(), told(3, false, 2, 1800)]);
+    assert_eq!(pair.known(3), Some((1800, Trace::Told)), "it lives");
+}
+
+#[test]
+fn an_operator_clears_the_place_of_a_lost_robot_only() {
+    let clear =
+        |id| Message::Lost(LostRobot { id: RobotId(id), is_lost: false, age_cs: 0, position_mm: [0; 3], radius_mm: 0 });
+    let mut pair = Pair::new(&in_plane(1));
+    pair.hear(0, &[near(), told(3, true, 50, 5000)]);
+    pair.hear(1, &[near(), clear(3), clear(2), clear(4)]);
+    assert_eq!([2, 3, 4].map(|id| pair.known(id).is_some()), [true, false, false]);
+}
+
+#[test]
+fn some_states_are_never_stored() {
+    let plausibility = PlausibilityLimits { last: RobotId(20), ..PlausibilityLimits::<f32>::ANY };
+    let mut pair = Pair::new(&AgentConfig { plausibility, ..in_plane(1) });
+    let twice = |x_mm| bytes(5, 0, (x_mm / 100) as u16, &[body_at([x_mm, 0], [0, 0], Mode::Cruise)]);
+    let _ = pair.robot.step(step_number(0), &twice(4000));
+    let _ = pair.robot.step(step_number(1), &twice(-8000));
+    let _ = pair.robot.step(step_number(2), &bytes(6, 0, 0, &[body_at([2000, 0], [0, 0], Mode::Cruise)]));
+    pair.next = 3;
+    // The own id, one of two robots, an unknown one out of reach, beyond the last id, none, and one
+    // that cannot have come there.
+    let messages = [told(1, false, 1, 100), told(5, false, 1, 2100), told(7, false, 1, 7500), told(21, false, 1, 100)];
+    pair.hear(10, &[&[near()][..], &messages, &[told(0, false, 1, 100), told(6, false, 1, -6500)]].concat());
+    let places = [1, 5, 6, 7, 21, 0].map(|id| pair.known(id).map(|(x_mm, _)| x_mm));
+    assert_eq!(places, [None, Some(4000), Some(2000), None, None, None]);
+    // A lost robot that lives out of reach is elsewhere.
+    pair.hear(11, &[near(), told(7, true, 50, 1000)]);
+    assert!(pair.known(7).is_some());
+    pair.hear(12, &[near(), told(7, false, 1, 7500)]);
+    assert_eq!(pair.known(7), None);
+}
+
+#[test]
+fn an_old_state_is_answered_unless_another_robot_has() {
+    let next_after = |messages: &[Message]| {
+        let mut pair = Pair::new(&in_plane(1));
+        let fresh: Vec<_> = [&[near()][..], &(3..9).map(|id| told(id, false, 1, 1000)).collect::<Vec<_>>()].concat();
+        let mut last = None;
+        let mut n = 0;
+        while last != Some(5) {
+            last = pair.hear(n, &fresh).map(|told| told.id.0).or(last);
+            n += 1;
+        }
+        let mut next = pair.hear(n, &[&fresh, messages].concat());
+        let mut others = fresh.clone();
+        others.remove(1);
+        for said in [&others, &fresh, &fresh, &fresh] {
+            n += 1;
+            next = next.or(pair.hear(n, said));
+        }
+        next.map(|told| (told.id.0, told.is_lost))
+    };
+    assert_eq!(next_after(&[]), Some((6, false)), "in turn");
+    assert_eq!(next_after(&[told(3, true, 90, 1000)]), Some((3, false)));
+    assert_eq!(next_after(&[told(3, false, 90, 1000)]), Some((3, false)));
+    assert_eq!(next_after(&[told(3, true, 20, 1000)]), Some((6, false)), "it is not old");
+    assert_eq!(next_after(&[told(3, true, 90, 1000), told(3, false, 2, 1000)]), Some((6, false)), "answered");
+}
+
+#[test]
+fn states_are_told_in_turn_and_silent_robots_every_other_time() {
+    let mut pair = Pair::new(&in_plane(1));
+    let far = |id| told(id, true, 300, 5000 + 1000 * id as i32);
+    pair.hear(0, &[near(), far(3), far(4), told(5, false, 1, 2000)]);
+    let mut said = Vec::new();
+    for n in 1..60 {
+        let others = [near(), told(5, false, 1, 2000)];
+        said.extend(pair.hear(n, &others).map(|told| (n, told.id.0, told.is_lost)));
+    }
+    let times: Vec<i32> = said.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+    assert!(times.iter().all(|&time| time == 2), "{times:?}");
+    let ids: Vec<u32> = said.iter().map(|told| told.1).collect();
+    for pair in ids.chunks_exact(2) {
+        assert!(pair.iter().any(|id| [3, 4].contains(id)), "{ids:?}");
+    }
+    for id in 2..6 {
+        assert!(ids.iter().filter(|told| **told == id).count() >= 3, "{ids:?}");
+    }
+    assert!(said.iter().all(|told| told.2 == [3, 4].contains(&told.1)));
+}
+
+#[test]
+fn a_robot_that_finds_others_late_listens_longer() {
+    let contact_loss = ContactLossPolicy { listen: STEP.saturating_mul(3), ..ContactLossPolicy::DEFAULT };
+    let start = |found: &[(i32, Message)]| {
+        let config = AgentConfig { contact_loss, ..in_plane(1) };
+        let mut pair = Pair::new(&config);
+        let is_over = |n: &i32| {
+            let messages: Vec<_> = found.iter().filter(|(step, _)| step == n).map(|(_, said)| said.clone()).collect();
+            pair.hear(*n, &messages);
+            matches!(pair.robot.agent.link.listening, Listening::Over(_))
+        };
+        (0..200).find(is_over).unwrap()
+    };
+    assert_eq!(start(&[]), 3);
+    assert_eq!(start(&[(1, near())]), 4, "three steps after it has found one");
+    assert_eq!(start(&[(1, near()), (3, told(3, false, 1, -2000))]), 6);
+    assert_eq!(start(&[(2, near()), (3, near()), (4, told(3, false, 1, -2000))]), 8, "as long as the search took");
+    let all = [2, 4, 7, 13, 25, 49].map(|n| (n, told(10 + n as u32, false, 1, -2000)));
+    assert_eq!(start(&[&[(2, near())], &all[1..]].concat()), 50, "not for ever");
+}
