@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// | --- | --- |
 /// | all neighbours in each tick | takes at most half of a gap per step, see [`GapLimit`] |
 /// | one neighbour silent | avoids the growing ball in which it may be |
-/// | one neighbour [lost] | avoids its ball, which grows by at most [`max_m`] |
+/// | one neighbour [lost] | avoids its ball; from twice the silence on, it is at most [`max_m`] larger |
 /// | fewer than half fresh | avoids the balls of all silent robots, then stands |
 /// | all lost | reports [`ContactLost`]; avoids their balls, then stands |
 /// | all lost for longer than [`stands_after`] | stands until one is in contact |
@@ -22,9 +22,9 @@ use serde::{Deserialize, Serialize};
 /// | never any since power-on | moves freely, or stands if it [expects others] |
 ///
 /// The place of a lost robot stays blocked until a robot hears that robot again, or an operator
-/// [clears](crate::wire::LostRobot) it. Robots tell each other the lost robots that they know. A
-/// robot that was receding near the greatest distance of any reception has left radio range, and
-/// is forgotten.
+/// [clears](crate::wire::LostRobot) it. Robots tell each other the states of those that they know,
+/// so that one is silent only if no other robot in range hears it. A robot that was receding near
+/// the greatest distance of any reception has left radio range, and is forgotten.
 ///
 /// [`GapLimit`]: crate::neighbor::GapLimit
 /// [lost]: crate::neighbor::Ages::expire_after

@@ -308,6 +308,9 @@ impl<S: Scalar> GapLimit<'_, S> {
         // Half of a step is left for delays that cannot be known exactly: a quarter for the radio,
         // and an eighth each for the step that received the beacon and for this one.
         let late_us = tick_us - (tick_us >> 3) - 1;
+        if (-late_us..=0).contains(&silent_us) {
+            return 0;
+        }
         silent_us.saturating_add(late_us).checked_div_euclid(tick_us).unwrap_or(0)
     }
 
@@ -329,12 +332,12 @@ impl<S: Scalar> GapLimit<'_, S> {
         let swerve_mps = most * (silent_s + body.step_s);
         let has_course = other.trace != Trace::Told;
         let swerves = !is_parked && has_course && swerve_mps * S::HALF < inflation.growth_mps;
-        let told_mps = if has_course { self.lowered(other.velocity_mps) } else { Vec3::ZERO };
+        let course_mps = if has_course { self.lowered(other.velocity_mps) } else { Vec3::ZERO };
         let ahead_s = if swerves { silent_s + body.step_s } else { body.step_s };
-        let offset_m = self.lowered(other.position.since::<S>(self.own)) + told_mps * ahead_s;
+        let offset_m = self.lowered(other.position.since::<S>(self.own)) + course_mps * ahead_s;
         let distance = offset_m.norm();
         let ahead = offset_m.normalized().unwrap_or(Vec3::ZERO);
-        let told_mps = -told_mps.dot(ahead);
+        let told_mps = -course_mps.dot(ahead);
         if swerves {
             grown = swerve_mps * S::HALF * silent_s;
         }
@@ -380,8 +383,12 @@ impl<S: Scalar> GapLimit<'_, S> {
         let cos = if is_silent { cos_of(reach_m, distance) } else { S::ONE };
         let mut limit = Limit { ahead, slant, cos, left_m, growth_mps };
         if !is_silent && !self.is_synchronous && (told_mps < S::ZERO || gap < S::ZERO) {
-            let told_m = self.lowered(other.velocity_mps) * body.step_s;
-            self.keep_off_path(&mut limit, offset_m, told_m, radii_m);
+            let told_m = course_mps * body.step_s;
+            // At least as long as the path: most neighbours are farther away.
+            let longest_m = told_m.x.abs() + told_m.y.abs() + told_m.z.abs();
+            if ball_m - longest_m < body.max_speed_mps * body.step_s {
+                self.keep_off_path(&mut limit, offset_m, told_m, radii_m);
+            }
         }
         if self.lag_s > S::ZERO {
             // Distance that the body still covers, if it is commanded to stand.

@@ -70,19 +70,20 @@ pub struct Ack {
     pub number: u8,
 }
 
-/// A lost robot, as the sender knows it. Robots send it in turn, behind their beacons, and an
-/// operator sends it to clear the place of a robot that was carried away.
+/// The last state of a robot that the sender knows. Robots send those that they know in turn,
+/// behind their beacons; an operator sends it to clear the place of a robot that was carried away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LostRobot {
     /// The robot.
     pub id: RobotId,
-    /// True: it fell silent near the position. False: it was heard since, or is no longer there.
+    /// True: it fell silent near the position. False: it was heard there, or with a radius of 0,
+    /// it is no longer there.
     pub is_lost: bool,
     /// Time since its last beacon, or since it is known not to be there: hundredths of a second.
     #[serde(with = "fixint")]
     pub age_cs: u16,
-    /// Centre of the ball in which it stands, mm.
+    /// Centre of the ball in which it was, mm.
     #[serde(with = "fixint")]
     pub position_mm: [i32; 3],
     /// Radius of that ball, mm.
@@ -145,7 +146,7 @@ pub enum Message {
     /// An operator's order to the law. Not acknowledged: the sender repeats it, with one number, as
     /// long as a robot may have missed it.
     Order(Addressed),
-    /// A lost robot, or one that was wrongly taken for lost.
+    /// The state of another robot.
     Lost(LostRobot),
     /// A new key of the swarm.
     Key(KeyAssignment),
