@@ -283,8 +283,8 @@ impl<S: Scalar> GapLimit<'_, S> {
         taken_mps * self.body.step_s
     }
 
-    /// Silence after which a lost robot counts as standing: time enough for others to tell that they
-    /// hear it. Longer if its silence may be that of the own radio.
+    /// Silence after which a lost robot counts as standing: time for others to tell that they hear
+    /// it. Longer if its silence may be that of the own radio.
     fn parked_after<const N: usize, P: Copy>(&self, table: &NeighborTable<S, N, P>) -> Duration {
         let told_by = table.ages().expire_after.saturating_mul(TOLD_BY).min(self.stands_after);
         if self.is_bad(table) { self.stands_after } else { told_by }

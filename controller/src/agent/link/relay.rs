@@ -1,8 +1,8 @@
 //! States of robots, told from robot to robot: a robot that is not heard is known all the same.
 //!
-//! Behind some beacons a robot tells the last known state of another one: first that of a robot of
-//! which an old state was told just now, then in turn one of a silent robot and one of any. A
-//! receiver stores a state that is newer than its own. It never stores one of itself, of an id that
+//! Behind some beacons a robot tells the last known state of another one: first of a robot whose old
+//! state a third one has just told, then in turn of a silent robot and of any. A receiver stores a
+//! state that is newer than its own. It never stores one of itself, of an id that
 //! two robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown
 //! robot out of radio range, or at a place that the known robot cannot have reached.
 
@@ -28,11 +28,11 @@ const UNIT: Duration = Duration::from_millis(10);
 pub(super) struct Relay {
     /// Beacons since the last told state.
     beacons: u8,
-    /// Whether a silent robot was told last.
+    /// Whether the last state was that of a silent robot.
     was_silent: bool,
-    /// The silent robot that was told last.
+    /// Whose state came last in the turn of silent robots.
     silent: RobotId,
-    /// The last one that was told in the turn of all.
+    /// Whose state came last in the turn of all.
     any: RobotId,
     /// A robot of which another robot has told an old state.
     outdated: RobotId,
@@ -105,7 +105,8 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             state = Neighbor { position, heard, radius_m, trace, ..known };
         } else {
             self.table.clear_lost(id);
-            if !told.is_lost && !(is_alive && is_near) {
+            let is_stored = told.is_lost || is_alive && is_near;
+            if !is_stored {
                 return;
             }
         }

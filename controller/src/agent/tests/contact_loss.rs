@@ -137,7 +137,7 @@ fn a_robot_listens_before_it_moves() {
     }
 }
 
-/// What other robots tell about lost ones is limited as their own values are.
+/// News of lost robots are limited as the own values of a sender are.
 #[test]
 fn a_lost_robot_that_was_told_is_a_ball_within_the_limits() {
     let plausibility = PlausibilityLimits { max_radius_m: 0.5, last: RobotId(20), ..PlausibilityLimits::<f32>::ANY };

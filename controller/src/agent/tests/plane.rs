@@ -97,10 +97,12 @@ where
     }
 }
 
+/// Remembers whom it sees, and decides what it is told to.
 #[derive(Default)]
-struct Onlooker {
-    seen: Vec<Nearby<f32>>,
-    is_broken: bool,
+pub(super) struct Onlooker {
+    pub(super) seen: Vec<Nearby<f32>>,
+    pub(super) is_broken: bool,
+    pub(super) action: Option<Action<f32>>,
 }
 
 impl Law<f32> for Onlooker {
@@ -118,7 +120,8 @@ impl Law<f32> for Onlooker {
         if self.is_broken {
             return Err(BadInput);
         }
-        Ok(Decision::default())
+        let decision = Decision::default();
+        Ok(Decision { action: self.action.clone().unwrap_or(decision.action), ..decision })
     }
 }
 

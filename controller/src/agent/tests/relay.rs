@@ -8,7 +8,7 @@ use crate::wire::{LostRobot, Message, decode};
 
 type Listener = Robot<f32, WaypointGuidance<f32>, OrcaSafety<f32, 16>>;
 
-/// Robot 1, and what it hears from robot 2.
+/// Robot 1, which hears robot 2.
 struct Pair {
     robot: Listener,
     next: i32,

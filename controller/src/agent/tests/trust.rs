@@ -1,41 +1,17 @@
 //! Facts that other robots rely on: a robot that does not give way stands, says so, and does not
 //! count on its own bounds in the step after that.
 
-use super::plane::{Robot, STEP, body_at, in_plane, orca, said, step_number};
+use super::plane::{Onlooker, Robot, STEP, body_at, in_plane, orca, said, step_number};
 use super::*;
 use crate::geom::Vec3;
 
+type Car = Robot<f32, Onlooker, OrcaSafety<f32, 16>>;
+
+const EAST: Action<f32> = Action::Velocity { wish_mps: Vec3::new(1.0, 0.0, 0.0), way_m: None };
+
 /// Drives east, unless it is broken or released.
-#[derive(Default)]
-struct Driver {
-    is_broken: bool,
-    is_released: bool,
-}
-
-impl Law<f32> for Driver {
-    type Surroundings<'a> = InPlane<'a, f32>;
-    type Protocol = ();
-    type Workspace = ();
-
-    fn decide(
-        &mut self,
-        _: &View<'_, f32>,
-        _: &InPlane<'_, f32>,
-        _: Tools<'_, f32, Self>,
-    ) -> Result<Decision<f32>, BadInput> {
-        let action = match self {
-            Self { is_broken: true, .. } => return Err(BadInput),
-            Self { is_released: true, .. } => Action::Release,
-            _ => Action::Velocity { wish_mps: Vec3::new(1.0, 0.0, 0.0), way_m: None },
-        };
-        Ok(Decision { action, ..Decision::default() })
-    }
-}
-
-type Car = Robot<f32, Driver, OrcaSafety<f32, 16>>;
-
 fn car(config: &AgentConfig<f32>) -> Car {
-    Robot::new(config, Driver::default(), orca(), [0.0; 2])
+    Robot::new(config, Onlooker { action: Some(EAST), ..Onlooker::default() }, orca(), [0.0; 2])
 }
 
 /// Two metres north, 1 m/s east.
@@ -83,7 +59,7 @@ fn a_body_that_stops_at_once_says_that_it_stands() {
 #[test]
 fn a_released_robot_says_its_measured_velocity_from_the_second_step_on() {
     let mut robot = car(&in_plane(1));
-    robot.agent.law_mut().is_released = true;
+    robot.agent.law_mut().action = Some(Action::Release);
     for (n, wanted_mmps) in [(0, 0), (1, 700), (2, 700)] {
         robot.velocity_mps = [0.7, 0.0];
         let out = robot.step(step_number(n), &[]);

@@ -255,7 +255,7 @@ fn a_kept_gap_outlives_a_late_beacon_but_no_missed_decision() {
     }
 }
 
-/// The course of a robot that was told by another one is unknown, so it may have turned at once.
+/// Another robot tells no course, so the third one may have turned at once.
 #[test]
 fn a_told_robot_may_have_left_its_course() {
     let mut other = Mover::<f32>::new(2, [1.2, 0.0, 0.0], 1.0);

@@ -26,8 +26,8 @@ use staya_controller::wire::Format;
 
 /// Most terrain walls that a robot sees at a time.
 const WALLS: usize = 16;
-/// Steps for which robots listen before they move, beyond the latency: time to be told of robots
-/// that are not heard.
+/// Steps for which robots listen before they move, beyond the latency: time for others to tell of
+/// robots that are not heard.
 const LISTEN_STEPS: i32 = 6;
 /// A radio without a limit works this far, metres.
 const FARTHEST_M: f64 = 1e6;
