@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// | --- | --- |
 /// | all neighbours in each tick | takes at most half of a gap per step, see [`GapLimit`] |
 /// | one neighbour silent | avoids the growing ball in which it may be |
-/// | one neighbour [lost] | avoids its ball; after twice the silence it grows by at most [`max_m`] |
+/// | one neighbour [lost] | avoids its ball; after twice the time, [`max_m`] larger at most |
 /// | fewer than half fresh | avoids the balls of all silent robots, then stands |
 /// | all lost | reports [`ContactLost`]; avoids their balls, then stands |
 /// | all lost for longer than [`stands_after`] | stands until one is in contact |
