@@ -1,9 +1,9 @@
 //! States of robots, told from robot to robot: a robot that is not heard is known all the same.
 //!
 //! Behind some beacons a robot tells the last known state of another one: first of a robot whose
-//! old state a third one has just told, then in turn of a silent robot and of any. A receiver stores
-//! a state that is newer than its own. It never stores one of itself, of an id that
-//! two robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown
+//! old state a third one has just told, then in turn of a silent robot and of any. A receiver
+//! stores a state that is newer than its own. It never stores one of itself, of an id that two
+//! robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown
 //! robot out of radio range, or at a place that the known robot cannot have reached.
 
 use super::{Link, Outputs, Protocol, ReceiveContext, report};
