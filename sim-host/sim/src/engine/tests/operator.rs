@@ -72,7 +72,7 @@ fn a_down_robot_ignores_commands_and_restarts_with_the_scenarios_task() {
     assert!(swarm.set_parameter(2, "speed_mps", 0.5).is_err());
     assert_eq!(swarm.parameter(2, "speed_mps"), None);
     assert!(!swarm.command(2, east), "there is no such robot");
-    run(&mut swarm, 15);
+    run(&mut swarm, 19);
     let after = swarm.observation(2);
     assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);
     assert_eq!(swarm.parameter(2, "speed_mps"), Some(1.0));

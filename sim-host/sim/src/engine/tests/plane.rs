@@ -111,7 +111,7 @@ fn orders_arrive_and_a_restarted_robot_gets_missed_ones() {
         assert!((x - 1.0).abs() < 0.03 && (y + 3.0).abs() < 0.03, "{x} {y}");
         if fault.is_empty() {
             let before = rows[20][0].motion.position_m;
-            assert!((before[0] - 1.7).abs() < 1e-3, "it listens for 0.3 s: {before:?}");
+            assert!((before[0] - 1.3).abs() < 1e-3, "it listens for 0.7 s: {before:?}");
         }
     }
 }
