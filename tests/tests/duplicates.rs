@@ -53,7 +53,7 @@ fn two_robots_with_one_number_pass_head_on_like_any_two() {
             for faults in ["", "loss = 0.3", "duplicate = 0.5"] {
                 assert_unchanged(&format!("format = \"{format}\"\n{faults}"), &head_on, &[[2, 1]], key);
             }
-            // States of robots with one number are not told, so the other packets have other delays.
+            // Such robots tell nothing of each other, so packets have other delays.
             let jitter = format!("format = \"{format}\"\njitter_ms = 120\nloss = 0.2");
             assert_clear(&plane(&jitter, &head_on, &[[2, 1]], key), 2);
         }
