@@ -75,9 +75,9 @@ impl Law<f32> for Changed {
 
 #[test]
 fn law_that_differs_from_the_firmware_is_detected_at_once() {
-    // Until step 3 a robot listens.
+    // Until step 8 a robot listens.
     let error = refusal(&Own::new(package!(), |_| Changed(Patrol::RING)));
-    assert!(error.contains("robot 1 on qemu:stm32f405") && error.contains("differs at step 3"), "{error}");
+    assert!(error.contains("robot 1 on qemu:stm32f405") && error.contains("differs at step 8"), "{error}");
 }
 
 #[test]
