@@ -6,11 +6,17 @@ use crate::python;
 use std::time::SystemTime;
 
 const PEERS: &str = "tests/peers";
-/// Benchmarks that are not criterion's: name, row of the closing table, script.
-const SCRIPTS: [(&str, &str, &str); 2] = [
-    ("bridge", "bridge beside pymavlink", "tests/python/bench_bridge.py"),
-    ("view", "a run with a page that no browser shows", "tests/python/bench_view.py"),
+/// The benchmark that takes a seed and settings.
+const RVO2: &str = "rvo2";
+/// Benchmarks that are not criterion's: name, row of the closing table, script and its environment.
+const SCRIPTS: [(&str, &str, &str, Environment); 3] = [
+    ("bridge", "bridge beside pymavlink", "tests/python/bench_bridge.py", python::client_environment),
+    ("view", "a run with a page that no browser shows", "tests/python/bench_view.py", python::client_environment),
+    (RVO2, "26 scenes beside RVO2", "tests/rvo2/bench.py", python::rvo2_environment),
 ];
+
+/// Prepares an environment and returns its Python.
+type Environment = fn(&Repo) -> Result<PathBuf>;
 
 /// Benchmarks with a goal: the least ratio of its speed to another benchmark's in the same run. No
 /// goal is a time, which would be one of the machine.
@@ -23,14 +29,34 @@ const GOALS: [(&str, f64, &str); 6] = [
     ("agent_step/reflexive", 0.2, "agent_step/constant_velocity"),
 ];
 
-/// Runs the benchmarks whose name contains `name` and judges their medians.
-pub fn run(s: &mut Session, name: Option<&str>) {
+#[derive(clap::Args)]
+pub struct Options {
+    /// Only benchmarks whose name contains this
+    name: Option<String>,
+    /// Seed of the scenes of `rvo2` [default: 1]
+    #[arg(long, value_name = "N", requires = "name")]
+    seed: Option<u64>,
+    /// Override a scenario field for Staya in `rvo2`, for example plane.orca.horizon_s=0.7; may be
+    /// repeated
+    #[arg(long = "set", value_name = "FIELD=VALUE", requires = "name")]
+    settings: Vec<String>,
+}
+
+/// Runs the benchmarks whose name contains the given one and judges them by their goals.
+pub fn run(s: &mut Session, options: &Options) {
+    let name = options.name.as_deref();
+    let arguments = options.arguments();
+    if name != Some(RVO2) && !arguments.is_empty() {
+        let reason = "--seed and --set are options of rvo2 only; run `cargo xtask bench rvo2`";
+        s.report.step("options", || bail!(reason));
+        return;
+    }
     let is_wanted = |known: &str| name.is_none_or(|name| known.contains(name));
     if !SCRIPTS.iter().any(|(script, ..)| name == Some(script)) {
         criterion(s, name);
     }
-    for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| is_wanted(script)) {
-        script(s, row, file);
+    for (_, row, file, python) in SCRIPTS.iter().filter(|(script, ..)| is_wanted(script)) {
+        script(s, row, file, *python, &arguments);
     }
     if is_wanted("view") {
         let mut bench = s.repo.cargo("bench --locked --package staya-view --bench view");
@@ -42,15 +68,24 @@ pub fn run(s: &mut Session, name: Option<&str>) {
 pub fn run_goals(s: &mut Session) {
     let names: Vec<&str> = GOALS.iter().flat_map(|(name, _, other)| [*name, *other]).collect();
     criterion(s, Some(&format!("^({})$", names.join("|"))));
-    SCRIPTS.iter().for_each(|(_, row, file)| script(s, row, file));
+    SCRIPTS.iter().for_each(|(_, row, file, python)| script(s, row, file, *python, &[]));
+}
+
+impl Options {
+    /// The options for the script of `rvo2`.
+    fn arguments(&self) -> Vec<String> {
+        let seed = self.seed.iter().map(|seed| ("--seed", seed.to_string()));
+        let settings = self.settings.iter().map(|setting| ("--set", setting.clone()));
+        seed.chain(settings).flat_map(|(option, value)| [option.to_string(), value]).collect()
+    }
 }
 
 /// A benchmark in Python with the program as users have it; the script judges.
-fn script(s: &mut Session, name: &str, file: &str) {
+fn script(s: &mut Session, name: &str, file: &str, python: Environment, arguments: &[String]) {
     let program = s.staya("release");
     s.report.step(name, || {
         let program = program?;
-        execute(s.repo.command(python::client_environment(&s.repo)?).arg(file).env("STAYA", program))
+        execute(s.repo.command(python(&s.repo)?).arg(file).args(arguments).env("STAYA", program))
     });
 }
 

@@ -62,10 +62,7 @@ enum Command {
     /// Flights with your build of ArduPilot
     Autopilots(autopilots::Options),
     /// Benchmarks: medians, ratios, goals
-    Bench {
-        /// Only benchmarks whose name contains this
-        name: Option<String>,
-    },
+    Bench(bench::Options),
     /// Rewrite golden files by tests named NAME
     Bless {
         /// Part of the tests' names
@@ -141,7 +138,7 @@ fn main() -> ExitCode {
         Command::Check => check::run(s),
         Command::Test { all } => test::run(s, all),
         Command::Autopilots(options) => autopilots::run(s, &options),
-        Command::Bench { name } => bench::run(s, name.as_deref()),
+        Command::Bench(options) => bench::run(s, &options),
         Command::Bless { name } => test::bless(s, &name),
         Command::Book => python::book(s),
         Command::Browser => python::browser(s),
@@ -188,6 +185,7 @@ mod tests {
             "faults nrf51",
             "size --json",
             "size --search --seed 2",
+            "bench rvo2 --seed 2 --set radio.loss=0.3 --set plane.orca.horizon_s=0.7",
         ] {
             assert!(!refused(&format!("xtask {sound}")), "{sound}");
         }
@@ -201,6 +199,7 @@ mod tests {
             "soak flod",
             "faults stm32",
             "size --seed 1",
+            "bench --seed 2",
             "check orca",
             "firmware --crate a --debug",
         ] {

@@ -200,6 +200,11 @@ pub fn client_tools(repo: &Repo) -> Result<PathBuf> {
     Ok(python)
 }
 
+/// The environment with RVO2.
+pub fn rvo2_environment(repo: &Repo) -> Result<PathBuf> {
+    environment(repo, "python-rvo2", "tests/rvo2/requirements.txt")
+}
+
 fn package_environment(repo: &Repo) -> Result<PathBuf> {
     environment(repo, PACKAGE, "tests/python-package/requirements.txt")
 }
