@@ -77,7 +77,8 @@ pub type Onlooker<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow
 pub struct Swarm {
     engine: Engine,
     vehicles: Vec<Vehicle>,
-    boots: Vec<u8>,
+    /// Restarts of each robot.
+    starts: Vec<u32>,
     model: Arc<VehicleModel>,
     lines: Lines,
     options: Options,
@@ -120,7 +121,7 @@ impl Swarm {
         let log = options.tlog.as_ref().map(create).transpose()?;
         let listing = Budget::per_second(parameters_per_s(&options.mavlink));
         Ok(Self {
-            boots: vec![0; count],
+            starts: vec![0; count],
             engine,
             vehicles,
             model,
@@ -288,8 +289,8 @@ impl Swarm {
         let now_us = self.now_us();
         for index in 0..self.vehicles.len() {
             let seen = self.engine.observation(index);
-            if seen.is_up && seen.boot != self.boots[index] {
-                self.boots[index] = seen.boot;
+            if seen.is_up && seen.starts != self.starts[index] {
+                self.starts[index] = seen.starts;
                 let parameters = Parameters::new(&self.model, &self.engine.parameters(index));
                 self.vehicles[index].restart(parameters, (time_us, seen));
             }
