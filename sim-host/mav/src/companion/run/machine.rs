@@ -3,6 +3,7 @@
 use crate::companion::medium::Medium;
 use crate::companion::roll::KeyWatch;
 use crate::{Lines, Peer, Received, Tlog};
+use staya_console::printable;
 use staya_controller::auth::Key;
 use staya_sim::record;
 use std::io::{self, Write as _};
@@ -37,11 +38,11 @@ pub trait Machine {
     }
 
     fn show(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stdout(), "{line}")
+        writeln!(io::stdout(), "{}", printable(line))
     }
 
     fn tell(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stderr(), "{line}")
+        writeln!(io::stderr(), "{}", printable(line))
     }
 }
 
