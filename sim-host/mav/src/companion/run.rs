@@ -301,8 +301,8 @@ impl<'a> Companions<'a> {
     }
 
     fn log(&mut self, frame: &[u8]) {
-        if self.log_error.is_none()
-            && let Err(error) = self.machine.log(frame)
+        if let Err(error) = self.machine.log(frame)
+            && self.log_error.is_none()
         {
             self.log_fails(error);
         }
@@ -317,8 +317,8 @@ impl<'a> Companions<'a> {
     }
 
     fn close_log(&mut self) {
-        if self.log_error.is_none()
-            && let Err(error) = self.machine.close_log()
+        if let Err(error) = self.machine.close_log()
+            && self.log_error.is_none()
         {
             self.log_fails(error);
         }

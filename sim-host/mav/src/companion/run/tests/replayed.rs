@@ -41,6 +41,10 @@ impl Machine for Replay {
         Ok(())
     }
 
+    fn missing(&self) -> Missing {
+        Missing::default()
+    }
+
     fn show(&mut self, _: &str) -> io::Result<()> {
         Ok(())
     }
