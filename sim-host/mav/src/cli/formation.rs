@@ -1,8 +1,8 @@
 use super::{number, signing};
 use crate::Endpoint;
+use crate::boot::fresh_boot;
 use crate::formation::station::{Given, Members, Places, give, numbers};
 use crate::formation::{Graph, Order, Shape};
-use crate::tlog::micros_since_1970;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, one_line, print, print_json};
@@ -100,8 +100,8 @@ impl FormationArgs {
             None => self.read(Path::new(&self.shape)).map(|graph| Box::new(|_| Ok(graph)))?,
         };
         let mut signing = signing(self.key.as_deref(), 2)?;
-        // Every call gets a new boot counter, so robots accept its version 1.
-        let order = Order { goal: self.goal, to_all: true, boot: (micros_since_1970() / 100_000) as u8, version: 1 };
+        // Another number than that of the previous call, so robots accept version 1.
+        let order = Order { goal: self.goal, to_all: true, boot: fresh_boot(), version: 1 };
         let members = Members { robots: self.robots.clone(), places: self.places, heading: self.heading };
         let wait = Duration::from_secs_f64(self.wait);
         let given = give(&self.to, signing.as_mut(), graph, &members, &order, wait)

@@ -238,7 +238,7 @@ fn config() -> Config {
 fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<CompanionReport>) {
     let options = Options { seconds: Some(SECONDS), ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(failing)));
-    let mut companions = Companions::new(config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
+    let mut companions = Companions::new(config, &options, None, None, Box::new(Shared(Rc::clone(&world))), 0);
     let ended = catch_unwind(AssertUnwindSafe(move || {
         let (seconds, interrupted) = companions.run(|| true, &mut |_| {});
         companions.say_farewell();
@@ -319,7 +319,7 @@ fn used_up_timestamps_are_reported_while_signing_is_possible() {
     let config = config();
     let options = Options { seconds: Some(SECONDS), ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(None)));
-    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))), 0);
     let last = (1 << 48) - 1;
     companions.links[0].signing = Some(Signing::new(staya_controller::auth::Key::new([7; 32]), 0, last - 3));
     let (seconds, _) = companions.run(|| true, &mut |_| {});
@@ -337,7 +337,7 @@ fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
     let options = Options { seconds: Some(SECONDS), dry_run: true, ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(failing)));
     let config = config();
-    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))));
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(Rc::clone(&world))), 0);
     let (seconds, _) = companions.run(|| true, &mut |_| {});
     companions.has_said_farewell = true;
     drop(companions);
@@ -349,7 +349,7 @@ fn silent_autopilots_end_the_run_with_their_links_named() {
     let options = Options { wait: 3.0, ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(Some((Call::Receive, Failure::From(1))))));
     let config = config();
-    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(world)));
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(world)), 0);
     let (seconds, _) = companions.run(|| true, &mut |_| {});
     let error = companions.no_autopilot().expect("no autopilot").to_string();
     companions.has_said_farewell = true;
