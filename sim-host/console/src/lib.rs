@@ -112,7 +112,7 @@ fn with_safe_arguments(mut error: clap::Error) -> clap::Error {
             let texts = texts.iter().map(|text| one_line(text).into_owned());
             Some((kind, ContextValue::Strings(texts.collect())))
         }
-        // A tip repeats the argument; without control characters it is not of use.
+        // A tip repeats the argument. Without its control characters it would mislead.
         ContextValue::StyledStrs(tips) => {
             let is_harmful = tips.iter().map(ToString::to_string).any(|tip| one_line(&tip) != tip);
             is_harmful.then_some((kind, ContextValue::None))
