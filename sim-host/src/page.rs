@@ -12,6 +12,7 @@ use staya_sim::engine::operated;
 use staya_sim::file::{MAP, read, read_remedy};
 use staya_sim::record::{Error, Files};
 use staya_sim::scenario::{Scenario, text_with};
+use staya_sim::shown::Shown as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -63,19 +64,19 @@ impl PageArgs {
                 (recorded(&scenario, scene, self.every, &stop, global)?, output)
             }
             false if !self.minds.is_empty() => {
-                let path = path.display();
+                let path = path.shown();
                 return Err(anyhow!("--minds: the recording {path} has no minds; give its scenario (.toml) instead"));
             }
             false => {
                 let output = Files::reading([path]).create(&self.out)?;
-                let error = |error| anyhow!("{}: {error}; {}", path.display(), read_remedy(&error));
+                let error = |error| anyhow!("{}: {error}; {}", path.shown(), read_remedy(&error));
                 (read(path, MAP).map_err(error)?, output)
             }
         };
         let mut reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
         reader.scene()?;
         let (first_tick, last_tick) =
-            reader.ticks().with_context(|| format!("{} has no frames; record the run again", path.display()))?;
+            reader.ticks().with_context(|| format!("{} has no frames; record the run again", path.shown()))?;
         let page = page::with_recording(&bytes)?;
         output.write_all(page.as_bytes()).map_err(Error::new("write", &self.out))?;
         output.finish()?;
@@ -85,7 +86,7 @@ impl PageArgs {
             print_json(&made)?;
         } else {
             let size = made.bytes as f64 / 1e6;
-            print(&format!("{}: {size:.2} MB, ticks {first_tick} to {last_tick}\n", self.out.display()))?;
+            print(&format!("{}: {size:.2} MB, ticks {first_tick} to {last_tick}\n", self.out.shown()))?;
         }
         Ok(Ended::by(&stop))
     }

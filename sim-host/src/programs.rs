@@ -6,6 +6,8 @@
 use anyhow::{Context as _, Result, bail};
 use clap::{Arg, Command};
 use staya_console::Ended;
+use staya_console::say;
+use staya_sim::shown::Shown as _;
 use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -97,7 +99,7 @@ pub fn hand_over_as(program: &Program, arguments: &[OsString]) -> Result<Ended> 
     let path = find(program)?;
     let mut command = std::process::Command::new(&path);
     command.args(arguments);
-    become_it(command).with_context(|| format!("cannot start {}", path.display()))
+    become_it(command).with_context(|| format!("cannot start {}", path.shown()))
 }
 
 #[cfg(unix)]
@@ -157,7 +159,7 @@ impl Place {
     fn build(&self, program: &Program, file: &Path) -> Result<()> {
         let is_there = file.is_file();
         if !is_there {
-            eprintln!("building {} (once)", program.name);
+            say(&format!("building {} (once)", program.name));
         }
         let mut cargo = std::process::Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         cargo.args(["build", "--quiet", "--package", program.package, "--bin", program.name]);

@@ -8,6 +8,7 @@ use checkpoint::{CheckpointArgs, Checkpoints};
 use clap::Args;
 pub use outputs::Observer;
 use outputs::{OutputArgs, RunOutputs};
+use staya_console::say;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
 use staya_plot::run_pictures;
 use staya_record::recording::RecordingError;
@@ -16,6 +17,7 @@ use staya_sim::engine::{Moment, Outcome, StartError, simulate, simulate_from};
 use staya_sim::expected::Expected;
 use staya_sim::record::{self, Files, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::Scenario;
+use staya_sim::shown::Shown as _;
 use staya_sim::summary::Summary;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -85,7 +87,7 @@ impl RunArgs {
         if let Some(from) = &from
             && self.outputs.is_recorded()
         {
-            eprintln!("the files of --record and --mcap start after tick {}", from.tick());
+            say(&format!("the files of --record and --mcap start after tick {}", from.tick()));
         }
         let before_seconds = from.as_ref().map_or(0.0, Checkpoint::wall_seconds);
         let mut files = Files::reading(&scenario.origin.files);
@@ -146,8 +148,8 @@ fn run(task: Task<'_>, outputs: RunOutputs<'_>, global: &Global) -> Result<Summa
         }
         Err(error) if error.is::<record::Error>() || error.is::<RecordingError>() => {
             incomplete.push(results.keep());
-            let kept: Vec<_> = incomplete.iter().map(|path| path.display().to_string()).collect();
-            let (kept, out) = (kept.join(", "), out.display());
+            let kept: Vec<_> = incomplete.iter().map(|path| path.shown().to_string()).collect();
+            let (kept, out) = (kept.join(", "), out.shown());
             let what = format!("{out} is unchanged; the incomplete results stay in {kept} until the next run");
             Err(anyhow!("{}; {what}", staya_console::in_one_line(&error)))
         }

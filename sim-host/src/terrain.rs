@@ -7,6 +7,7 @@ use staya_console::{Ended, Global, options, print, print_json};
 use staya_controller::grid::Norm;
 use staya_plot::terrain::{draw, scale_for};
 use staya_sim::record::Files;
+use staya_sim::shown::Shown as _;
 use staya_sim::terrain::generate::{ByMetrics, Hills, LandPlan, by_metrics, natural_by, uniform};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
 use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
@@ -162,7 +163,7 @@ impl LandReport {
         let m = &self.metrics;
         let mut text = String::new();
         let share = 100.0 * m.blocked as f64 / m.cells as f64;
-        writeln!(text, "{}", self.file.display())?;
+        writeln!(text, "{}", self.file.shown())?;
         writeln!(text, "  size                  {} x {} cells of {} m", self.width, self.height, self.cell_m)?;
         writeln!(text, "  classes               {}, blocked {share:.1} %", m.classes)?;
         writeln!(text, "  entropy S             {:.4}", m.entropy)?;
@@ -202,7 +203,7 @@ impl Generate {
         if !matches!(extension, Some("yaml" | "yml")) {
             bail!(
                 "--out {}: terrain is written as a ROS map; give a name that ends in .yaml (the picture is a .pgm beside it)",
-                self.out.display()
+                self.out.shown()
             );
         }
         let plan = LandPlan { width: self.width, height: self.height, classes: self.classes, seed: self.seed };

@@ -7,10 +7,13 @@ mod scenario;
 
 pub use progress::{Progress, Stop};
 pub use scenario::{ScenarioArgs, WatchArgs};
+pub use staya_sim::shown::{Shown, one_line, printable};
 
 use anyhow::{Context as _, Result};
+use clap::error::{ContextKind, ContextValue};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{self, ErrorKind, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -73,6 +76,7 @@ pub fn main<C: Subcommand>(run: impl FnOnce(&C, &Global) -> Result<Ended>) -> Ex
 
 /// Reports an error of the command line, and ends the process with clap's exit code. Texts of the
 /// standard library are replaced by the values that an option takes; old names get the new one.
+/// Control characters of arguments are escaped.
 pub fn refuse(error: clap::Error) -> ! {
     const TEXTS: [(&str, &str); 10] = [
         ("invalid digit found in string", "give a whole number, 0 or more"),
@@ -86,14 +90,40 @@ pub fn refuse(error: clap::Error) -> ! {
         ("unrecognized subcommand 'watch'", "there is no command 'watch'; `staya view` shows a run in the browser"),
         ("unrecognized subcommand 'mavlink'", "there is no command 'mavlink'; `staya bridge` speaks MAVLink"),
     ];
-    let mut text = error.render().to_string();
+    let error = with_safe_arguments(error);
+    let said = error.render().to_string();
+    let mut text = printable(&said).into_owned();
     if let Some((old, new)) = TEXTS.iter().find(|(old, _)| text.contains(old)) {
         text = text.replacen(old, new, 1);
+    }
+    if text != said {
         // Standard error may be closed.
         let _ = io::stderr().write_all(text.as_bytes());
         std::process::exit(error.exit_code());
     }
     error.exit()
+}
+
+/// The error with every quoted argument on one line.
+fn with_safe_arguments(mut error: clap::Error) -> clap::Error {
+    let safe = |(kind, value): (ContextKind, &ContextValue)| match value {
+        ContextValue::String(text) => Some((kind, ContextValue::String(one_line(text).into_owned()))),
+        ContextValue::Strings(texts) => {
+            let texts = texts.iter().map(|text| one_line(text).into_owned());
+            Some((kind, ContextValue::Strings(texts.collect())))
+        }
+        // A tip repeats the argument. Without its control characters it would mislead.
+        ContextValue::StyledStrs(tips) => {
+            let is_harmful = tips.iter().map(ToString::to_string).any(|tip| one_line(&tip) != tip);
+            is_harmful.then_some((kind, ContextValue::None))
+        }
+        _ => None,
+    };
+    let safe: Vec<_> = error.context().filter_map(safe).collect();
+    for (kind, value) in safe {
+        error.insert(kind, value);
+    }
+    error
 }
 
 /// Parses a file name with one of these endings, without the dot.
@@ -123,13 +153,24 @@ impl Ended {
     }
 }
 
-/// Writes text to standard output.
+/// Writes text to standard output; control characters other than line feeds and tabs are
+/// [escaped](printable).
 ///
 /// # Errors
 /// Standard output is closed or full.
 pub fn print(text: &str) -> Result<()> {
+    write_out(&printable(text))
+}
+
+fn write_out(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).context("cannot write to standard output")
+}
+
+/// Writes a remark and a line feed to standard error; control characters other than line feeds and
+/// tabs are [escaped](printable). Standard error may be closed or full, which ends no program.
+pub fn say(text: &str) {
+    let _ = writeln!(io::stderr(), "{}", printable(text));
 }
 
 /// Writes one JSON object and a line feed to standard output.
@@ -137,9 +178,25 @@ pub fn print(text: &str) -> Result<()> {
 /// # Errors
 /// Standard output is closed or full, or `value` cannot be encoded as JSON.
 pub fn print_json(value: &impl Serialize) -> Result<()> {
-    let mut text = serde_json::to_string_pretty(value)?;
+    let mut text = safe_json(&serde_json::to_string_pretty(value)?).into_owned();
     text.push('\n');
-    print(&text)
+    write_out(&text)
+}
+
+/// JSON escapes control characters up to 31 only; terminals obey others too.
+fn safe_json(text: &str) -> Cow<'_, str> {
+    let is_harmful = |letter: char| letter.is_control() && letter > '~';
+    if !text.contains(is_harmful) {
+        return Cow::Borrowed(text);
+    }
+    let mut safe = String::with_capacity(text.len() + 16);
+    for letter in text.chars() {
+        match letter {
+            harmful if is_harmful(harmful) => safe.extend(format!("\\u{:04x}", u32::from(harmful)).chars()),
+            other => safe.push(other),
+        }
+    }
+    Cow::Owned(safe)
 }
 
 /// Exit code of a command: 0 for success, 1 for a printed error, 130 for Ctrl-C.
@@ -151,8 +208,8 @@ pub fn exit(program: &str, ended: Result<Ended>) -> ExitCode {
         // The reader of a pipe (`staya ... | head`) may close it.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            // Standard error may be closed; the exit code still reports the failure.
-            let _ = writeln!(io::stderr(), "{program}: {}", in_one_line(&error));
+            // The exit code reports the failure even if standard error is closed.
+            say(&format!("{program}: {}", in_one_line(&error)));
             ExitCode::FAILURE
         }
     }
@@ -173,4 +230,31 @@ pub fn in_one_line(error: &anyhow::Error) -> String {
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_in_texts_of_clap_are_on_one_line() {
+        let evil = "--a\n\u{1b}[2Jb";
+        let command = clap::Command::new("staya").arg(clap::arg!(--seed <N>).value_parser(clap::value_parser!(u64)));
+        for arguments in [vec!["staya", evil], vec!["staya", "--seed", &evil[2..]], vec!["staya", "--seed=1\r\u{7}"]] {
+            let error = command.clone().try_get_matches_from(arguments).expect_err("no such argument");
+            let text = with_safe_arguments(error).render().to_string();
+            let harmful = |letter: char| letter.is_control() && letter != '\n';
+            assert!(text.contains("\\u{1b}") || text.contains("\\r"), "{text:?}");
+            assert!(!text.contains(harmful) && !text.contains("a\n"), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn json_has_no_control_characters_and_the_same_value() {
+        let value = ["\u{1b}[2J", "\u{7f}", "\u{9b}0m", "\u{e9}"];
+        let text = serde_json::to_string_pretty(&value).expect("texts");
+        let safe = safe_json(&text);
+        assert!(!safe.contains(|letter: char| letter.is_control() && letter != '\n'), "{safe}");
+        assert_eq!(serde_json::from_str::<[String; 4]>(&safe).expect("JSON"), value);
+    }
 }

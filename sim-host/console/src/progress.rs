@@ -1,7 +1,7 @@
-use super::Global;
+use super::{Global, printable, say};
 use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{self, IsTerminal as _, Write as _};
+use std::io::{self, IsTerminal as _};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -71,8 +71,9 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style.progress_chars("=> "));
         }
-        bar.set_message(spaced(label));
-        Self { bar, label: label.to_owned(), lines: (!terminal && !global.quiet).then(Instant::now) }
+        let label = in_a_line(label);
+        bar.set_message(spaced(&label));
+        Self { bar, label, lines: (!terminal && !global.quiet).then(Instant::now) }
     }
 
     /// Sets the total number of steps.
@@ -84,13 +85,13 @@ impl Progress {
     pub fn set(&mut self, done: u64, message: impl FnOnce() -> String) {
         self.bar.set_position(done);
         if !self.bar.is_hidden() {
-            let message = message();
+            let message = in_a_line(&message());
             self.bar.set_message(spaced(if message.is_empty() { &self.label } else { &message }));
         } else if self.lines.is_some_and(|at| at.elapsed() >= LINE_EVERY) {
             self.lines = Some(Instant::now());
             let (label, total, left) = (&self.label, self.bar.length().unwrap_or(0), self.bar.eta().as_secs());
-            // Standard error may be closed.
-            let _ = writeln!(io::stderr(), "{label}: {done}/{total}{}, about {left} s left", spaced(&message()));
+            let message = spaced(&in_a_line(&message()));
+            say(&format!("{label}: {done}/{total}{message}, about {left} s left"));
         }
     }
 
@@ -98,6 +99,10 @@ impl Progress {
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
+}
+
+fn in_a_line(text: &str) -> String {
+    printable(text).replace(['\n', '\t'], " ")
 }
 
 fn spaced(message: &str) -> String {
@@ -110,6 +115,11 @@ fn spaced(message: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_label_cannot_move_the_cursor() {
+        assert_eq!(in_a_line("a\n\tb\r\u{1b}[2J"), "a  b\\r\\u{1b}[2J");
+    }
 
     #[test]
     fn only_a_non_empty_message_is_spaced() {

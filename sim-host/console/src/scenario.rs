@@ -1,3 +1,4 @@
+use super::say;
 use anyhow::Result;
 use clap::Args;
 use staya_sim::scenario::{Overrides, Scenario, Setting};
@@ -44,7 +45,7 @@ impl ScenarioArgs {
     pub fn load(&self) -> Result<Scenario> {
         let scenario = Scenario::load_with(&self.scenario, &self.overrides(), &self.settings)?;
         for remark in scenario.remarks() {
-            eprintln!("{remark}");
+            say(&remark);
         }
         Ok(scenario)
     }

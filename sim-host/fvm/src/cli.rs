@@ -17,6 +17,7 @@ use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
 use staya_sim::file::read_remedy;
 use staya_sim::record::{Files, prepare_dir, write_atomically};
+use staya_sim::shown::Shown as _;
 use staya_voxel::{Header, Local, Model, VoxelNeighbor};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -165,7 +166,7 @@ fn made(template: &Templated, resolution: u16, depth: u8) -> Result<Vec<u8>> {
 
 fn read(path: &Path) -> Result<Vec<u8>> {
     staya_sim::file::read(path, MOST_BYTES as u64)
-        .map_err(|error| anyhow!("cannot read {}: {error}; {}", path.display(), read_remedy(&error)))
+        .map_err(|error| anyhow!("cannot read {}: {error}; {}", path.shown(), read_remedy(&error)))
 }
 
 #[derive(Debug, Serialize)]
@@ -205,7 +206,7 @@ impl BuildArgs {
             return print_json(&about);
         }
         let nodes: Vec<String> = about.nodes.iter().map(ToString::to_string).collect();
-        let out = self.out.display();
+        let out = self.out.shown();
         print(&format!("{out}: {} nodes of {} bits, {} bytes\n", nodes.join(" x "), about.depth, about.bytes))
     }
 }
@@ -215,7 +216,7 @@ impl DrawArgs {
         let bytes = read(&self.model)?;
         let name = self.model.file_stem().unwrap_or_default();
         let title = format!("Functional voxel model {}", name.display());
-        let canvas = sheet(&bytes, &title, self.slice).with_context(|| self.model.display().to_string())?;
+        let canvas = sheet(&bytes, &title, self.slice).with_context(|| self.model.shown().to_string())?;
         prepare_dir(&self.out)?;
         let stem = self.out.join(name);
         let mut pictures = canvas.write(&stem)?;
@@ -225,7 +226,7 @@ impl DrawArgs {
         }
         let mut text = String::new();
         for picture in pictures {
-            writeln!(text, "{}", picture.display())?;
+            writeln!(text, "{}", picture.shown())?;
         }
         print(&text)
     }
@@ -244,7 +245,7 @@ struct Evaluated {
 impl EvaluateArgs {
     fn run(&self, global: &Global) -> Result<()> {
         let bytes = read(&self.model)?;
-        let about = || self.model.display().to_string();
+        let about = || self.model.shown().to_string();
         let variables = Header::read(&bytes).with_context(about)?.variables;
         let at = numbers(&self.at)?;
         let reading = if self.nearest { Reading::Nearest } else { Reading::Blend };

@@ -6,6 +6,7 @@ use staya_controller::scalar::Scalar;
 use staya_plot::canvas::{Anchor, Canvas, Pixels, Shape, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 use staya_sim::record::write_atomically;
+use staya_sim::shown::Shown as _;
 use staya_voxel::{HEADER_LEN, Header, Model};
 use std::path::{Path, PathBuf};
 
@@ -49,7 +50,7 @@ pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>> {
             writer.write_image_data(&grey)?;
             writer.finish()
         });
-        written.with_context(|| path.display().to_string())?;
+        written.with_context(|| path.shown().to_string())?;
         write_atomically(&path, &picture)?;
         files.push(path);
     }

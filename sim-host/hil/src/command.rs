@@ -2,6 +2,7 @@ use crate::run::HilArgs;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global};
+use staya_sim::shown::Shown as _;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -42,7 +43,7 @@ impl HilCommand {
 fn run_crate(folder: &Path) -> Result<Ended> {
     let manifest = folder.join("Cargo.toml");
     if !manifest.is_file() {
-        bail!("--crate {}: Cargo.toml is missing; give the folder of a crate as in docs/project.md", folder.display());
+        bail!("--crate {}: Cargo.toml is missing; give the folder of a crate as in docs/project.md", folder.shown());
     }
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -52,7 +53,7 @@ fn run_crate(folder: &Path) -> Result<Ended> {
     match status.code() {
         Some(0) => Ok(Ended::Done),
         Some(130) => Ok(Ended::Interrupted),
-        _ => bail!("the program of {} failed ({status})", folder.display()),
+        _ => bail!("the program of {} failed ({status})", folder.shown()),
     }
 }
 

@@ -1,5 +1,7 @@
 use anyhow::{Context as _, Result, bail};
+use staya_console::say;
 use staya_runner::{Note, Part, find_emulator};
+use staya_sim::shown::Shown as _;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -39,7 +41,7 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
         return match lacking(parts, &folder) {
             None => checked(parts, folder, program),
             Some(elf) => {
-                write!(looked, "\n  {} is missing ({by})", elf.display())?;
+                write!(looked, "\n  {} is missing ({by})", elf.shown())?;
                 bail!("{looked}\n{}", remedy(parts, program))
             }
         };
@@ -47,7 +49,7 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
     for folder in installed(program.name) {
         match lacking(parts, &folder) {
             None => return checked(parts, folder, program),
-            Some(elf) => write!(looked, "\n  {} is missing", elf.display())?,
+            Some(elf) => write!(looked, "\n  {} is missing", elf.shown())?,
         }
     }
     let root = repository();
@@ -61,13 +63,13 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
             match lacking(parts, &folder) {
                 None => checked(parts, folder, program),
                 Some(elf) => {
-                    write!(looked, "\n  {} is missing, and no installed toolchain can build it", elf.display())?;
+                    write!(looked, "\n  {} is missing, and no installed toolchain can build it", elf.shown())?;
                     bail!("{looked}\n{}", remedy(parts, program))
                 }
             }
         }
         _ => {
-            write!(looked, "\n  the sources of this program are no longer at {}", home().display())?;
+            write!(looked, "\n  the sources of this program are no longer at {}", home().shown())?;
             bail!("{looked}\n{}", remedy(parts, program))
         }
     }
@@ -96,7 +98,7 @@ fn remedy(parts: &[Part], program: &Program) -> String {
         Made::InPackage(folder) => format!(
             "In a clone of Staya's repository, `cargo xtask firmware --crate {folder} {names}` builds it in {folder}/target/firmware; \
             then add `--firmware {folder}/target/firmware` here, or set {VARIABLE} to that folder or to one ELF file",
-            folder = folder.display()
+            folder = folder.shown()
         ),
     }
 }
@@ -144,26 +146,26 @@ fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
         Made::InPackage(package) => {
             let text = package
                 .to_str()
-                .with_context(|| format!("{} is not valid UTF-8; rename the folder", package.display()))?;
+                .with_context(|| format!("{} is not valid UTF-8; rename the folder", package.shown()))?;
             (package.join("target/firmware"), vec!["--crate", text])
         }
     };
     if lacking(parts, &folder).is_some() {
-        eprintln!(
+        say(&format!(
             "staya: building the firmware for {}; the first build takes some minutes, fewer after `rustup target add {TARGETS}`",
             names.join(", ")
-        );
+        ));
     }
     let began = Instant::now();
     xtask(root, &[&["firmware"], what.as_slice(), names.as_slice()].concat())?;
     for part in parts {
         let elf = part.elf(&folder);
         if elf.is_file() {
-            eprintln!("staya: {} is up to date, after {:.0} s", elf.display(), began.elapsed().as_secs_f64());
+            say(&format!("staya: {} is up to date, after {:.0} s", elf.shown(), began.elapsed().as_secs_f64()));
         }
     }
     if !parts.iter().all(|part| find_emulator(part.emulator()).is_some()) {
-        eprintln!("staya: downloading the emulators; this takes a minute");
+        say("staya: downloading the emulators; this takes a minute");
         xtask(root, &["qemu"])?;
     }
     Ok(folder)
@@ -173,7 +175,7 @@ fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
 fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let line = format!("cargo xtask {}", arguments.join(" "));
-    eprintln!("staya: {line}");
+    say(&format!("staya: {line}"));
     let mut command = Command::new(cargo);
     // Cargo's variables describe this program's package, not that of the command.
     for (name, _) in std::env::vars_os() {
@@ -197,7 +199,7 @@ fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
         bail!("`{line}` failed");
     }
     for skipped in said.lines().filter(|line| line.contains("no toolchain") || line.contains("no qemu")) {
-        eprintln!("staya: {}", skipped.trim());
+        say(&format!("staya: {}", skipped.trim()));
     }
     Ok(())
 }

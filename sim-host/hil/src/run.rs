@@ -12,6 +12,7 @@ use staya_sim::expected::Expected;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
 use staya_sim::scenario::{FormationLaw, FormationSetup};
+use staya_sim::shown::Shown as _;
 use staya_view::watch::{About, DeviceFigures, Insight, Watcher};
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -132,7 +133,7 @@ pub(crate) fn drive(
         options.shadows = shadows;
     }
     if let Some(folder) = &devices.logs {
-        std::fs::create_dir_all(folder).with_context(|| format!("{}", folder.display()))?;
+        std::fs::create_dir_all(folder).with_context(|| format!("{}", folder.shown()))?;
         options.logs = Some(folder.clone());
     }
     let stop = Stop::on_ctrl_c()?;

@@ -2,6 +2,7 @@
 
 use staya_sim::record;
 use staya_sim::scenario::ScenarioError;
+use staya_sim::shown::one_line;
 use staya_sim::terrain::TerrainError;
 use std::fmt::Display;
 
@@ -18,7 +19,7 @@ pub enum SweepError {
     #[error(transparent)]
     File(#[from] record::Error),
     /// Any other error.
-    #[error("{place}: {what}; {remedy}")]
+    #[error("{}: {}; {}", one_line(.place), one_line(.what), one_line(.remedy))]
     Other {
         /// A file, often with a line, or an option.
         place: String,

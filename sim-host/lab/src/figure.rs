@@ -6,6 +6,7 @@ use crate::sweep::report::VERDICT;
 use anyhow::Result;
 use staya_sim::record::Error;
 use staya_sim::scenario::nearest;
+use staya_sim::shown::Shown as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -66,7 +67,7 @@ fn all_below(roots: [&Path; 3]) -> Result<Vec<Figure>> {
         let file = path.join(FILE);
         if file.is_file() {
             let (name, title) = Plan::title(&file)?;
-            let place = path.strip_prefix(root).unwrap_or(&path).display().to_string();
+            let place = path.strip_prefix(root).unwrap_or(&path).shown().to_string();
             figures.push(Figure { path: file, place, name, title });
         }
     }

@@ -16,6 +16,7 @@ use staya_controller::template::{Template, rotated};
 use staya_controller::wire::{Header, Message};
 use staya_mavlink::wire::{MAX_ROBOT, encode};
 use staya_sim::scenario::Source;
+use staya_sim::shown::Shown as _;
 use staya_sim::table;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -135,7 +136,7 @@ impl Graph {
     /// Invalid text, or too many, too far, colliding or unconnected places.
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
         let file = Source::new(path, text)?.read("scenarios/README.md")?;
-        Self::of_file(file).with_context(|| path.display().to_string())
+        Self::of_file(file).with_context(|| path.shown().to_string())
     }
 
     fn of_file(GraphFile { places, edges: pairs }: GraphFile) -> Result<Self> {

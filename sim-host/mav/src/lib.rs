@@ -7,6 +7,7 @@
 //! All of them use `Lines`, which opens links (`Endpoint`) and returns whole frames. `Tlog` records
 //! frames, and `geo` converts metres to degrees.
 
+mod boot;
 mod bridge;
 pub mod cli;
 pub mod companion;

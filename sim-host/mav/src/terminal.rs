@@ -1,7 +1,6 @@
 //! Numbers in options, and words for the operator.
 
 use staya_mavlink::constants::*;
-use std::io::{self, Write as _};
 
 /// Parses a number within limits.
 pub(crate) fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
@@ -13,7 +12,7 @@ pub(crate) fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, Stri
 
 /// Tells the operator something. Standard error may be closed.
 pub(crate) fn say(remark: &str) {
-    let _ = writeln!(io::stderr(), "staya: {remark}");
+    staya_console::say(&format!("staya: {remark}"));
 }
 
 /// Describes a MAV_RESULT.

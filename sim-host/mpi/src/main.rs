@@ -7,8 +7,7 @@ mod run;
 use anyhow::{Context as _, Result};
 use clap::{Parser, Subcommand};
 use mpi::traits::Communicator as _;
-use staya_console::{Ended, Global, Stop};
-use std::io::Write as _;
+use staya_console::{Ended, Global, Stop, say};
 use std::process::ExitCode;
 
 /// Run one scenario on several processes connected by MPI; start it with mpirun or srun.
@@ -34,7 +33,7 @@ fn main() -> ExitCode {
         Ok(Ended::Interrupted) => ExitCode::from(130),
         Err(error) => {
             if !error.is::<run::Agreed>() {
-                let _ = writeln!(std::io::stderr(), "staya-mpi: {error:#}");
+                say(&format!("staya-mpi: {error:#}"));
             }
             ExitCode::FAILURE
         }
@@ -57,7 +56,7 @@ fn on_rank(cli: Cli) -> Result<Ended> {
         let ended = run.run(&cli.global, link, &stop);
         match &ended {
             Err(error) if !error.is::<run::Agreed>() => {
-                let _ = writeln!(std::io::stderr(), "staya-mpi: rank {rank}: {error:#}");
+                say(&format!("staya-mpi: rank {rank}: {error:#}"));
                 // MPI may wait for a rank that has ended; only the end of the process releases this
                 // and the other ranks.
                 std::process::exit(1);

@@ -4,6 +4,7 @@ use crate::link::Link;
 use anyhow::{Result, anyhow};
 use clap::Args;
 use serde::Serialize;
+use staya_console::say;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
 use staya_mpi::ranks::{Ended as RunEnded, Exchange as _, RankError, Sharing, Traffic, check, remark, simulate_on};
 use staya_plot::run_pictures;
@@ -11,6 +12,7 @@ use staya_sim::checkpoint::{Checkpoint, CheckpointInterval, Place};
 use staya_sim::engine::{Moment, Watch, agents};
 use staya_sim::record::{History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario, Setting};
+use staya_sim::shown::Shown as _;
 use staya_sim::summary::Summary;
 use std::fmt::{Display, Formatter, Write as _};
 use std::ops::ControlFlow;
@@ -91,8 +93,8 @@ impl RunArgs {
         let wrong = wrong.map(|(rank, said)| (rank, String::from_utf8_lossy(said)));
         match (wrong, loaded) {
             (None, Ok(loaded)) => return Ok(loaded),
-            (Some((0, said)), _) if link.rank() == 0 => eprintln!("staya-mpi: {said}"),
-            (Some((rank, said)), _) if link.rank() == 0 => eprintln!("staya-mpi: rank {rank}: {said}"),
+            (Some((0, said)), _) if link.rank() == 0 => say(&format!("staya-mpi: {said}")),
+            (Some((rank, said)), _) if link.rank() == 0 => say(&format!("staya-mpi: rank {rank}: {said}")),
             _ => {}
         }
         // The first rank that ends makes mpirun end all, so all wait until the message is printed.
@@ -108,7 +110,7 @@ impl RunArgs {
             return Ok(Ended::by(stop));
         }
         if let Some(remark) = remark(&scenario) {
-            eprintln!("{remark}");
+            say(&remark);
         }
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&scenario.name));
         let results = Results::begin(&out)?;
@@ -124,7 +126,7 @@ impl RunArgs {
             }
             Err(error) => {
                 let kept = results.keep();
-                let (kept, out) = (kept.display(), out.display());
+                let (kept, out) = (kept.shown(), out.shown());
                 Err(anyhow!(
                     "{error:#}; {out} is unchanged; {kept} has the incomplete results until the next run into {out}"
                 ))
@@ -176,7 +178,7 @@ impl RunArgs {
                 && let Err(error) =
                     place.write(tick, before_seconds + began.elapsed().as_secs_f64(), run, &mut recorder)
             {
-                eprintln!("cannot write the checkpoint of tick {tick}: {error}");
+                say(&format!("cannot write the checkpoint of tick {tick}: {error}"));
             }
             let Moment { arrived, waiting, .. } = *moment;
             progress.set(tick.into(), || format!("ticks, {arrived} of {count} robots arrived, {waiting} wait"));

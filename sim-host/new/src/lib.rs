@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result, anyhow, bail, ensure};
 use clap::Args;
 use files::{C, File, PARTS, PYTHON, Part, RUST};
 use source::Source;
-use staya_console::{Ended, Global, print};
+use staya_console::{Ended, Global, Shown as _, one_line, print};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -101,13 +101,14 @@ const LONGEST: usize = 40;
 /// The name is valid for cargo, C and Python.
 fn name(folder: &Path) -> Result<&str> {
     let last = folder.file_name().and_then(|name| name.to_str());
-    let name = last.with_context(|| format!("{}: no project name; give a folder name", folder.display()))?;
+    let name = last.with_context(|| format!("{}: no project name; give a folder name", folder.shown()))?;
     let is_word = name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_')
         && name.len() <= LONGEST;
     ensure!(
         is_word,
-        "{name}: not a valid project name; give at most {LONGEST} of a to z, 0 to 9, - and _, starting with a letter"
+        "{}: not a valid project name; give at most {LONGEST} of a to z, 0 to 9, - and _, starting with a letter",
+        one_line(name)
     );
     let is_free =
         !TAKEN.contains(&name) && !name.starts_with("staya") && KEYWORDS.split_whitespace().all(|word| word != name);
@@ -141,9 +142,9 @@ fn locks(kind: Kind, part: &Part) -> Vec<(&'static str, &'static str)> {
 
 /// The folder must not exist, and is removed after an error.
 fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], source: &Source) -> Result<()> {
-    let shown = folder.display();
+    let shown = folder.shown();
     if let Some(parent) = folder.parent().filter(|parent| !parent.as_os_str().is_empty()) {
-        ensure!(parent.is_dir(), "{}: no such folder; create it first", parent.display());
+        ensure!(parent.is_dir(), "{}: no such folder; create it first", parent.shown());
     }
     fs::create_dir(folder).map_err(|error| match error.kind() {
         std::io::ErrorKind::AlreadyExists => anyhow!("{shown} already exists; give another name"),
@@ -156,7 +157,7 @@ fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], sour
     for (path, text) in filled.chain(locks) {
         if let Err(error) = write_file(&path, &text) {
             let _ = fs::remove_dir_all(folder);
-            bail!("{}: {error}; nothing was created", path.display());
+            bail!("{}: {error}; nothing was created", path.shown());
         }
     }
     Ok(())
@@ -168,7 +169,7 @@ fn write_file(path: &Path, text: &str) -> std::io::Result<()> {
 }
 
 fn next(folder: &Path, kind: Kind, part: &Part, source: &Source) -> String {
-    let folder = folder.display();
+    let folder = folder.shown();
     let place = source.fill("", "/STAYA_PIP", "");
     let rest = match kind {
         Kind::Rust => format!(

@@ -1,4 +1,5 @@
 use anyhow::{Result, ensure};
+use staya_console::Shown as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,7 @@ impl Source {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
         let folder = said.map_or_else(|| here.ancestors().nth(2).unwrap_or(here), Path::new);
         let is_there = folder.join("controller/Cargo.toml").is_file() && folder.join("sim-host/sim").is_dir();
-        let shown = folder.display();
+        let shown = folder.shown();
         let why = match said {
             Some(_) => {
                 format!("{shown}: not a repository of Staya; give --staya the folder of a clone or a git URL")
@@ -40,7 +41,7 @@ impl Source {
         let relative = relative.ok_or_else(|| {
             anyhow::anyhow!(
                 "{}: the path of Staya's sources contains blanks, quotes, $ or #, which Makefiles do not support; move them",
-                root.display()
+                root.shown()
             )
         })?;
         Ok(Self::Folder { root, relative })

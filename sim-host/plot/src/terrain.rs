@@ -4,6 +4,7 @@ use super::canvas::{Anchor, Canvas, Text};
 use super::map::{FOOTER, Map, size};
 use super::{raster, svg};
 use staya_sim::record::write_atomically;
+use staya_sim::shown::Shown as _;
 use staya_sim::terrain::{Terrain, TerrainError, parameter_error};
 use std::path::Path;
 
@@ -41,7 +42,7 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
         "svg" => svg::text(&picture(terrain, f64::from(scale))).map(String::into_bytes),
         _ => {
             return Err(parameter_error(
-                format!("{} is not a picture format", path.display()),
+                format!("{} is not a picture format", path.shown()),
                 "choose a file name that ends in .png or .svg",
             ));
         }

@@ -94,7 +94,7 @@ pub fn robot(
         "mode": status.mode as u8,
         "wait": status.wait.map(|wait| wait as u8),
         "leader": index_of(status.leader),
-        "boot": observation.boot,
+        "boot": observation.starts,
         "up": observation.is_up,
         "wish": choice.as_ref().map(|choice| choice.wish_mps),
         "neighbors": neighbors.collect::<Vec<_>>(),

@@ -4,6 +4,7 @@
 use anyhow::{Context as _, Result};
 use clap::{Command, CommandFactory as _};
 use clap_complete::Shell;
+use staya_console::Shown as _;
 use staya_console::{Ended, Line};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,17 +42,17 @@ fn whole() -> Command {
 fn write(prefix: &Path) -> Result<()> {
     let folder = |path: &str| -> Result<PathBuf> {
         let folder = prefix.join(path);
-        fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.shown()))?;
         Ok(folder)
     };
     for (shell, path, name) in COMPLETIONS {
         let mut script = Vec::new();
         clap_complete::generate(shell, &mut whole(), "staya", &mut script);
         let file = folder(path)?.join(name);
-        fs::write(&file, script).with_context(|| format!("cannot write {}", file.display()))?;
+        fs::write(&file, script).with_context(|| format!("cannot write {}", file.shown()))?;
     }
     let pages = folder("share/man/man1")?;
-    clap_mangen::generate_to(whole(), &pages).with_context(|| format!("cannot write into {}", pages.display()))
+    clap_mangen::generate_to(whole(), &pages).with_context(|| format!("cannot write into {}", pages.shown()))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use crate::engine::{Saves, StateError};
 use crate::file::{self, read_remedy};
 use crate::record::{self, Access, Output, Recorder, remove_stale};
 use crate::scenario::Scenario;
+use crate::shown::{Shown as _, one_line};
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
@@ -35,7 +36,7 @@ const LONGEST_HEAD: u64 = 1 << 16;
 
 /// The file is damaged, or not a checkpoint of this scenario.
 #[derive(Debug, Error)]
-#[error("{}: {what}; {remedy}", path.display())]
+#[error("{}: {}; {}", path.shown(), one_line(what), one_line(remedy))]
 pub struct CheckpointError {
     path: PathBuf,
     what: String,
@@ -223,7 +224,7 @@ impl Checkpoint {
             |what: String, remedy: &str| CheckpointError { path: path.to_owned(), what, remedy: remedy.to_owned() };
         let of_io = |source: io::Error| error(source.to_string(), read_remedy(&source));
         let old = beside(path, ".old");
-        let other = if old.exists() { format!("take {}", old.display()) } else { "restart the run".to_owned() };
+        let other = if old.exists() { format!("take {}", old.shown()) } else { "restart the run".to_owned() };
         let mut file = file::open(path).map_err(of_io)?;
         let size = file.metadata().map_err(of_io)?.len();
         let cut = |at: u64, part: &str| error(format!("byte {at}: it ends in its {part}"), &other);

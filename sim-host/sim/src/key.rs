@@ -8,6 +8,7 @@
 //! ```
 
 use crate::file::{self, read_remedy};
+use crate::shown::Shown as _;
 use staya_controller::auth::{KEY_LEN, Key};
 use staya_mavlink::signing::EPOCH_UNIX_S;
 use std::fs;
@@ -24,7 +25,7 @@ const WANTED: &str =
 #[derive(Debug, Error)]
 pub enum KeyError {
     /// The file cannot be read.
-    #[error("cannot read the key file {}: {error}; {}", path.display(), read_remedy(error))]
+    #[error("cannot read the key file {}: {error}; {}", path.shown(), read_remedy(error))]
     Unreadable {
         /// Path of the file.
         path: PathBuf,
@@ -32,7 +33,7 @@ pub enum KeyError {
         error: std::io::Error,
     },
     /// The file does not contain a key.
-    #[error("{}, line {line}: {problem}; {WANTED}", path.display())]
+    #[error("{}, line {line}: {problem}; {WANTED}", path.shown())]
     NoKey {
         /// Path of the file.
         path: PathBuf,
@@ -63,7 +64,7 @@ impl KeyFile {
         let key =
             parse(&text).map_err(|(line, problem)| KeyError::NoKey { path: path.to_path_buf(), line, problem })?;
         let remark = is_open(path).then(|| {
-            let path = path.display();
+            let path = path.shown();
             format!("{path} can be read by others than its owner: chmod 600 {path}")
         });
         Ok(Self { key, remark })

@@ -11,6 +11,7 @@
 //! | [`expected`] | prediction of the remaining ticks |
 //! | [`nearby`], [`walk`] | neighbour search; simulation of a single robot |
 //! | [`key`] | files with the secret key of a swarm |
+//! | [`shown`] | names and messages without control characters |
 
 pub mod checkpoint;
 pub mod engine;
@@ -23,6 +24,7 @@ mod own_law;
 pub mod radio;
 pub mod record;
 pub mod scenario;
+pub mod shown;
 pub mod summary;
 pub mod terrain;
 pub mod walk;

@@ -7,6 +7,7 @@ use crate::metrics::free_formation_s;
 use crate::metrics::waits::WaitCount;
 use crate::record::PacketCounts;
 use crate::scenario::Scenario;
+use crate::shown::Shown as _;
 use crate::world::plane::Solid;
 use groups::GroupFigures;
 use serde::Serialize;
@@ -410,10 +411,10 @@ impl Summary {
             )?;
         }
         line("trace hash", self.trace_hash.clone())?;
-        writeln!(text, "written to {}", out.display())?;
+        writeln!(text, "written to {}", out.shown())?;
         for file in &self.files {
             let name = file.strip_prefix(out).unwrap_or(file);
-            writeln!(text, "  {}", name.display())?;
+            writeln!(text, "  {}", name.shown())?;
         }
         Ok(())
     }

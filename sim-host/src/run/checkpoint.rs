@@ -1,7 +1,9 @@
 use clap::Args;
+use staya_console::say;
 use staya_sim::checkpoint::{CheckpointInterval, Place};
 use staya_sim::engine::Moment;
 use staya_sim::record::Recorder;
+use staya_sim::shown::Shown as _;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -46,9 +48,9 @@ impl Checkpoints {
         };
         let wall_seconds = self.before_seconds + self.began.elapsed().as_secs_f64();
         if let Err(error) = self.place.write(tick, wall_seconds, run, recorder) {
-            eprintln!("cannot write the checkpoint of tick {tick}: {error}");
+            say(&format!("cannot write the checkpoint of tick {tick}: {error}"));
         } else if ends_early {
-            eprintln!("checkpoint at tick {tick}: {}", self.place.path().display());
+            say(&format!("checkpoint at tick {tick}: {}", self.place.path().shown()));
         }
         self.last = Instant::now();
     }

@@ -5,8 +5,10 @@ use crate::session::Session;
 use anyhow::{Context as _, Result, ensure};
 use clap::Args;
 use serde_json::json;
+use staya_console::say;
 use staya_console::{Ended, Global, ScenarioArgs, Stop, print, print_json};
 use staya_sim::scenario::text_with;
+use staya_sim::shown::Shown as _;
 use std::fs::OpenOptions;
 use std::io::{self, Write as _};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -30,9 +32,9 @@ impl ListenArgs {
     fn serve(&self, global: &Global) -> Result<Page> {
         let server = Server::start(self.listen, page::served()?)?;
         if !server.address().ip().is_loopback() {
-            eprintln!(
+            say(
                 "The page is open to the network: anyone who knows its address can control this run, and the connection is \
-                not encrypted."
+                not encrypted.",
             );
         }
         let url = server.url();
@@ -97,7 +99,7 @@ impl ViewArgs {
             let mut playback = Playback::open(path, self.paused)?;
             if let Some(at) = playback.torn_at() {
                 let (_, last) = playback.ticks();
-                eprintln!("{}: incomplete file (ends at byte {at}); playing up to tick {last}", path.display());
+                say(&format!("{}: incomplete file (ends at byte {at}); playing up to tick {last}", path.shown()));
             }
             if self.speed.is_some() {
                 playback.set_speed(self.speed);

@@ -12,6 +12,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 use serde_json::json;
 use staya_console::WatchArgs;
+use staya_console::say;
 use staya_sim::engine::{Known, Moment};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
@@ -93,7 +94,7 @@ impl Watcher {
             return Ok(None);
         };
         let watcher = Self::new(Server::start(address, page::served()?)?, scenario)?;
-        eprintln!("{}", watcher.server().url());
+        say(&watcher.server().url());
         Ok(Some(watcher))
     }
 

@@ -4,6 +4,7 @@ mod checkpoint;
 mod crowd;
 mod errors;
 mod figures;
+mod names;
 mod orca;
 mod recordings;
 mod run;

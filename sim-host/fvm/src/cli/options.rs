@@ -5,6 +5,7 @@ use crate::{Grid, Pair, Room, System, Template, Templated, VelocityForm};
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use staya_sim::file::{TEXT, read_remedy, read_text};
+use staya_sim::shown::Shown as _;
 use std::path::{Path, PathBuf};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -129,7 +130,7 @@ impl TemplateArgs {
 pub fn room(file: Option<&Path>) -> Result<Room> {
     let Some(file) = file else { return Ok(Room::default()) };
     let text = read_text(file, TEXT)
-        .map_err(|error| anyhow!("cannot read {}: {error}; {}", file.display(), read_remedy(&error)))?;
+        .map_err(|error| anyhow!("cannot read {}: {error}; {}", file.shown(), read_remedy(&error)))?;
     Ok(Room::read(&text, file)?)
 }
 

@@ -7,6 +7,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
 use staya_sim::record::prepare_dir;
+use staya_sim::shown::Shown as _;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -75,7 +76,7 @@ impl DrawArgs {
         writeln!(text, "smallest change u  {:.6} m/s", drawing.change_mps)?;
         writeln!(text, "half-plane through ({:.6}, {:.6}) m/s", point.x, point.y)?;
         writeln!(text, "normal             ({:.6}, {:.6})", normal.x, normal.y)?;
-        writeln!(text, "{} pictures in {}", pictures.len(), self.out.display())?;
+        writeln!(text, "{} pictures in {}", pictures.len(), self.out.shown())?;
         print(&text)
     }
 }

@@ -12,6 +12,7 @@ use crate::sweep::{Plan, pictures};
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_sim::shown::Shown as _;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -149,7 +150,7 @@ impl SweepArgs {
         }
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = global.threads.map_or(cores, usize::from).min(cores);
-        let mut text = format!("{} ({}), {}\n", plan.name, plan.fingerprint(), plan.path().display());
+        let mut text = format!("{} ({}), {}\n", plan.name, plan.fingerprint(), plan.path().shown());
         for axis in plan.axes() {
             let values = plan.values(axis).unwrap_or_default();
             let shown = values.iter().take(6).map(ToString::to_string).collect::<Vec<_>>().join(", ");
@@ -196,9 +197,9 @@ impl MergeArgs {
         };
         let fills = format!(
             "`staya sweep {} --out {} --resume` does them, if all shards are in {}",
-            plan.path().display(),
-            out.display(),
-            out.join("shards").display()
+            plan.path().shown(),
+            out.shown(),
+            out.join("shards").shown()
         );
         let merged = Merged::read(&plan, &sources)?.whole(&plan, &place, &fills)?;
         let mut report = Report::new(&plan, &out);
@@ -223,7 +224,7 @@ impl PlotArgs {
         if global.json {
             print_json(&BTreeMap::from([("files", &files)]))?;
         } else {
-            let lines = files.iter().map(|file| format!("{}\n", file.display()));
+            let lines = files.iter().map(|file| format!("{}\n", file.shown()));
             print(&lines.collect::<String>())?;
         }
         Ok(Ended::Done)

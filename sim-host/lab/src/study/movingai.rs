@@ -17,6 +17,7 @@ use staya_controller::cost::Gain;
 use staya_controller::rand::Rng;
 use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
+use staya_sim::shown::Shown as _;
 use staya_sim::table;
 use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
@@ -119,7 +120,7 @@ impl Study for MovingAi {
 fn benchmark(given: &Given<'_>) -> Result<Benchmark, SweepError> {
     let parameters: Parameters = given.parameters()?;
     let scen = given.source.file(&parameters.scen);
-    let wrong = |what: String, remedy: &str| SweepError::new(scen.display(), what, remedy);
+    let wrong = |what: String, remedy: &str| SweepError::new(scen.shown(), what, remedy);
     let queries = parse_scen(&read(&scen)?, &scen)?;
     let Some(first) = queries.first() else {
         return Err(wrong("no queries".to_owned(), "each line after the first one is a query"));
@@ -127,11 +128,11 @@ fn benchmark(given: &Given<'_>) -> Result<Benchmark, SweepError> {
     let beside = scen.with_file_name(Path::new(&first.map).file_name().unwrap_or_default());
     let map = parameters.map.as_ref().map_or(beside, |map| given.source.file(map));
     if parameters.map.is_none() && !map.is_file() {
-        let what = format!("its map {} is not beside it ({} does not exist)", first.map, map.display());
+        let what = format!("its map {} is not beside it ({} does not exist)", first.map, map.shown());
         return Err(wrong(what, "put it there, or name it by study.map"));
     }
     let land = parse_map(&read(&map)?, &map, 1)?;
-    let (width, height, name) = (land.width(), land.height(), map.display());
+    let (width, height, name) = (land.width(), land.height(), map.shown());
     for (query, number) in queries.iter().zip(1..) {
         if (query.width, query.height) != (width, height) {
             let [w, h] = [query.width, query.height];

@@ -4,6 +4,7 @@ use crate::error::SweepError;
 use crate::sweep::plan::Plan;
 use crate::sweep::row::{Outcome, Row, header};
 use crate::sweep::shard::{Rows, read_rows};
+use staya_sim::shown::Shown as _;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
@@ -41,10 +42,10 @@ impl Merged {
                         let (other, path, at) = place.get();
                         // As text, because a figure may be NaN.
                         if other.line(plan) != row.line(plan) {
-                            let what = format!("run {} has another row in {}:{at}", row.run, path.display());
+                            let what = format!("run {} has another row in {}:{at}", row.run, path.shown());
                             let remedy =
                                 "one of them was made by a changed program: remove it, or begin again with --restart";
-                            return Err(SweepError::new(format_args!("{}:{line}", file.display()), what, remedy));
+                            return Err(SweepError::new(format_args!("{}:{line}", file.shown()), what, remedy));
                         }
                         doubles += 1;
                     }
@@ -73,7 +74,7 @@ impl Merged {
         })?;
         for ((line, row), expected) in rows.iter().zip(0..) {
             if row.run != expected {
-                let place = format!("{}:{line}", file.display());
+                let place = format!("{}:{line}", file.shown());
                 let what = match row.run < expected {
                     true => format!("run {} has two rows, or is out of order", row.run),
                     false => format!("run {expected} is missing"),
@@ -83,7 +84,7 @@ impl Merged {
         }
         if rows.len() as u64 != plan.runs() {
             let what = format!("it has {} of {} runs", rows.len(), plan.runs());
-            return Err(SweepError::new(file.display(), what, again));
+            return Err(SweepError::new(file.shown(), what, again));
         }
         Ok(Self { rows: rows.into_iter().map(|(_, row)| row).collect(), ..Self::default() })
     }
@@ -106,7 +107,7 @@ impl Merged {
             named.push_str(", ...");
         }
         let what = format!("{count} of {} runs are missing: {named}", plan.runs());
-        Err(SweepError::new(place.display(), what, remedy))
+        Err(SweepError::new(place.shown(), what, remedy))
     }
 
     /// Formats the rows as a file.

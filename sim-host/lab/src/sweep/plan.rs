@@ -18,6 +18,7 @@ use axes::{Axis, SCENARIO};
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
 use staya_sim::scenario::{Field, Location, ScenarioError, Source};
+use staya_sim::shown::Shown as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 pub use table::{GainTable, PlotTable};
@@ -263,7 +264,7 @@ impl Plan {
             && let Some(field) = given.source.root().keys().map(Spanned::get_ref).find(|field| *field != "study")
         {
             let what = format!("{field} is given, but there is no scenario in study {}", study.name());
-            return Err(SweepError::new(self.path.display(), what, "give fields of study.* only"));
+            return Err(SweepError::new(self.path.shown(), what, "give fields of study.* only"));
         }
         let job = match self.study {
             Some(study) => study.read(&given),
@@ -294,7 +295,7 @@ impl Plan {
         }
         let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
         let values = values.join(", ");
-        let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
+        let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.shown()) };
         ScenarioError::Field { path, place, field, what, remedy }
     }
 
@@ -347,7 +348,7 @@ impl Base {
     fn read(source: &Source<'_>, field: &str, name: &Path) -> Result<Self, ScenarioError> {
         let path = source.file(name);
         let text = read_text(&path, TEXT).map_err(|error| {
-            source.error(field, format!("{}: {error}", path.display()), "names are relative to the plan's file")
+            source.error(field, format!("{}: {error}", path.shown()), "names are relative to the plan's file")
         })?;
         Ok(Self { path, text })
     }

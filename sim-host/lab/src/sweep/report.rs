@@ -10,8 +10,10 @@ use crate::sweep::value::{Point, short};
 use crate::sweep::{Shard, pictures, schema};
 use anyhow::{Result, ensure};
 use serde::Serialize;
+use staya_console::say;
 use staya_console::{Global, Progress, Stop, print, print_json};
 use staya_sim::record::{make_dir, write_atomically};
+use staya_sim::shown::Shown as _;
 use staya_stats::Summary;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -116,10 +118,10 @@ impl<'a> Report<'a> {
         bar.finish();
         let course = course?;
         if course.torn > 0 {
-            eprintln!("{} bytes of a row that had been cut off are gone; its run was done again", course.torn);
+            say(&format!("{} bytes of a row that had been cut off are gone; its run was done again", course.torn));
         }
         if let Some((count, why)) = &course.impossible {
-            eprintln!("{count} runs are impossible and have no figures; the first: {why}");
+            say(&format!("{count} runs are impossible and have no figures; the first: {why}"));
         }
         let mut report = Self::new(plan, out);
         (report.runs, report.done_before, report.done_now) = (course.runs, course.found, course.done);
@@ -214,7 +216,7 @@ impl<'a> Report<'a> {
     }
 
     fn table(&self) -> Result<String, std::fmt::Error> {
-        let (plan, out) = (self.source, self.out.display());
+        let (plan, out) = (self.source, self.out.shown());
         let mut text = String::new();
         if !plan.title.is_empty() {
             writeln!(text, "{}", plan.title)?;
@@ -229,7 +231,7 @@ impl<'a> Report<'a> {
             writeln!(text, "{} rows stood in two files, alike", self.doubles)?;
         }
         if done < self.runs {
-            let file = plan.path().display();
+            let file = plan.path().shown();
             writeln!(text, "stopped early; `staya sweep {file} --out {out} --resume` does the others")?;
         }
         if !self.points.is_empty() && self.points.len() <= SHOWN {
@@ -247,7 +249,7 @@ impl<'a> Report<'a> {
         }
         writeln!(text, "written to {out}")?;
         for file in &self.files {
-            writeln!(text, "  {}", file.strip_prefix(self.out).unwrap_or(file).display())?;
+            writeln!(text, "  {}", file.strip_prefix(self.out).unwrap_or(file).shown())?;
         }
         Ok(text)
     }

@@ -9,6 +9,7 @@ use crate::sweep::plan::Plan;
 use crate::sweep::row::{Finished, Outcome, Row, header, is_older_header};
 use staya_sim::file::{MAP, read};
 use staya_sim::record::{Error, make_dir};
+use staya_sim::shown::Shown as _;
 use std::collections::BTreeSet;
 use std::fmt::{self, Display, Formatter};
 use std::fs::{self, File, TryLockError};
@@ -104,7 +105,7 @@ pub struct Rows {
 pub fn read_rows(plan: &Plan, path: &Path) -> Result<Rows, SweepError> {
     let unreadable = |error: std::io::Error| {
         let remedy = staya_sim::file::read_remedy(&error);
-        SweepError::new(path.display(), error.to_string(), remedy)
+        SweepError::new(path.shown(), error.to_string(), remedy)
     };
     let bytes = read(path, MAP).map_err(unreadable)?;
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
@@ -112,9 +113,8 @@ pub fn read_rows(plan: &Plan, path: &Path) -> Result<Rows, SweepError> {
     let mut rows = Rows { whole: whole as u64, torn: torn.len(), ..Rows::default() };
     let expected = header(plan);
     for (line, number) in lines.split_inclusive(|&byte| byte == b'\n').zip(1..) {
-        let wrong = |(what, remedy): (String, String)| {
-            SweepError::new(format_args!("{}:{number}", path.display()), what, remedy)
-        };
+        let wrong =
+            |(what, remedy): (String, String)| SweepError::new(format_args!("{}:{number}", path.shown()), what, remedy);
         // A byte that is not UTF-8 is replaced, which the checksum reveals.
         let line = String::from_utf8_lossy(line);
         let line = line.trim_end_matches('\n');
@@ -173,7 +173,7 @@ impl Appended {
         // Continues without a lock if the file system does not support locks.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let what = "another process is at work on it";
-            return Err(SweepError::new(path.display(), what, "wait for it, or end it"));
+            return Err(SweepError::new(path.shown(), what, "wait for it, or end it"));
         }
         if existing == Existing::Forget {
             file.set_len(0).map_err(Error::new("write", &path))?;
@@ -258,7 +258,7 @@ pub fn perform_shard(
         let rows = read_rows(plan, &file)?.rows;
         if existing == Existing::Refuse && !rows.is_empty() && (file == own || shard.is_whole()) {
             let what = format!("it has {} of {} runs", rows.len(), plan.runs());
-            return Err(SweepError::new(file.display(), what, "--resume does the others, --restart forgets these"));
+            return Err(SweepError::new(file.shown(), what, "--resume does the others, --restart forgets these"));
         }
         let done = rows.into_iter().filter(|(_, row)| row.outcome == Outcome::Done);
         there.extend(done.map(|(_, row)| row.run));

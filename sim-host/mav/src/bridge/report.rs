@@ -1,4 +1,5 @@
 use crate::Counts;
+use crate::tlog::Missing;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -69,6 +70,11 @@ pub struct BridgeReport {
     pub collisions: u64,
     /// Smallest gap between the surfaces of two bodies, metres; null on a grid or if all kept away.
     pub least_gap_m: Option<f64>,
+    /// Why the log is incomplete; null if it is complete or there is none.
+    pub log_error: Option<String>,
+    /// Frames and bytes that the log lacks.
+    #[serde(flatten)]
+    pub log_missing: Missing,
     /// Trace hash, 16 hex digits; equal to that of `staya run` if no command arrived.
     pub trace_hash: String,
 }

@@ -11,7 +11,7 @@ use super::streams::Streams;
 use super::vehicle::{Action, Kind, Vehicle};
 use crate::framed::framed;
 use crate::geo::Origin;
-use crate::terminal::{number, result_words};
+use crate::terminal::{number, result_words, say};
 use crate::{Endpoint, Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
@@ -22,7 +22,7 @@ use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::{Counts, Signing};
 use staya_sim::engine::{Engine, Moment, operated};
 use staya_sim::key::timestamp;
-use staya_sim::record::{Files, RobotRow};
+use staya_sim::record::{self, Files, RobotRow};
 use staya_sim::scenario::Scenario;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -77,11 +77,14 @@ pub type Onlooker<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow
 pub struct Swarm {
     engine: Engine,
     vehicles: Vec<Vehicle>,
-    boots: Vec<u8>,
+    /// Restarts of each robot.
+    starts: Vec<u32>,
     model: Arc<VehicleModel>,
     lines: Lines,
     options: Options,
     log: Option<Tlog>,
+    /// Whether the operator has yet to learn that the log failed.
+    has_lost_log: bool,
     tick_us: u32,
     began: Instant,
     first: usize,
@@ -120,13 +123,14 @@ impl Swarm {
         let log = options.tlog.as_ref().map(create).transpose()?;
         let listing = Budget::per_second(parameters_per_s(&options.mavlink));
         Ok(Self {
-            boots: vec![0; count],
+            starts: vec![0; count],
             engine,
             vehicles,
             model,
             lines,
             options,
             log,
+            has_lost_log: false,
             tick_us: scenario.tick_us,
             began: Instant::now(),
             first: 0,
@@ -144,19 +148,18 @@ impl Swarm {
     /// Runs until the ticks are used up or `is_over` returns true. `is_over` receives the number of
     /// finished ticks and is called every few milliseconds, `onlooker` after each tick.
     ///
-    /// # Errors
-    /// The log cannot be written.
-    pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool, onlooker: &mut Onlooker<'_>) -> Result<BridgeReport> {
+    /// A log that cannot be written does not end the run: the report counts what the log lacks.
+    pub fn run(mut self, mut is_over: impl FnMut(u32) -> bool, onlooker: &mut Onlooker<'_>) -> BridgeReport {
         let tick = Duration::from_secs_f64(f64::from(self.tick_us) / 1e6 / self.options.speed);
         for index in 0..self.vehicles.len() {
-            self.carry_out(index)?;
+            self.carry_out(index);
         }
         self.began = Instant::now();
         let mut due = self.began + tick;
         while self.options.ticks.is_none_or(|ticks| self.report.ticks < ticks) && !is_over(self.report.ticks) {
             let now = Instant::now();
             if now >= due {
-                self.tick()?;
+                self.tick();
                 self.engine.show(onlooker);
                 let done = Instant::now();
                 self.report.slowest_seconds = self.report.slowest_seconds.max((done - due).as_secs_f64());
@@ -169,16 +172,17 @@ impl Swarm {
                     due = done;
                 }
             }
-            self.listen(due)?;
-            self.speak(due)?;
+            self.listen(due);
+            self.speak(due);
         }
-        if let Some(log) = self.log.take() {
-            log.finish()?;
+        if let Some(log) = &mut self.log {
+            let done = log.finish();
+            self.judge_log(done);
         }
-        Ok(self.report())
+        self.report()
     }
 
-    fn listen(&mut self, due: Instant) -> Result<()> {
+    fn listen(&mut self, due: Instant) {
         if let Some(signing) = &mut self.options.signing {
             signing.advance_to(timestamp());
         }
@@ -191,10 +195,9 @@ impl Swarm {
             let Some(received) = self.lines.receive(left) else {
                 break;
             };
-            let answers = self.take(&received)?;
+            let answers = self.take(&received);
             self.lines.charge(answers);
         }
-        Ok(())
     }
 
     fn now_us(&self) -> u64 {
@@ -202,26 +205,24 @@ impl Swarm {
     }
 
     /// Returns the number of answers.
-    fn take(&mut self, received: &Received) -> Result<usize> {
+    fn take(&mut self, received: &Received) -> usize {
         let Some(frame) = RawFrame::new(&received.frame) else {
             self.report.frames_ignored += 1;
-            return Ok(0);
+            return 0;
         };
         if self.options.signing.as_mut().is_some_and(|signing| !signing.verify(&frame).is_accepted()) {
-            return Ok(0);
+            return 0;
         }
         let Some(message) = frame.message() else {
             self.report.frames_ignored += 1;
-            return Ok(0);
+            return 0;
         };
         self.lines.believe(received.line, received.peer);
         // Frames with an invalid signature are not logged: they could fill the disk.
-        if let Some(log) = &mut self.log {
-            log.add(&received.frame)?;
-        }
+        self.note(&received.frame);
         if self.is_exhausted() {
             self.report.refused.unanswerable += 1;
-            return Ok(0);
+            return 0;
         }
         let mut answers = 0;
         let (from, now_us) = (frame.sender(), self.now_us());
@@ -234,17 +235,17 @@ impl Swarm {
             if is_for_some && !is_own && (system == 0 || system == vehicle.sender.system) {
                 vehicle.receive(from, &message, now_us);
                 is_heard = true;
-                answers += self.carry_out(index)?;
+                answers += self.carry_out(index);
             }
         }
         self.report.frames_heard += u64::from(is_heard || !is_for_some);
         self.report.frames_ignored += u64::from(is_for_some && !is_heard);
-        Ok(answers)
+        answers
     }
 
-    fn speak(&mut self, due: Instant) -> Result<()> {
+    fn speak(&mut self, due: Instant) {
         let now_us = self.now_us();
-        self.complain(now_us)?;
+        self.complain(now_us);
         let count = self.vehicles.len();
         for _ in 0..count {
             let index = self.first;
@@ -253,55 +254,74 @@ impl Swarm {
             if vehicle.parameters.is_listing() && self.listing.take(now_us) {
                 vehicle.out.messages.extend(vehicle.parameters.next_listed().map(MavMessage::PARAM_VALUE));
             }
-            self.carry_out(index)?;
+            self.carry_out(index);
             self.first = (index + 1) % count;
             if Instant::now() >= due {
                 break;
             }
         }
-        Ok(())
     }
 
     /// The warning comes while some timestamps are left to sign it.
-    fn complain(&mut self, now_us: u64) -> Result<()> {
+    fn complain(&mut self, now_us: u64) {
+        if core::mem::take(&mut self.has_lost_log) {
+            self.warn_all("the log cannot be written");
+        }
         let is_early = |last: u64| now_us.saturating_sub(last) < COMPLAIN_US;
         if !self.is_exhausted() || self.complained_us.is_some_and(is_early) {
-            return Ok(());
+            return;
         }
         self.complained_us = Some(now_us);
+        self.warn_all("signing timestamps used up: give a new key");
+    }
+
+    fn warn_all(&mut self, text: &str) {
         for index in 0..self.vehicles.len() {
-            let text = "signing timestamps used up: give a new key";
             self.vehicles[index].text(Kind::News, MAV_SEVERITY_ERROR, text);
-            self.carry_out(index)?;
+            self.carry_out(index);
         }
-        Ok(())
+    }
+
+    fn note(&mut self, frame: &[u8]) {
+        if let Some(log) = &mut self.log {
+            let done = log.add(frame);
+            self.judge_log(done);
+        }
+    }
+
+    /// A robot must not lose its controller because a disk is full.
+    fn judge_log(&mut self, done: Result<(), record::Error>) {
+        if let Err(error) = done {
+            say(&format!("{error}; continuing without a log"));
+            self.report.log_error = Some(error.to_string());
+            self.has_lost_log = true;
+        }
     }
 
     fn is_exhausted(&self) -> bool {
         self.options.signing.as_ref().is_some_and(|signing| signing.left() < RESERVE)
     }
 
-    fn tick(&mut self) -> Result<()> {
+    fn tick(&mut self) {
         self.engine.step();
         self.report.ticks += 1;
         let time_us = u64::from(self.report.ticks) * u64::from(self.tick_us);
         let now_us = self.now_us();
         for index in 0..self.vehicles.len() {
             let seen = self.engine.observation(index);
-            if seen.is_up && seen.boot != self.boots[index] {
-                self.boots[index] = seen.boot;
+            if seen.is_up && seen.starts != self.starts[index] {
+                self.starts[index] = seen.starts;
                 let parameters = Parameters::new(&self.model, &self.engine.parameters(index));
                 self.vehicles[index].restart(parameters, (time_us, seen));
             }
             let events = self.engine.events(index);
             self.vehicles[index].observe((time_us, seen), events, now_us);
-            self.carry_out(index)?;
+            self.carry_out(index);
         }
-        Ok(())
     }
 
     /// Returns the number of messages.
-    fn carry_out(&mut self, index: usize) -> Result<usize> {
+    fn carry_out(&mut self, index: usize) -> usize {
         for action in core::mem::take(&mut self.vehicles[index].out.actions) {
             match action {
                 Action::Tell(header, message) => self.engine.tell(index, header, &message),
@@ -316,20 +336,20 @@ impl Swarm {
                 }
             }
         }
-        let Vehicle { sender, out, .. } = &mut self.vehicles[index];
-        let answers = out.messages.len();
-        for message in out.messages.drain(..) {
+        let mut messages = core::mem::take(&mut self.vehicles[index].out.messages);
+        let answers = messages.len();
+        for message in messages.drain(..) {
             if let MavMessage::COMMAND_ACK(ack) = &message {
                 *self.report.commands.entry(result_words(ack.result)).or_default() += 1;
             }
             let signing = self.options.signing.as_mut();
-            let Some(frame) = framed(sender, &message, signing) else { continue };
-            if let Some(log) = &mut self.log {
-                log.add(&frame)?;
-            }
+            let Some(frame) = framed(&mut self.vehicles[index].sender, &message, signing) else { continue };
+            self.note(&frame);
             self.lines.send_all(&frame);
         }
-        Ok(answers)
+        // Keeps its memory.
+        self.vehicles[index].out.messages = messages;
+        answers
     }
 
     fn report(mut self) -> BridgeReport {
@@ -358,6 +378,7 @@ impl Swarm {
             collisions: outcome.collisions,
             least_gap_m: gap.filter(|gap| gap.is_finite()),
             trace_hash: format!("{:016x}", outcome.trace_hash),
+            log_missing: self.log.as_ref().map(Tlog::missing).unwrap_or_default(),
             ..self.report
         }
     }

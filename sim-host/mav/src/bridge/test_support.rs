@@ -45,7 +45,7 @@ pub(super) fn sample() -> Observation {
     Observation {
         motion: Motion { cell: Cell::new(1, 2), position_m: [3.0, 5.0, 0.0], velocity_mps: [0.0; 3] },
         status: Status { mode: Mode::Cruise, leader: RobotId::NONE, target: Cell::new(1, 2), wait: None },
-        boot: 0,
+        starts: 0,
         is_up: true,
         wish: Wish::Own,
         neighbors: 0,

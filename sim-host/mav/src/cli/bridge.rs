@@ -53,7 +53,7 @@ impl BridgeArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// The scenario or key is invalid, a link cannot be opened, or a log cannot be written.
+    /// The scenario or key is invalid, a link cannot be opened, or the log cannot be created.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let overrides = Overrides { seed: self.seed, ticks: None };
         let mut scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
@@ -88,7 +88,7 @@ impl BridgeArgs {
             if let Some(page) = &mut page {
                 page.tick(moment, robots);
             }
-        })?;
+        });
         if let Some(progress) = progress {
             progress.finish();
         }
@@ -139,6 +139,9 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
             text,
             "{endpoint:<32}{frames_in:>10}{frames_out:>10}{kb_per_s:>12.1}{lost_out:>8}{junk_bytes:>12}{lost_in:>8}",
         )?;
+    }
+    if let Some(error) = &report.log_error {
+        writeln!(text, "\n{error}; {}", report.log_missing)?;
     }
     Ok(text)
 }

@@ -1,12 +1,13 @@
 use super::{number, signing};
 use crate::Endpoint;
+use crate::boot::fresh_boot;
 use crate::formation::station::{Given, Members, Places, give, numbers};
 use crate::formation::{Graph, Order, Shape};
-use crate::tlog::micros_since_1970;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
-use staya_console::{Ended, Global, print, print_json};
+use staya_console::{Ended, Global, one_line, print, print_json};
 use staya_controller::grid::{Cell, Dir};
+use staya_sim::shown::Shown as _;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Duration;
@@ -99,12 +100,12 @@ impl FormationArgs {
             None => self.read(Path::new(&self.shape)).map(|graph| Box::new(|_| Ok(graph)))?,
         };
         let mut signing = signing(self.key.as_deref(), 2)?;
-        // Every call gets a new boot counter, so robots accept its version 1.
-        let order = Order { goal: self.goal, to_all: true, boot: (micros_since_1970() / 100_000) as u8, version: 1 };
+        // Another number than that of the previous call, so robots accept version 1.
+        let order = Order { goal: self.goal, to_all: true, boot: fresh_boot(), version: 1 };
         let members = Members { robots: self.robots.clone(), places: self.places, heading: self.heading };
         let wait = Duration::from_secs_f64(self.wait);
-        let given =
-            give(&self.to, signing.as_mut(), graph, &members, &order, wait).with_context(|| self.shape.clone())?;
+        let given = give(&self.to, signing.as_mut(), graph, &members, &order, wait)
+            .with_context(|| one_line(&self.shape).into_owned())?;
         if global.json {
             print_json(&given)?;
         } else {
@@ -123,9 +124,9 @@ impl FormationArgs {
     fn read(&self, path: &Path) -> Result<Graph> {
         if path.extension().is_none_or(|extension| extension != "toml") {
             let names = Shape::NAMES.map(|(name, _)| name).join(", ");
-            bail!("`{}` is not a shape; give {names}, or a .toml file", self.shape);
+            bail!("`{}` is not a shape; give {names}, or a .toml file", one_line(&self.shape));
         }
-        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        let text = std::fs::read_to_string(path).with_context(|| path.shown().to_string())?;
         Graph::parse(&text, path)
     }
 

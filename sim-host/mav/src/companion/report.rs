@@ -1,6 +1,7 @@
 use super::kind::Kind;
 use super::offboard::{OffboardCounters, State};
 use crate::Counts;
+use crate::tlog::Missing;
 use serde::Serialize;
 use staya_controller::robot::Mode;
 use std::fmt::{self, Write as _};
@@ -64,6 +65,9 @@ pub struct CompanionReport {
     pub links: Vec<LineReport>,
     /// Why the log is incomplete; null if it is complete or there is none.
     pub log_error: Option<String>,
+    /// Frames and bytes that the log lacks.
+    #[serde(flatten)]
+    pub log_missing: Missing,
 }
 
 impl fmt::Display for CompanionReport {
@@ -110,7 +114,7 @@ impl fmt::Display for CompanionReport {
             )?;
         }
         if let Some(error) = &self.log_error {
-            writeln!(f, "  {error}; the log is incomplete")?;
+            writeln!(f, "  {error}; {}", self.log_missing)?;
         }
         Ok(())
     }

@@ -15,10 +15,10 @@ use super::offboard::{Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
+use crate::boot::fresh_boot;
 use crate::framed::framed;
 use crate::geo::ned;
 use crate::terminal::{number, say};
-use crate::tlog::micros_since_1970;
 use crate::{Lines, Received, Tlog};
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
@@ -126,6 +126,7 @@ pub fn run(
     let link_key = config.link_key.as_deref().map(KeyFile::read).transpose()?;
     let remarks = [seal.as_ref().map(|seal| &seal.remark), link_key.as_ref().map(|file| &file.remark)];
     remarks.into_iter().flatten().flatten().for_each(|remark| say(remark));
+    let boot = if options.demo { 0 } else { fresh_boot() };
     let machine: Box<dyn Machine> = if options.demo {
         Box::new(Demo::new(config, tlog, options.is_real_time))
     } else {
@@ -138,7 +139,7 @@ pub fn run(
         })
     };
     let link_key = link_key.filter(|_| !options.demo);
-    let mut companions = Companions::new(config, options, seal.as_ref(), link_key, machine);
+    let mut companions = Companions::new(config, options, seal.as_ref(), link_key, machine, boot);
     let (seconds, interrupted) = companions.run(is_wanted, &mut look);
     if let Some(error) = companions.no_autopilot() {
         companions.has_said_farewell = true;
@@ -166,9 +167,9 @@ impl<'a> Companions<'a> {
         seal: Option<&Seal>,
         link_key: Option<KeyFile>,
         machine: Box<dyn Machine>,
+        boot: u8,
     ) -> Self {
         let ground = Arc::new(PlaneGround::new(&config.scenario, &config.plane));
-        let boot = (micros_since_1970() >> 20) as u8;
         let format = config.scenario.radio.format;
         let link = |number: usize| Link {
             trouble: None,
@@ -301,8 +302,8 @@ impl<'a> Companions<'a> {
     }
 
     fn log(&mut self, frame: &[u8]) {
-        if self.log_error.is_none()
-            && let Err(error) = self.machine.log(frame)
+        if let Err(error) = self.machine.log(frame)
+            && self.log_error.is_none()
         {
             self.log_fails(error);
         }
@@ -317,8 +318,8 @@ impl<'a> Companions<'a> {
     }
 
     fn close_log(&mut self) {
-        if self.log_error.is_none()
-            && let Err(error) = self.machine.close_log()
+        if let Err(error) = self.machine.close_log()
+            && self.log_error.is_none()
         {
             self.log_fails(error);
         }

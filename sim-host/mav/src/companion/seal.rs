@@ -5,6 +5,7 @@ use staya_controller::wire::{Format, Sealed};
 use staya_sim::file::{read_remedy, write_remedy};
 use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
+use staya_sim::shown::Shown as _;
 use std::fs::File;
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
@@ -49,7 +50,7 @@ impl Seal {
         let (file, before) = (path.to_path_buf(), path.with_added_extension("old"));
         let old = if before.exists() { Some(KeyFile::read(&before)?.key).filter(|old| *old != key) } else { None };
         let path = path.with_added_extension("starts");
-        let name = path.display();
+        let name = path.shown();
         let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
             // From 0 the counter would make recorded packets valid again.
             ErrorKind::NotFound => anyhow!(

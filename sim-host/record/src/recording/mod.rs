@@ -10,6 +10,7 @@ pub use read::{Reader, Span};
 pub use run::RunRecorder;
 pub use write::{Sink, Writer};
 
+use staya_sim::shown::Shown as _;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -36,7 +37,7 @@ const MINDS: u8 = 5;
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// Error of the operating system.
-    #[error("cannot {action} {}: {source}; {remedy}", path.display())]
+    #[error("cannot {action} {}: {source}; {remedy}", path.shown())]
     Io {
         /// The action that failed.
         action: &'static str,
@@ -48,7 +49,7 @@ pub enum RecordingError {
         remedy: &'static str,
     },
     /// The file is not a recording, or is damaged.
-    #[error("{}: byte {at}: {what}; {remedy}", path.display())]
+    #[error("{}: byte {at}: {what}; {remedy}", path.shown())]
     Format {
         /// The file.
         path: PathBuf,

@@ -53,7 +53,7 @@ impl Attacker {
             cell_m: scenario.land.terrain.cell_m,
             last: scenario.usual_claims().last.0,
             radius_mm: libm::round(radius_m * 1000.0) as u16,
-            wire: radio::wire(scenario.radio.format, key, starts),
+            wire: radio::wire(scenario.radio.format, key, starts.into()),
             starts,
             sequence: 0,
             version: 0,
@@ -189,7 +189,7 @@ impl Transmitter for Attacker {
     }
 
     fn take(&mut self, ring: &Ring) {
-        self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
+        self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts.into());
     }
 
     fn save(&self, bytes: &mut Vec<u8>) {

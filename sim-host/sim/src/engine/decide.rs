@@ -26,7 +26,7 @@ impl Tick<'_> {
     pub(super) fn inbox<'b>(&'b self, index: usize, computer: &OnboardComputer) -> Inbox<'b> {
         let inbox = self.radio.inbox(index);
         // Frames that arrived while it was down are lost.
-        let has_just_restarted = computer.boot > 0 && computer.clock.epoch == self.tick;
+        let has_just_restarted = computer.starts > 0 && computer.clock.epoch == self.tick;
         if has_just_restarted { inbox.cleared() } else { inbox }
     }
 

@@ -16,7 +16,8 @@ pub trait ExternalController: Send {
     /// Sorted indices of the robots whose controllers are external.
     fn robots(&self) -> Vec<usize>;
 
-    /// Restarts the controller of robot `index`; `setup.agent.boot` counts its starts.
+    /// Restarts the controller of robot `index`; `setup.agent.boot` is the low byte of its
+    /// number of restarts.
     fn start(&mut self, index: usize, setup: Setup, task: Task);
 
     /// Whether controller `index` has lost its state and waits for a restart; called once per tick.

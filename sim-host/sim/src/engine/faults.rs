@@ -16,8 +16,7 @@ impl Engine {
             }
             let ends = fault.to_tick == self.tick;
             if ends && self.computers[index].down_until == self.tick {
-                let boot = self.computers[index].boot.wrapping_add(1);
-                self.restart(index, boot);
+                self.restart(index, self.computers[index].starts.saturating_add(1));
             }
         }
         self.revive();
@@ -31,11 +30,9 @@ impl Engine {
         let robots = external.robots.iter().map(|&(index, ..)| index);
         let lost: Vec<_> = robots.filter(|&index| controllers.has_restarted(index)).collect();
         for index in lost {
-            let computer = &self.computers[index];
             // A robot that is down restarts when its fault ends.
-            if computer.down_until <= self.tick {
-                let boot = computer.boot.wrapping_add(1);
-                self.restart(index, boot);
+            if self.computers[index].down_until <= self.tick {
+                self.restart(index, self.computers[index].starts.saturating_add(1));
             }
         }
     }

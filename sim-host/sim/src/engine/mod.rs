@@ -93,7 +93,8 @@ pub struct OnboardComputer {
     /// Bytes that wait for its next decision: those of the operator, and if it is not due, all
     /// that arrive.
     mail: Vec<u8>,
-    boot: u8,
+    /// Restarts so far; frames carry the low byte as boot number, as from a counter in flash.
+    starts: u32,
     clock: Clock,
     down_until: u32,
     sent_bytes: u64,
@@ -234,26 +235,26 @@ impl Engine {
         self.here[index] as usize
     }
 
-    fn setup(&self, index: usize, boot: u8) -> (AgentConfig<f32>, Task) {
+    fn setup(&self, index: usize, starts: u32) -> (AgentConfig<f32>, Task) {
         let (config, task) = self.ground.setup(self.number(index), self.tick);
-        (self.roster.config(config, boot), task)
+        (self.roster.config(config, starts), task)
     }
 
-    fn start(&self, index: usize, boot: u8) -> OnboardComputer {
-        let (config, task) = self.setup(index, boot);
+    fn start(&self, index: usize, starts: u32) -> OnboardComputer {
+        let (config, task) = self.setup(index, starts);
         let previous = self.computers.get(index).and_then(|computer| computer.agent.as_ref());
-        let agent = self.roster.agent(self.number(index), &config, &task, previous);
-        self.computer(Some(agent), boot)
+        let agent = self.roster.agent(self.number(index), (&config, starts), &task, previous);
+        self.computer(Some(agent), starts)
     }
 
     #[doc(hidden)]
-    pub fn computer(&self, agent: Option<HostAgent>, boot: u8) -> OnboardComputer {
+    pub fn computer(&self, agent: Option<HostAgent>, starts: u32) -> OnboardComputer {
         OnboardComputer {
             agent,
             outbox: Vec::new(),
             events: Vec::new(),
             mail: Vec::new(),
-            boot,
+            starts,
             clock: Clock::new(self.tick),
             down_until: self.tick,
             sent_bytes: 0,
@@ -261,9 +262,9 @@ impl Engine {
         }
     }
 
-    fn restart(&mut self, index: usize, boot: u8) {
+    fn restart(&mut self, index: usize, starts: u32) {
         self.ground.forget(index);
-        let (config, task) = self.setup(index, boot);
+        let (config, task) = self.setup(index, starts);
         let robots = self.external.as_mut().and_then(|external| {
             let found = external.robots.iter().find(|(robot, ..)| *robot == index);
             let (_, guidance, safety) = found?;
@@ -273,8 +274,8 @@ impl Engine {
             Some(())
         });
         self.computers[index] = match robots {
-            Some(()) => self.computer(None, boot),
-            None => self.start(index, boot),
+            Some(()) => self.computer(None, starts),
+            None => self.start(index, starts),
         };
     }
 

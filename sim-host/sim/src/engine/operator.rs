@@ -20,8 +20,8 @@ pub struct Observation {
     pub motion: Motion,
     /// Status after the last step.
     pub status: Status,
-    /// Restart number of its computer.
-    pub boot: u8,
+    /// Restarts of its computer.
+    pub starts: u32,
     /// Whether its computer runs.
     pub is_up: bool,
     /// The operator's command that it follows.
@@ -78,7 +78,7 @@ impl Engine {
         Observation {
             motion: self.ground.motion(index, self.tick),
             status: self.statuses[index],
-            boot: computer.boot,
+            starts: computer.starts,
             is_up: self.is_up(index),
             wish: agent.map_or(Wish::Own, |agent| *agent.law().wish()),
             neighbors: agent.map_or(0, |agent| agent.neighbors().len()),
@@ -114,7 +114,9 @@ impl Engine {
     /// `header`.
     pub fn tell(&mut self, index: usize, header: Header, message: &Message) {
         let (robot, is_up) = (self.id(index), self.is_up(index));
+        let starts = self.computers.iter().map(|computer| computer.starts).max().unwrap_or(0);
         let Some(operator) = self.operator.as_mut() else { return };
+        radio::keep_up(&mut operator.wire, starts);
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
         let is_said = match &mut operator.own {
             Some(own) => is_up && own.say(robot, message, &mut frame).is_ok(),

@@ -59,6 +59,8 @@ pub struct PlaneGround {
     since: Vec<u32>,
     format: Format,
     key: Option<Key>,
+    /// Most restarts of a robot, which the operator hears of.
+    restarts: u32,
     /// Encoded orders to all robots, sorted by tick.
     orders: Vec<(u32, Vec<u8>)>,
 }
@@ -107,10 +109,11 @@ impl PlaneGround {
             clocks: scenario.clocks.clone(),
             delay_us: libm::round((scenario.radio.delay_ms + scenario.radio.jitter_ms) * 1000.0) as u32,
             range_m: scenario.radio.range_m.min(FARTHEST_M) as f32,
-            orders: frames(&setup.orders, scenario.radio.format, scenario.key()),
+            orders: frames(&setup.orders, scenario.radio.format, scenario.key(), scenario.most_restarts()),
             since: vec![0; scenario.robots.len()],
             format: scenario.radio.format,
             key: scenario.key().cloned(),
+            restarts: scenario.most_restarts(),
             setup: setup.clone(),
         }
     }

@@ -45,27 +45,28 @@ impl Roster {
         }
     }
 
-    /// Adds what all robots share to the configuration of one for its start number `boot`.
-    pub(super) fn config(&self, config: AgentConfig<f32>, boot: u8) -> AgentConfig<f32> {
-        AgentConfig { boot, seed: self.seed, plausibility: self.plausibility, ..config }
+    /// Adds what all robots share to the configuration of one after `starts` restarts.
+    pub(super) fn config(&self, config: AgentConfig<f32>, starts: u32) -> AgentConfig<f32> {
+        AgentConfig { boot: starts as u8, seed: self.seed, plausibility: self.plausibility, ..config }
     }
 
-    /// Creates the agent of robot `number` with a task; `previous` is its agent before a restart.
+    /// Creates the agent of robot `number` with a task after `starts` restarts; `previous` is its
+    /// agent before the last one.
     pub(super) fn agent(
         &self,
         number: usize,
-        config: &AgentConfig<f32>,
+        (config, starts): (&AgentConfig<f32>, u32),
         task: &Task,
         previous: Option<&HostAgent>,
     ) -> HostAgent {
         let (law, safety) = (self.agents)(number);
         let wire = match &self.master {
-            None => radio::wire(self.format, self.key.as_ref(), config.boot),
+            None => radio::wire(self.format, self.key.as_ref(), starts),
             // The last key survives a restart in persistent memory.
             Some(master) => {
                 let ring = previous.and_then(|agent| ring(agent.wire()));
                 let stored = ring.and_then(|ring| ring.seeds()[0].map(|(generation, seed)| (generation, seed.clone())));
-                radio::own_wire(master, config.id, stored, config.boot)
+                radio::own_wire(master, config.id, stored, starts)
             }
         };
         let tracker = self.tracking.map(|params| Box::new(Tracker::new(params)));

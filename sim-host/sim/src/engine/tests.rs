@@ -149,7 +149,7 @@ fn a_down_robot_is_stationary_and_silent_and_restarts_its_clock() {
     assert_eq!(own[2].cell, own[1].cell + Cell::new(1, 0), "it stood meanwhile");
     assert!(own[2].others.is_empty(), "it forgot all robots");
     assert_eq!(own[3].others.len(), 1);
-    assert_eq!(engine.computers[0].boot, 1);
+    assert_eq!(engine.computers[0].starts, 1);
     // The other robot receives the first start, then nothing, then the restart.
     let heard: Vec<_> = known.iter().filter(|k| k.id == 2).map(|k| k.others[..].to_vec()).collect();
     assert_eq!(heard[2], heard[5]);
@@ -188,8 +188,8 @@ fn overlapping_faults_end_together_and_a_fault_without_length_is_a_restart() {
     let (mut engine, _) = scouts(&scenario(TWO, faults));
     let sent: Vec<_> = (0..10).map(|_| engine.step().packets.sent).collect();
     assert_eq!(sent, [2, 2, 1, 1, 1, 1, 1, 1, 2, 2]);
-    assert_eq!(engine.computers[0].boot, 1);
-    assert_eq!((engine.computers[1].boot, engine.computers[1].clock.epoch), (1, 2));
+    assert_eq!(engine.computers[0].starts, 1);
+    assert_eq!((engine.computers[1].starts, engine.computers[1].clock.epoch), (1, 2));
 }
 
 #[test]
@@ -355,6 +355,7 @@ mod land;
 mod operator;
 mod own;
 mod plane;
+mod restarts;
 mod safety_scenes;
 mod sensing;
 mod state;

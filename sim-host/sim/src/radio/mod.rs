@@ -18,7 +18,7 @@ mod wire;
 pub use border::Sent;
 pub use params::{Burst, RadioFault, RadioParams};
 pub(crate) use state::{End, Weather};
-pub use wire::{HostWire, PEERS, operator, own_wire, ring_wire, wire};
+pub use wire::{HostWire, LAST_START, PEERS, keep_up, operator, own_wire, ring_wire, wire};
 
 use fate::{Fates, Verdict};
 use late::{Air, Late};

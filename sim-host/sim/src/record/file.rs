@@ -2,6 +2,7 @@
 
 use super::write_atomically;
 use crate::file::write_remedy;
+use crate::shown::Shown as _;
 use serde::Serialize;
 use std::fs::File;
 use std::io::{self, Write};
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// A file or directory could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {}: {source}; {remedy}", path.display())]
+#[error("cannot {action} {}: {source}; {remedy}", path.shown())]
 pub struct Error {
     action: &'static str,
     path: PathBuf,

@@ -2,6 +2,7 @@
 //! when it is complete.
 
 use super::Error;
+use crate::shown::Shown as _;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
@@ -64,7 +65,7 @@ impl Files {
         }
         let identity = identity(&target);
         if let Some(other) = self.known.iter().find(|known| known.identity == identity) {
-            let (kind, other) = (if other.is_output { "another output" } else { "an input" }, other.path.display());
+            let (kind, other) = (if other.is_output { "another output" } else { "an input" }, other.path.shown());
             let source = io::Error::new(ErrorKind::AlreadyExists, format!("it is also {kind} ({other})"));
             return Err(Error::with_remedy("write", path, source, "choose another name"));
         }

@@ -5,12 +5,14 @@ use super::ranges::{micros, short};
 use super::source::Checked;
 use super::{Crop, Draft, Fault, LandSource, PlaneSetup, Robot, ScenarioError, TerrainTable, UniformTable};
 use crate::file::has_memory;
-use crate::radio;
+use crate::radio::{self, LAST_START};
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::robot::RobotId;
 use staya_controller::route::Replan;
+use staya_controller::wire::Format;
 use staya_mavlink::any::max_robot;
+use std::collections::HashMap;
 use std::path::Path;
 
 pub(super) fn general(draft: &Draft<'_>) -> Checked {
@@ -258,5 +260,33 @@ pub(super) fn faults(draft: &Draft<'_>, robots: &[Robot]) -> Checked<Vec<Fault>>
         let robot = known(draft, robots, &format!("fault[{index}].robot"), fault.robot)?;
         Ok(Fault { robot, from_tick: draft.tick(fault.at_s), to_tick: draft.tick(fault.at_s + fault.down_s) })
     };
-    draft.file.fault.iter().enumerate().map(fault).collect()
+    let faults: Vec<Fault> = draft.file.fault.iter().enumerate().map(fault).collect::<Checked<_>>()?;
+    let counts = draft.file.authentication.is_some() && draft.file.radio.format == Format::Postcard;
+    if counts && let Some(index) = fault_beyond(&faults, LAST_START) {
+        let (field, robot) = (format!("fault[{index}].robot"), faults[index].robot);
+        let what = format!("robot {robot} restarts more than {LAST_START} times, more than frames with a key count");
+        draft.require(false, &field, what, "give it fewer faults, or leave [authentication] out")?;
+    }
+    Ok(faults)
+}
+
+/// The first fault of a robot beyond `most`.
+fn fault_beyond(faults: &[Fault], most: u32) -> Option<usize> {
+    let mut restarts = HashMap::<RobotId, u32>::new();
+    faults.iter().position(|fault| {
+        let count = restarts.entry(fault.robot).or_default();
+        *count += 1;
+        *count > most
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_fault_of_a_robot_beyond_the_limit_is_found() {
+        let faults = [1, 2, 1, 2, 2, 1, 2].map(|robot| Fault { robot: RobotId(robot), from_tick: 0, to_tick: 0 });
+        assert_eq!([0, 1, 2, 3, 4].map(|most| fault_beyond(&faults, most)), [Some(0), Some(2), Some(4), Some(6), None]);
+    }
 }

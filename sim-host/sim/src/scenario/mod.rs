@@ -68,6 +68,7 @@ use staya_controller::auth::Key;
 use staya_controller::land::MapParams;
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
+use std::collections::HashMap;
 use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
 
@@ -395,6 +396,13 @@ impl Scenario {
     pub fn remarks(&self) -> Vec<String> {
         let key = self.trust.keys.iter().filter_map(|keys| keys.remark.clone());
         key.chain(self.plane().into_iter().flat_map(|setup| plane::remarks(self, setup))).collect()
+    }
+
+    /// The number of faults of the robot that has most of them.
+    pub(crate) fn most_restarts(&self) -> u32 {
+        let mut restarts = HashMap::<RobotId, u32>::new();
+        self.events.faults.iter().for_each(|fault| *restarts.entry(fault.robot).or_default() += 1);
+        restarts.into_values().max().unwrap_or(0)
     }
 
     /// The key that all robots share, or the operator's first one.

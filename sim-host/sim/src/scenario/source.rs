@@ -3,6 +3,7 @@
 use super::read::{Field as Read, Limits, Node, Wrong, json};
 use super::{Field, write};
 use crate::file::read_remedy;
+use crate::shown::{Shown as _, one_line};
 use std::cell::RefCell;
 use std::fmt::{self, Display, Formatter};
 use std::ops::{Range, RangeInclusive};
@@ -15,7 +16,7 @@ use toml::de::{DeTable, DeValue};
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
-    #[error("{}: {source}; {}", .path.display(), read_remedy(.source))]
+    #[error("{}: {source}; {}", .path.shown(), read_remedy(.source))]
     Io {
         /// Path of the file.
         path: PathBuf,
@@ -23,7 +24,7 @@ pub enum ScenarioError {
         source: std::io::Error,
     },
     /// The content is invalid.
-    #[error("{}:{place}: {}{what}; {remedy}", .path.display(), prefix(.field))]
+    #[error("{}:{place}: {}{}; {}", .path.shown(), one_line(&prefix(.field)), one_line(.what), one_line(.remedy))]
     Field {
         /// Path of the file.
         path: PathBuf,

@@ -2,6 +2,7 @@
 
 use crate::file::{self, read_remedy};
 use crate::record;
+use crate::shown::{Shown as _, one_line};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +31,7 @@ impl fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 pub enum TerrainError {
     /// The file cannot be read.
-    #[error("{}: {source}; {}", .path.display(), read_remedy(.source))]
+    #[error("{}: {source}; {}", .path.shown(), read_remedy(.source))]
     Read {
         /// Path of the file.
         path: PathBuf,
@@ -41,7 +42,7 @@ pub enum TerrainError {
     #[error(transparent)]
     Write(#[from] record::Error),
     /// The content violates the file format.
-    #[error("{}{place}: {what}; {remedy}", .path.display())]
+    #[error("{}{place}: {}; {}", .path.shown(), one_line(.what), one_line(.remedy))]
     Format {
         /// Path of the file.
         path: PathBuf,
@@ -53,7 +54,7 @@ pub enum TerrainError {
         remedy: String,
     },
     /// The file extension is unknown.
-    #[error("{}: unknown kind of terrain file; use .map (Moving AI), .asc (ESRI heights) or .yaml with a .pgm (ROS map_server)", .0.display())]
+    #[error("{}: unknown kind of terrain file; use .map (Moving AI), .asc (ESRI heights) or .yaml with a .pgm (ROS map_server)", .0.shown())]
     UnknownKind(PathBuf),
     /// A size is zero, too large, or does not match the number of cells.
     #[error(

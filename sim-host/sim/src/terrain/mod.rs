@@ -21,6 +21,7 @@ mod text;
 pub use error::{MAX_SIDE, Place, TerrainError};
 pub use slope::SlopeRule;
 
+use crate::shown::Shown as _;
 use crate::{defaults, table};
 use error::format_error;
 pub use error::{parameter_error, read};
@@ -113,7 +114,7 @@ impl Terrain {
             }
             "yaml" | "yml" => ros::load(path, options),
             "pgm" => Err(parameter_error(
-                format!("{} is the picture of a map", path.display()),
+                format!("{} is the picture of a map", path.shown()),
                 "name the .yaml file that describes it",
             )),
             _ => Err(TerrainError::UnknownKind(path.to_owned())),

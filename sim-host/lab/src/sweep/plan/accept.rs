@@ -7,6 +7,7 @@ use crate::sweep::value::{Figure, Point, Value, short};
 use serde::Serialize;
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{ScenarioError, Source, fields};
+use staya_sim::shown::Shown as _;
 use std::path::Path;
 
 /// Points of a plan, by values of some axes.
@@ -62,7 +63,7 @@ impl Reference {
         let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
         let wrong = |line: usize, what: String, remedy: &str| {
-            SweepError::new(format_args!("{}:{line}", path.display()), what, remedy)
+            SweepError::new(format_args!("{}:{line}", path.shown()), what, remedy)
         };
         let (line, header) = lines.next().unwrap_or((1, ""));
         let names: Vec<&str> = header.split(',').collect();

@@ -1,5 +1,6 @@
 use super::*;
 use crate::geo::{Global, Origin};
+use crate::tlog::Missing;
 use staya_controller::auth::Key;
 use staya_mavlink::dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA};
 use staya_mavlink::frame::Sender;
@@ -16,6 +17,10 @@ fn key() -> Key {
 }
 
 fn ten(signing: Option<Signing>) -> (Swarm, SocketAddr) {
+    logged(signing, None)
+}
+
+fn logged(signing: Option<Signing>, tlog: Option<PathBuf>) -> (Swarm, SocketAddr) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/bridge.toml");
     let scenario = Scenario::load(&path, &Overrides::default()).expect("a scenario");
     let place = Global { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
@@ -27,7 +32,7 @@ fn ten(signing: Option<Signing>) -> (Swarm, SocketAddr) {
         disarmed: true,
         origin: Origin::new(place).expect("a place"),
         signing,
-        tlog: None,
+        tlog,
     };
     let swarm = Swarm::new(&scenario, options).expect("a swarm");
     let address = swarm.lines().local(0).expect("an address");
@@ -102,7 +107,7 @@ fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
         let ends = Ends(&is_over);
         test();
         drop(ends);
-        run.join().expect("no panic").expect("a report")
+        run.join().expect("no panic")
     })
 }
 
@@ -211,4 +216,33 @@ fn every_frame_is_accounted_for() {
     assert_eq!(report.frames_heard, 1 + client.said - 8);
     let lines = report.lines.iter().map(|line| line.counts.frames_in - line.counts.lost_in).sum::<u64>();
     assert_eq!(lines, report.frames_heard + report.frames_ignored + report.frames_refused + report.frames_waiting);
+}
+
+#[test]
+fn a_full_disk_ends_the_log_but_not_the_bridge() {
+    let full = PathBuf::from("/dev/full");
+    if !full.exists() {
+        return;
+    }
+    let (swarm, address) = logged(None, Some(full));
+    let mut client = Client::new(address, None);
+    let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT);
+    let report = beside(swarm, || {
+        let began = Instant::now();
+        let is_said = |message: &MavMessage| match message {
+            MavMessage::STATUSTEXT(text) => text.text.to_str().is_ok_and(|text| text.contains("log cannot be written")),
+            _ => false,
+        };
+        let mut is_told = false;
+        while !is_told && began.elapsed() < PATIENCE {
+            client.say(&heartbeat);
+            is_told = client.hears(is_said);
+        }
+        assert!(is_told);
+        assert!(client.is_obeyed(), "the bridge answers without its log");
+    });
+    let error = report.log_error.expect("the log failed");
+    assert!(error.contains("/dev/full") && error.contains("free some space"), "{error}");
+    let Missing { log_frames_lost, log_bytes_lost } = report.log_missing;
+    assert!(log_frames_lost > 0 && log_bytes_lost >= 20 * log_frames_lost, "{:?}", report.log_missing);
 }

@@ -5,6 +5,7 @@ use crate::companion::config::{Config, VehicleSetup};
 use crate::companion::offboard::Entry;
 use crate::framed::framed;
 use crate::geo::{Origin, enu, ned};
+use crate::tlog::Missing;
 use crate::{Peer, Received, Tlog};
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
@@ -247,6 +248,10 @@ impl Machine for Demo {
     }
 
     fn close_log(&mut self) -> Result<(), record::Error> {
-        self.tlog.take().map_or(Ok(()), Tlog::finish)
+        self.tlog.as_mut().map_or(Ok(()), Tlog::finish)
+    }
+
+    fn missing(&self) -> Missing {
+        self.tlog.as_ref().map(Tlog::missing).unwrap_or_default()
     }
 }

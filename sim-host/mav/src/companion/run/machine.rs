@@ -2,7 +2,9 @@
 
 use crate::companion::medium::Medium;
 use crate::companion::roll::KeyWatch;
+use crate::tlog::Missing;
 use crate::{Lines, Peer, Received, Tlog};
+use staya_console::printable;
 use staya_controller::auth::Key;
 use staya_sim::record;
 use std::io::{self, Write as _};
@@ -27,21 +29,24 @@ pub trait Machine {
 
     fn tell_others(&mut self, _frames: &[u8]) {}
 
-    /// After an error it is not called again.
+    /// An error is returned once; later frames are counted.
     fn log(&mut self, frame: &[u8]) -> Result<(), record::Error>;
 
     fn close_log(&mut self) -> Result<(), record::Error>;
+
+    /// Frames and bytes that the log lacks.
+    fn missing(&self) -> Missing;
 
     fn new_key(&mut self) -> Option<Result<Key, String>> {
         None
     }
 
     fn show(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stdout(), "{line}")
+        writeln!(io::stdout(), "{}", printable(line))
     }
 
     fn tell(&mut self, line: &str) -> io::Result<()> {
-        writeln!(io::stderr(), "{line}")
+        writeln!(io::stderr(), "{}", printable(line))
     }
 }
 
@@ -87,7 +92,11 @@ impl Machine for Host {
     }
 
     fn close_log(&mut self) -> Result<(), record::Error> {
-        self.tlog.take().map_or(Ok(()), Tlog::finish)
+        self.tlog.as_mut().map_or(Ok(()), Tlog::finish)
+    }
+
+    fn missing(&self) -> Missing {
+        self.tlog.as_ref().map(Tlog::missing).unwrap_or_default()
     }
 
     fn new_key(&mut self) -> Option<Result<Key, String>> {

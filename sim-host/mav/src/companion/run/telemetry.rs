@@ -150,6 +150,7 @@ impl Companions<'_> {
             vehicles: vehicles.collect(),
             links: links.collect(),
             log_error: self.log_error.as_ref().map(ToString::to_string),
+            log_missing: self.machine.missing(),
         }
     }
 }

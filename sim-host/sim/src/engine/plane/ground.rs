@@ -114,7 +114,7 @@ impl Ground for PlaneGround {
         }
         (self.clearance, self.gap_m, self.changed) = (clearance, gap_m, changed);
         self.plane.put_solids(solids);
-        self.orders = frames(&orders, self.format, self.key.as_ref());
+        self.orders = frames(&orders, self.format, self.key.as_ref(), self.restarts);
         self.setup.orders = orders;
         Ok(())
     }
@@ -245,7 +245,7 @@ impl Ground for PlaneGround {
                 let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
                 let at = self.setup.orders.partition_point(|order| order.tick <= tick);
                 self.setup.orders.insert(at, Order { tick, index: goal, target });
-                self.orders = frames(&self.setup.orders, self.format, self.key.as_ref());
+                self.orders = frames(&self.setup.orders, self.format, self.key.as_ref(), self.restarts);
             }
             Intervention::Solid { ref solid } => self.plane.add_solids(Solid::of(solid)),
             Intervention::Move { index, by_m } => self.plane.move_solid(index, by_m)?,

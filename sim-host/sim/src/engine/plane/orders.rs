@@ -9,11 +9,18 @@ use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
 use staya_controller::wire::{Format, Header, Wire};
 
-pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec<(u32, Vec<u8>)> {
+/// The frames of `orders`, by tick, for robots that restart at most `restarts` times.
+pub(in crate::engine) fn frames(
+    orders: &[Order],
+    format: Format,
+    key: Option<&Key>,
+    restarts: u32,
+) -> Vec<(u32, Vec<u8>)> {
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
     // Each index has its own version counter, because versions are compared modulo 2^n.
     let mut versions = [0_u8; 256];
     let (mut wire, sender) = radio::operator(format, key, 0);
+    radio::keep_up(&mut wire, restarts);
     let mut sequence = 0_u16;
     for order in orders {
         let version = &mut versions[usize::from(order.index)];

@@ -95,7 +95,7 @@ fn a_restarted_robot_keeps_its_changed_goal_and_parameters() {
     for _ in 0..20 {
         swarm.step();
     }
-    assert_eq!(swarm.observation(2).boot, 1);
+    assert_eq!(swarm.observation(2).starts, 1);
     assert_eq!(swarm.parameter(2, "speed_mps"), Some(0.25));
     assert_eq!(swarm.goal_m(2), Some([4.0, -2.0, 0.0]));
     for _ in 0..800 {

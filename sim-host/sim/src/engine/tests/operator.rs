@@ -74,7 +74,7 @@ fn a_down_robot_ignores_commands_and_restarts_with_the_scenarios_task() {
     assert!(!swarm.command(2, east), "there is no such robot");
     run(&mut swarm, 19);
     let after = swarm.observation(2);
-    assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);
+    assert!(after.is_up && after.starts != before.starts && after.wish == Wish::Own);
     assert_eq!(swarm.parameter(2, "speed_mps"), Some(1.0));
     assert!(after.motion.velocity_mps[1] < -0.5, "{:?}", after.motion);
 }

@@ -124,7 +124,7 @@ fn each_goal_has_its_own_order_version() {
         target: Target { position_m: [f64::from(number), 0.0, 0.0], velocity_mps: [0.0; 3] },
     };
     let orders: Vec<_> = (0..70_000).map(order).collect();
-    let sent = crate::engine::plane::frames(&orders, Format::Postcard, None);
+    let sent = crate::engine::plane::frames(&orders, Format::Postcard, None, 0);
     assert_eq!(sent.len(), 35_000);
     let mut last = [0_u8; 2];
     for (_, bytes) in &sent {

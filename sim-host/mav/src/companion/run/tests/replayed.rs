@@ -41,6 +41,10 @@ impl Machine for Replay {
         Ok(())
     }
 
+    fn missing(&self) -> Missing {
+        Missing::default()
+    }
+
     fn show(&mut self, _: &str) -> io::Result<()> {
         Ok(())
     }
@@ -57,7 +61,7 @@ fn known_of_the_third(name: &str, until: f64) -> Vec<(f64, Option<f32>)> {
     let config = Config::load(&path).unwrap();
     let options = Options { quiet: true, ..Options::default() };
     let replay = Replay { now: Duration::ZERO, frames: recording.frames().into() };
-    let mut companions = Companions::new(&config, &options, None, None, Box::new(replay));
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(replay), 0);
     let mut known = Vec::new();
     while companions.now().as_secs_f64() < until {
         companions.turn();
