@@ -5,6 +5,7 @@ mod crossing;
 mod damaged;
 mod dead_members;
 mod duplicates;
+mod fades;
 mod faults;
 mod flocks;
 mod formation_plane;

@@ -1,8 +1,10 @@
 //! Bodies in the plane or in space, and the sensors of their robots.
 
+mod company;
 mod ground;
 mod orders;
 
+use company::company;
 pub(super) use orders::frames;
 use orders::{course, waypoint};
 
@@ -56,6 +58,8 @@ pub struct PlaneGround {
     /// Longest delay of a packet, without reordering.
     delay_us: u32,
     range_m: f32,
+    /// By robot: whether another one that works starts within radio range.
+    has_company: Vec<bool>,
     since: Vec<u32>,
     format: Format,
     key: Option<Key>,
@@ -110,6 +114,7 @@ impl PlaneGround {
             delay_us: libm::round((scenario.radio.delay_ms + scenario.radio.jitter_ms) * 1000.0) as u32,
             range_m: scenario.radio.range_m.min(FARTHEST_M) as f32,
             orders: frames(&setup.orders, scenario.radio.format, scenario.key(), scenario.most_restarts()),
+            has_company: company(scenario, setup),
             since: vec![0; scenario.robots.len()],
             format: scenario.radio.format,
             key: scenario.key().cloned(),
@@ -202,6 +207,7 @@ impl PlaneGround {
                 listen: group
                     .listen
                     .unwrap_or(Duration::from_micros(silent_us.saturating_add(LISTEN_STEPS * step.as_micros()))),
+                expects_others: group.expects_others.unwrap_or(self.has_company[number]),
                 reach_m: self.range_m,
                 ..group.contact_loss
             },

@@ -208,3 +208,37 @@ fn groups_with_different_laws_and_safety_layers_arrive_without_collisions() {
     let outcome = simulate(&scenario, watch_nothing).expect("room");
     assert_eq!((outcome.arrived, outcome.collisions), (scenario.robots.len(), 0));
 }
+
+#[test]
+fn robots_that_start_within_radio_range_expect_each_other() {
+    let company = |list: &str, rest: &str| {
+        let scenario = in_plane(&format!("[plane.robots]\nlist = [{list}]\n"), rest);
+        let ground = PlaneGround::new(&scenario, scenario.plane().expect("robots in the plane"));
+        let expects = |number| ground.setup(number, 0).0.contact_loss.expects_others;
+        (0..scenario.robots.len()).map(expects).collect::<Vec<_>>()
+    };
+    let three = "{ start_m = [0, 0] }, { start_m = [3, 0] }, { start_m = [9, 0] }";
+    assert_eq!(company(three, "[radio]\nrange_m = 4\n"), [true, true, false]);
+    assert_eq!(company(three, ""), [true; 3]);
+    assert_eq!(company("{ start_m = [0, 0] }", ""), [false]);
+    // One that is down at the start expects others, and none expects it.
+    let down = "[radio]\nrange_m = 4\n[[fault]]\nrobot = 2\nat_s = 0\ndown_s = 3\n";
+    assert_eq!(company(three, down), [false, true, false]);
+    assert_eq!(company(three, "[plane.sensing]\nrange_m = 9\nbeacons = false\n"), [false; 3]);
+    for (given, expects) in [("true", true), ("false", false)] {
+        let table = format!("[radio]\nrange_m = 4\n[plane.orca]\nexpects_others = {given}\n");
+        assert_eq!(company(three, &table), [expects; 3]);
+    }
+}
+
+#[test]
+fn a_robot_that_has_heard_none_of_its_neighbours_stands() {
+    let robots =
+        "[plane.robots]\nlist = [{ start_m = [0, 0], goal_m = [9, 0] }, { start_m = [9, 0.1], goal_m = [0, 0.1] }]\n";
+    for (faults, moves) in [("", true), ("[[radio.fault]]\nto = [1]\n", false)] {
+        let (outcome, rows) = tracks(&in_plane(robots, faults));
+        let [x, y, _] = rows.last().expect("rows")[0].motion.position_m;
+        assert_eq!(libm::hypot(x, y) > 8.0, moves, "{faults}: {x} {y}");
+        assert_eq!(outcome.collisions, 0, "{faults}");
+    }
+}

@@ -270,13 +270,11 @@ fn a_lone_body_that_follows_late_stops_at_its_goal() {
     }
 }
 
-/// All robots start while the radio is dead; with `expects_others` they wait for its end.
+/// All robots start while the radio is dead; they wait for its end.
 #[test]
 fn robots_that_expect_others_wait_for_the_end_of_a_blackout() {
-    let failed = overlaps(seeds(20).map(|seed| {
-        let text = delayed(seed).replace("[radio]\n", "[radio]\nblackout_s = [[0, 10]]\n");
-        (seed, text.replace("[plane.robots]", "[plane.orca]\nexpects_others = true\n[plane.robots]"))
-    }));
+    let failed =
+        overlaps(seeds(20).map(|seed| (seed, delayed(seed).replace("[radio]\n", "[radio]\nblackout_s = [[0, 10]]\n"))));
     assert!(failed.is_empty(), "{failed:#?}");
 }
 

@@ -36,6 +36,9 @@ pub struct RobotGroup {
     pub contact_loss: ContactLossPolicy<f32>,
     /// How long its robots listen before they move. `None`: as long as the radio needs.
     pub listen: Option<Duration>,
+    /// Whether they stand until they have heard another robot. `None`: if another one that works
+    /// starts within radio range.
+    pub expects_others: Option<bool>,
     /// Flock number; robots of different flocks avoid each other but do not flock together.
     pub flock: u8,
 }
@@ -105,6 +108,7 @@ impl Group<'_> {
             safety,
             contact_loss: contact_loss(&orca),
             listen: orca.listen_s.map(duration),
+            expects_others: orca.expects_others,
             flock: self.flock,
         })
     }
@@ -173,7 +177,6 @@ fn contact_loss(table: &OrcaTable) -> ContactLossPolicy<f32> {
     let usual = ContactLossPolicy::DEFAULT;
     ContactLossPolicy {
         stands_after: table.stands_after_s.map_or(usual.stands_after, duration),
-        expects_others: table.expects_others,
         alone_mps: table.alone_mps.map_or(usual.alone_mps, |mps| mps.min(f64::from(f32::MAX)) as f32),
         ..usual
     }

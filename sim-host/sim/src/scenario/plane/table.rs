@@ -343,11 +343,12 @@ table! {
         pub downwash: Option<f64>, 1.0..=10.0, "";
         /// Silence after which a lost robot counts as standing even if most are lost, seconds.
         pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// How long a robot stands and listens after its start, seconds. Default: two beacon
-        /// periods, the delay of the radio and the longest one of a late decision.
+        /// How long a robot stands and listens after its start, seconds. Default: six steps, the
+        /// delay of the radio and the longest one of a late decision.
         pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// Whether a robot that has not heard another one stands. Default: false.
-        pub expects_others: bool = false;
+        /// Whether a robot that has not heard another one stands. Default: true for a robot within
+        /// whose radio range another one starts.
+        pub expects_others: Option<bool>;
         /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
         pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
     }

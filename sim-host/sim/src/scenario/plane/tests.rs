@@ -79,10 +79,10 @@ fn the_reaction_to_silence_is_read() {
     let given = ContactLossPolicy {
         stands_after: Duration::from_millis(2500),
         alone_mps: f32::MAX,
-        expects_others: true,
         ..ContactLossPolicy::DEFAULT
     };
-    assert_eq!((group.contact_loss, group.listen), (given, Some(Duration::from_millis(500))));
+    assert_eq!(group.contact_loss, given);
+    assert_eq!((group.listen, group.expects_others), (Some(Duration::from_millis(500)), Some(true)));
 }
 
 #[test]
