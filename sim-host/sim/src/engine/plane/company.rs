@@ -7,7 +7,8 @@ use std::collections::BTreeSet;
 /// Side of the index's cells, metres; the index doubles it until they suit the number of robots.
 const SIDE_M: f64 = 0.01;
 
-/// Returns for each robot whether another one that works and sends starts within radio range. O(n log n) for
+/// Returns for each robot whether another one that works and sends starts within radio range; false
+/// behind layers that do not track silent neighbours. O(n log n) for
 /// robots that are spread evenly.
 pub(super) fn company(scenario: &Scenario, setup: &PlaneSetup) -> Vec<bool> {
     if scenario.sensing().is_some_and(|sensing| !sensing.has_beacons) {
@@ -23,6 +24,9 @@ pub(super) fn company(scenario: &Scenario, setup: &PlaneSetup) -> Vec<bool> {
     near.rebuild(&places);
     let (radius, mut found) = (scenario.radio.range_m, Vec::new());
     let mut has_company = |(index, (_, at))| {
+        if !setup.group(index as usize).tracks_silence() {
+            return false;
+        }
         near.within(&Query { at, radius, most: 1, except: Some(index) }, &mut found);
         !found.is_empty()
     };

@@ -53,6 +53,12 @@ impl RobotGroup {
         }
     }
 
+    /// Whether the safety layer avoids robots that have fallen silent.
+    #[must_use]
+    pub fn tracks_silence(&self) -> bool {
+        !matches!(self.safety.kind(), SafetyKind::None | SafetyKind::PushOut)
+    }
+
     /// Ratio of the vertical to the horizontal separation; 1 for groups that do not fly.
     #[must_use]
     pub fn downwash(&self) -> f64 {
