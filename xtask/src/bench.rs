@@ -68,7 +68,10 @@ pub fn run(s: &mut Session, options: &Options) {
 pub fn run_goals(s: &mut Session) {
     let names: Vec<&str> = GOALS.iter().flat_map(|(name, _, other)| [*name, *other]).collect();
     criterion(s, Some(&format!("^({})$", names.join("|"))));
-    SCRIPTS.iter().for_each(|(_, row, file, python)| script(s, row, file, *python, &[]));
+    // The goals beside RVO2 are not reached (docs/results.md): they would hide other failures.
+    for (_, row, file, python) in SCRIPTS.iter().filter(|(name, ..)| *name != RVO2) {
+        script(s, row, file, *python, &[]);
+    }
 }
 
 impl Options {
