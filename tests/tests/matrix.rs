@@ -119,6 +119,11 @@ fn verdict(guidance: GuidanceKind, safety: Layer, radio: &str) -> Verdict {
 fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
     let hears = radio != "dead";
     let has_goal = !matches!(guidance, GuidanceKind::Boids | GuidanceKind::Lattice);
+    let guards = safety != SafetyKind::None;
+    // Each expects the others, and hears none.
+    if !hears && guards && safety != SafetyKind::PushOut {
+        return if verdict.arrived > 0 || verdict.overlaps > 0 { "a robot without a radio moved" } else { "" };
+    }
     if !verdict.stays {
         return "a robot left the area or was too fast";
     }
@@ -128,7 +133,6 @@ fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &
     if guidance == GuidanceKind::Lattice && hears && verdict.parts > 1 {
         return "the flock broke up";
     }
-    let guards = safety != SafetyKind::None;
     match radio {
         "perfect" if guards && verdict.overlaps > 0 => "robots overlapped",
         // See docs/limits.md.

@@ -147,7 +147,7 @@ impl AnyGround {
     /// See [`Grid::new`].
     pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
         Ok(match &scenario.movement {
-            Movement::Plane(setup) => Self::Plane(Box::new(PlaneGround::new(scenario, setup))),
+            Movement::Plane(setup) => Self::Plane(Box::new(PlaneGround::new(scenario, setup).with_company(scenario))),
             Movement::Cells(rules) => Self::Cells(Box::new(Grid::new(scenario, *rules)?)),
         })
     }

@@ -114,13 +114,21 @@ impl PlaneGround {
             delay_us: libm::round((scenario.radio.delay_ms + scenario.radio.jitter_ms) * 1000.0) as u32,
             range_m: scenario.radio.range_m.min(FARTHEST_M) as f32,
             orders: frames(&setup.orders, scenario.radio.format, scenario.key(), scenario.most_restarts()),
-            has_company: company(scenario, setup),
+            has_company: vec![false; setup.starts.len()],
             since: vec![0; scenario.robots.len()],
             format: scenario.radio.format,
             key: scenario.key().cloned(),
             restarts: scenario.most_restarts(),
             setup: setup.clone(),
         }
+    }
+
+    /// Lets robots that start within radio range of another one expect others, unless the scenario
+    /// says what they expect. Not for a companion, which may steer one robot of the scenario alone.
+    #[must_use]
+    pub fn with_company(mut self, scenario: &Scenario) -> Self {
+        self.has_company = company(scenario, &self.setup);
+        self
     }
 
     /// The bodies and their surroundings.

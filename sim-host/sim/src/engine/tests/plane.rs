@@ -213,7 +213,8 @@ fn groups_with_different_laws_and_safety_layers_arrive_without_collisions() {
 fn robots_that_start_within_radio_range_expect_each_other() {
     let company = |list: &str, rest: &str| {
         let scenario = in_plane(&format!("[plane.robots]\nlist = [{list}]\n"), rest);
-        let ground = PlaneGround::new(&scenario, scenario.plane().expect("robots in the plane"));
+        let ground =
+            PlaneGround::new(&scenario, scenario.plane().expect("robots in the plane")).with_company(&scenario);
         let expects = |number| ground.setup(number, 0).0.contact_loss.expects_others;
         (0..scenario.robots.len()).map(expects).collect::<Vec<_>>()
     };
