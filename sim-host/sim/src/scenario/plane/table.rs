@@ -346,8 +346,8 @@ table! {
         /// How long a robot stands and listens after its start, seconds. Default: six steps, the
         /// delay of the radio and the longest one of a late decision.
         pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// Whether a robot that has not heard another one stands. Default: in the simulator true for
-        /// a robot within whose radio range another one starts, in a companion false.
+        /// Whether a robot that has not heard another one stands. Default: in the simulator whether
+        /// another one starts within radio range, in a companion false.
         pub expects_others: Option<bool>;
         /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
         pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
