@@ -300,3 +300,18 @@ proptest! {
         prop_assert!((gap.place(right) - v(0.0, 1.0)).norm() < 1e-9, "to the right of the axis");
     }
 }
+
+#[test]
+fn a_point_as_near_to_the_middle_as_the_posts_is_beside_one_of_them() {
+    let gap = gap(0.0, 0.0, 1.0, 0.0, false).unwrap();
+    for (degrees, is_clear) in [(0, true), (25, true), (40, false), (70, false), (90, false)] {
+        for (y, x) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)] {
+            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            // Its border is 1.02 m away.
+            let other = ball(1.03 * sin * x, 1.03 * cos * y, 0.01);
+            assert_eq!(gap.is_clear(&[other]), is_clear, "{degrees} degrees, {x} {y}");
+        }
+    }
+    assert!(gap.is_clear(&[ball(1.07, 0.0, 0.01)]), "farther away than the posts");
+    assert!(!gap.is_clear(&[ball(0.9, 0.0, 0.01)]), "nearer than the posts");
+}
