@@ -306,7 +306,7 @@ fn a_point_as_near_to_the_middle_as_the_posts_is_beside_one_of_them() {
     let gap = gap(0.0, 0.0, 1.0, 0.0, false).unwrap();
     for (degrees, is_clear) in [(0, true), (25, true), (40, false), (70, false), (90, false)] {
         for (y, x) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)] {
-            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            let (sin, cos) = Scalar::sin_cos(f64::from(degrees).to_radians());
             // Its border is 1.02 m away.
             let other = ball(1.03 * sin * x, 1.03 * cos * y, 0.01);
             assert_eq!(gap.is_clear(&[other]), is_clear, "{degrees} degrees, {x} {y}");
