@@ -30,9 +30,9 @@ pub(super) struct Relay {
     beacons: u8,
     /// Whether the last state was that of a silent robot.
     was_silent: bool,
-    /// Whose state came last in the turn of silent robots.
+    /// The last robot in the turn of silent ones.
     silent: RobotId,
-    /// Whose state came last in the turn of all.
+    /// The last robot in the turn of all.
     any: RobotId,
     /// A robot of which another robot has told an old state.
     outdated: RobotId,

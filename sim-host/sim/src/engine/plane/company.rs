@@ -8,8 +8,7 @@ use std::collections::BTreeSet;
 const SIDE_M: f64 = 0.01;
 
 /// Returns for each robot whether another one that works and sends starts within radio range; false
-/// behind layers that do not track silent neighbours. O(n log n) for
-/// robots that are spread evenly.
+/// behind layers that do not track silent neighbours. O(n log n) for robots that are spread evenly.
 pub(super) fn company(scenario: &Scenario, setup: &PlaneSetup) -> Vec<bool> {
     if scenario.sensing().is_some_and(|sensing| !sensing.has_beacons) {
         return vec![false; setup.starts.len()];
