@@ -9,7 +9,7 @@ const MARGIN: f64 = 0.08;
 /// Obstacles this near to starts and goals are in the initial view; a fraction of its longer side.
 const AROUND: f64 = 0.5;
 
-/// The rectangle to show, west, south, east and north, and the lowest and highest place, metres from
+/// The rectangle to show (west, south, east, north), and the lowest and highest place; metres from
 /// the origin.
 pub(super) fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
     let mut extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
