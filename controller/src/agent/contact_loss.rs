@@ -19,6 +19,8 @@ use serde::{Deserialize, Serialize};
 /// | all lost, all left radio range | reports [`ContactLost`], moves freely |
 /// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
 /// | just started | stands and [listens](Self::listen) |
+/// | others do not tell of this robot any more | stands until one does |
+/// | others never told of this robot | goes on, and expects that no robot gives way |
 /// | never any since power-on | moves freely, or stands if it [expects others] |
 ///
 /// The place of a lost robot stays blocked until a robot hears that robot again, or an operator
@@ -42,7 +44,8 @@ pub struct ContactLossPolicy<S> {
     /// for robots that may be alone, since moving silent robots are not detected.
     pub alone_mps: S,
     /// How long a robot that has started stands before it moves, so that it hears the robots near
-    /// by: a beacon period and the latency, several times that on a radio with losses.
+    /// by: a beacon period and the latency, several times that on a radio with losses; six times
+    /// this time while it knows of robots that it does not hear.
     pub listen: Duration,
     /// Other robots exist: a robot that has not heard any stands, as if all were lost.
     pub expects_others: bool,
@@ -125,6 +128,8 @@ impl ContactState {
 
 /// Time after which a robot that still finds others starts to move.
 const LONGEST: Duration = Duration::from_millis(5000);
+/// How much longer a robot listens while links fade: one that it does not hear yet may be near by.
+const MISSING: i32 = 6;
 
 /// How long a robot has been running, and when its last step was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -140,9 +145,12 @@ pub(super) enum Listening {
 }
 
 impl Listening {
-    /// Updates the state; returns whether the robot still listens: until it has found no robot for
-    /// `listen`, and for as long as it took to find the last one. Call it in each step.
-    pub(super) fn passes(&mut self, now: Instant, listen: Duration) -> bool {
+    /// Updates the state; returns whether the robot still listens: while it `doubts` that others
+    /// hear it, until it has found no robot for `listen`, for [`MISSING`] times that while it
+    /// `misses` robots that it should hear, and for as long as it took to find the last one. Call
+    /// it in each step.
+    pub(super) fn passes(&mut self, now: Instant, listen: Duration, (doubts, misses): (bool, bool)) -> bool {
+        let listen = if misses { listen.saturating_mul(MISSING) } else { listen };
         let (start, found) = match *self {
             Self::NotStarted => (now, now),
             Self::Since { start, found } => (start, found),
@@ -152,7 +160,7 @@ impl Listening {
             }
         };
         let has_time = now.since(start) < LONGEST.max(listen);
-        let lasts = has_time && now.since(found) < found.since(start).max(listen);
+        let lasts = has_time && (doubts || now.since(found) < found.since(start).max(listen));
         *self = if lasts { Self::Since { start, found } } else { Self::Over(now) };
         lasts
     }

@@ -20,9 +20,12 @@ use crate::wire::{
 use relay::Relay;
 use serde::{Deserialize, Serialize};
 
+mod audience;
 mod identity;
 mod relay;
 mod sight;
+
+pub(super) use audience::Hearing;
 
 const PENDING: usize = 4;
 const INCOMING: usize = 4;
@@ -249,7 +252,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
                 let is_news = self.orders.is_news(header, number, subject);
                 return is_news.then_some(Received::Order(order, Receipt { header, number, subject }));
             }
-            Message::Lost(told) if listener.fastest_mps.is_some() => self.hear_told(told, now, listener, out),
+            Message::Lost(told) if listener.fastest_mps.is_some() => self.hear_told(id, told, now, listener, out),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     let held = KeyHeld { to: header.sender, generation, phase };
@@ -280,6 +283,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             let mut window = SequenceWindow::new();
             let _ = window.check(header);
             self.found(id, window, put, now);
+            self.relay.tell_next(id);
             report(out, id.duplicate_of().map_or(Event::NeighborFound(id), Event::DuplicateId));
         }
     }

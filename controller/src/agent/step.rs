@@ -1,7 +1,7 @@
 //! One step of an agent: [`Agent::step_into`]. Phases are not inlined, so each frees its stack.
 
 use super::contact_loss::ContactState;
-use super::link::{ReceiveContext, Received, beacon, report};
+use super::link::{Hearing, ReceiveContext, Received, beacon, report};
 use super::{
     Action, Agent, AgentConfig, Command, Decision, Event, Inputs, KinematicState, Known, Last, Law, OrderOf, Outgoing,
     Outputs, Perception, Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
@@ -333,7 +333,8 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         // In the step after such a mode others may still take the whole gap.
         let is_trusted = !before.gives_way() && self.safety.inflation().is_some();
         if !self.mode.gives_way() || is_trusted {
-            let _ = self.link.listening.passes(now, self.config.contact_loss.listen);
+            let misses = self.link.misses_robots(now, self.config.latency);
+            let _ = self.link.listening.passes(now, self.config.contact_loss.listen, (false, misses));
             self.link.table.forget_gaps();
             self.commanded_mps = Vec3::ZERO;
             out.command = Command::Hold;
@@ -347,13 +348,18 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let (body, steered) = (self.body(inputs), self.steered(inputs).position);
         let Self { link, safety, config, .. } = self;
         let elapsed = link.listening.elapsed(now, config.tick);
+        let (hearing, misses) = (link.hearing(), link.misses_robots(now, config.latency));
+        let is_heard = hearing != Hearing::Never;
         let (table, inflation) = (&mut link.table, safety.inflation());
         let mut wish_mps = wish_mps;
         if let Some(inflation) = inflation {
-            if link.listening.passes(now, config.contact_loss.listen) {
+            let doubts = hearing == Hearing::Unclear;
+            let listens = link.listening.passes(now, config.contact_loss.listen, (doubts, misses));
+            if listens || hearing == Hearing::NoLonger {
                 out.wait = (wish_mps != Vec3::ZERO).then_some(Wait::Radio);
                 wish_mps = Vec3::ZERO;
             }
+            nearby.iter_mut().for_each(|other| other.gives_way &= is_heard);
             add_lost(nearby, table.lost(), steered, body.radius_m, now, &config.ages, &inflation);
             if link.contact.is_lost() && config.contact_loss.may_be_alone() {
                 wish_mps = wish_mps.clamp_norm(config.contact_loss.alone_mps);
@@ -386,10 +392,14 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 may_be_alone,
                 stands_after,
                 is_agreed,
+                is_heard,
                 downwash: safety.downwash(),
             };
             let within = room.limit(table, plane.obstacles, safe);
             is_hidden = within.is_none();
+            if !is_heard {
+                table.forget_gaps();
+            }
             safe = within.unwrap_or(Vec3::ZERO);
         }
         if is_hindered(&input, safe) {

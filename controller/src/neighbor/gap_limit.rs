@@ -98,6 +98,8 @@ pub struct GapLimit<'a, S> {
     /// Whether the robot may follow a robot that recedes: the way on which that one can brake at
     /// most adds to the gap.
     pub is_agreed: bool,
+    /// Whether others hear this robot: otherwise none gives way to it.
+    pub is_heard: bool,
     /// Ratio of vertical to horizontal distance between robots, the same for all; at least 1.
     pub downwash: S,
 }
@@ -122,6 +124,13 @@ struct Limit<S> {
 struct Pace<S> {
     velocity_mps: Vec3<S>,
     speed_mps: S,
+}
+
+impl<S: Scalar> Pace<S> {
+    /// Whether no approach at this pace reaches `mps`: twice the speed is more than its rounding.
+    fn is_below(&self, mps: S) -> bool {
+        self.speed_mps + self.speed_mps <= mps
+    }
 }
 
 impl<S: Scalar> Limit<S> {
@@ -221,21 +230,27 @@ impl<S: Scalar> GapLimit<'_, S> {
     #[inline(never)]
     fn aside(&self, limits: &[Limit<S>], mut v: Vec3<S>) -> Vec3<S> {
         let step_s = self.body.step_s;
+        let per_s = |brake_s: S| S::ONE.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO);
         let (mut pace, mut brake_s) = (self.pace(v), self.brake_s(v));
+        let mut rate = per_s(brake_s);
         for _ in 0..ROUNDS {
             let mut is_turned = false;
             for limit in limits {
                 let left_m = (limit.left_m - limit.growth_mps * brake_s).max(S::ZERO);
-                let per_s = S::ONE.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO);
+                let most_mps = left_m * rate;
+                if pace.is_below(most_mps) {
+                    continue;
+                }
                 // A robot is turned away from another one only if it could not move otherwise.
                 let turns_away = left_m <= S::from_micro(TOLERANCE_UM);
                 let closing = pace.velocity_mps.dot(limit.ahead);
-                if limit.approach(&pace) > left_m * per_s && (turns_away || closing > S::ZERO) {
+                if limit.approach(&pace) > most_mps && (turns_away || closing > S::ZERO) {
                     let aim_m = left_m - S::from_micro(GRAIN_UM);
-                    let change = limit.turn(&pace, aim_m * per_s);
+                    let change = limit.turn(&pace, aim_m * rate);
                     let change = if turns_away { change } else { change.max(-closing) };
                     v += self.along(limit.ahead) * change;
                     (pace, brake_s) = (self.pace(v), self.brake_s(v));
+                    rate = per_s(brake_s);
                     is_turned = true;
                 }
             }
@@ -345,7 +360,8 @@ impl<S: Scalar> GapLimit<'_, S> {
         let ball_m = distance - radii_m - grown;
         let mut gap = ball_m;
         // A neighbour that does not give way need not keep to half of the gap.
-        if is_silent && !other.is_lost() && other.mode.gives_way() {
+        let gives_way = self.is_heard && other.mode.gives_way();
+        if is_silent && !other.is_lost() && gives_way {
             // It may have decided once since the own last decision; if more often, nothing is left.
             let before_us = age.as_micros().saturating_sub(self.elapsed.as_micros());
             let is_kept = steps <= self.silent_steps(before_us).saturating_add(1);
@@ -359,7 +375,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             _ if swerves => told_mps + swerve_mps,
             _ => inflation.growth_mps,
         };
-        let (left_m, growth_mps) = if !other.mode.gives_way() {
+        let (left_m, growth_mps) = if !gives_way {
             (gap - comes_mps * body.step_s, comes_mps.max(S::ZERO))
         } else if is_silent {
             (gap * S::HALF, comes_mps.max(S::ZERO) * S::HALF)

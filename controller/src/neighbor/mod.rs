@@ -39,6 +39,8 @@ pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 const LEAVES_FROM: i32 = 900;
 /// Where a robot of which others tell is still expected to be heard, thousandths of the same.
 const WITHIN_REACH: i32 = 800;
+/// Share of a full table that second owners of ids may take, as a power of a half.
+const DOUBLES: u32 = 3;
 /// Age at which the state of a lost robot stops ageing, so that the 32-bit clock never wraps.
 /// In hundredths of a second it fits [`LostRobot::age_cs`](crate::wire::LostRobot::age_cs).
 const OLDEST: Duration = Duration::from_millis(650_000);
@@ -219,8 +221,9 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// never makes way. Lost robots do so only for each other, while they take more than half of
     /// the table: nothing else tells the robot where they stand.
     ///
-    /// A [duplicate id](RobotId::duplicate) only replaces another duplicate, so that forged ids
-    /// cannot crowd out other robots. The smaller id wins a tie; an unknown distance (NaN) is the
+    /// A [duplicate id](RobotId::duplicate) that is not protected only replaces another duplicate,
+    /// or the first owner of its id while duplicates fill less than an eighth of the table. So
+    /// forged ids cannot crowd out other robots. The smaller id wins a tie; an unknown distance (NaN) is the
     /// largest. Distances are extrapolated, so a burst of beacons gives the same content in any
     /// order, unless more than `N` senders are protected.
     pub fn put(
@@ -268,13 +271,16 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Option<RobotId> {
-        let is_double = newcomer.id.duplicate_of().is_some();
+        let is_double = |entry: &Neighbor<S, P>| entry.id.duplicate_of().is_some();
+        let first = newcomer.id.duplicate_of().filter(|_| !protect(newcomer.id));
+        let has_room = || self.iter().filter(|entry| is_double(entry)).count() < (N >> DOUBLES).max(1);
+        let replaces = |entry: &Neighbor<S, P>, first| is_double(entry) || entry.id == first && has_room();
         let lost = self.lost().len().saturating_add(usize::from(newcomer.is_lost()));
         let too_many_lost = lost > N >> 1;
         let may_go = |entry: &&Neighbor<S, P>| match (entry.is_lost(), newcomer.is_lost()) {
             (true, _) => too_many_lost,
             (false, true) if too_many_lost => false,
-            (false, _) => !protect(entry.id) && (!is_double || entry.id.duplicate_of().is_some()),
+            (false, _) => !protect(entry.id) && first.is_none_or(|first| replaces(entry, first)),
         };
         let distance = |entry: &Neighbor<S, P>| {
             let offset_m = entry.offset_at(own, now, self.ages.stale_after);

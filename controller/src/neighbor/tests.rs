@@ -239,6 +239,24 @@ fn lost_robots_block_their_places_until_they_are_received() {
 }
 
 #[test]
+fn the_second_owner_of_an_id_enters_a_full_table_if_it_is_nearer() {
+    let double = |id: u32, x: f32| Neighbor { id: RobotId(id).duplicate(), ..standing(id, x, at(0)) };
+    let after = |newcomers: &[Neighbor<f32>], is_needed: bool| {
+        let mut table = full::<4>(at(0));
+        for newcomer in newcomers {
+            let _ = table.put(*newcomer, Position::ORIGIN, at(0), |id| is_needed && id == newcomer.id);
+        }
+        table.iter().map(|known| known.id.duplicate_of().map_or(known.id.0 as i32, |id| -(id.0 as i32))).collect::<StdVec<_>>()
+    };
+    assert_eq!(after(&[double(3, 2.5)], false), [1, 2, 4, -3]);
+    assert_eq!(after(&[double(3, 3.5)], false), [1, 2, 3, 4], "its first owner is nearer");
+    assert_eq!(after(&[double(3, 2.5), double(4, 2.6)], false), [1, 2, 4, -3], "the other one is nearer");
+    assert_eq!(after(&[double(3, 2.5), double(4, 2.4)], false), [1, 2, 4, -4], "instead of the other one");
+    assert_eq!(after(&[double(9, 0.5)], false), [1, 2, 3, 4], "of none that is known");
+    assert_eq!(after(&[double(9, 0.5)], true), [1, 2, 3, -9], "of the own id");
+}
+
+#[test]
 fn robots_of_another_flock_are_strangers() {
     let own = standing(1, 1.0, at(0));
     let other = Neighbor { flock: 3, ..standing(2, 2.0, at(0)) };

@@ -1,15 +1,18 @@
 //! States of robots, told from robot to robot: a robot that is not heard is known all the same.
 //!
-//! Behind some beacons a robot tells the last known state of another one: first of a robot whose
-//! old state a third one has just told, then in turn of a silent robot and of any. A receiver
+//! Behind some beacons a robot tells the last known state of another one: first of a robot that it
+//! has just found, or whose old state a third one has told, then in turn of a silent robot and of
+//! any. A receiver
 //! stores a state that is newer than its own. It never stores one of itself, of an id that two
 //! robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown
 //! robot out of radio range, or at a place that the known robot cannot have reached.
 
+use super::audience::{Audience, Hearing};
 use super::{Link, Outputs, Protocol, ReceiveContext, report};
 use crate::agent::contact_loss::Listening;
 use crate::agent::duplicate_id::is_within;
 use crate::agent::io::Event;
+use crate::geom::Position;
 use crate::neighbor::{Neighbor, Put, Trace};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
@@ -17,11 +20,13 @@ use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, LostRobot, SequenceWindow, Wire};
 use serde::{Deserialize, Serialize};
 
-/// Beacons for each told state, while a robot is silent and while none is.
-const TELL_EVERY: [u8; 2] = [2, 4];
+/// Beacons for each told state: after the start, while a robot is silent, and while none is.
+const TELL_EVERY: [u8; 3] = [1, 2, 4];
 /// Unit of [`LostRobot::age_cs`]. Ages are rounded up, and a state is newer only if it is newer by
 /// more than this, so that no state gets younger on its way.
 const UNIT: Duration = Duration::from_millis(10);
+/// Age of a told state that shows whom its teller hears, in units of the age of a stale neighbour.
+const RECENT: i32 = 2;
 
 /// Which state to tell next.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -34,14 +39,21 @@ pub(super) struct Relay {
     silent: RobotId,
     /// The last robot in the turn of all.
     any: RobotId,
-    /// A robot of which another robot has told an old state.
-    outdated: RobotId,
+    /// A robot of which another robot has told an old state, or that was just heard for the first
+    /// time.
+    urgent: RobotId,
+    audience: Audience,
 }
 
 impl Relay {
     /// Each robot begins with those after itself, so that not all tell the same.
     pub(super) const fn new(own: RobotId) -> Self {
-        Self { beacons: 0, was_silent: false, silent: own, any: own, outdated: RobotId::NONE }
+        Self { beacons: 0, was_silent: false, silent: own, any: own, urgent: RobotId::NONE, audience: Audience::NEW }
+    }
+
+    /// Tells the state of this robot next, so that it knows that it is heard.
+    pub(super) const fn tell_next(&mut self, id: RobotId) {
+        self.urgent = id;
     }
 }
 
@@ -49,18 +61,20 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     /// Stores the state of a third robot if it is newer, and notes an old one. O(N).
     pub(super) fn hear_told(
         &mut self,
+        teller: RobotId,
         told: &LostRobot,
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
     ) {
         let id = told.id;
+        self.note_audience(teller, told, now, listener);
         let is_shared = self.table.get(id.duplicate(), now).known().is_some();
         if id == self.header.sender || id > listener.plausibility.last || !id.is_some() || is_shared {
             return;
         }
-        if self.relay.outdated == id {
-            self.relay.outdated = RobotId::NONE;
+        if self.relay.urgent == id {
+            self.relay.urgent = RobotId::NONE;
         }
         // An operator clears a place without a body.
         let is_alive = !told.is_lost && told.radius_mm > 0;
@@ -77,7 +91,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             && heard.since(known.heard) <= UNIT
         {
             if known.heard.since(heard) > self.table.ages().stale_after {
-                self.relay.outdated = id;
+                self.relay.urgent = id;
             }
             return;
         }
@@ -118,19 +132,62 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
     }
 
+    /// Notes whether `teller` hears the own robot: a recent state of it, or of a robot that is
+    /// farther from the teller.
+    fn note_audience(&mut self, teller: RobotId, told: &LostRobot, now: Instant, listener: &ReceiveContext<'_, S>) {
+        // The teller's states are as old as the latency when they arrive.
+        let recent = self.table.ages().stale_after.saturating_mul(RECENT).as_micros();
+        let recent = recent.saturating_add(now.since(listener.heard_at).as_micros());
+        let is_recent = UNIT.saturating_mul(told.age_cs.into()).as_micros() <= recent;
+        if told.is_lost || told.radius_mm == 0 || !is_recent {
+            return;
+        }
+        let own = listener.position;
+        if told.id == self.header.sender {
+            self.relay.audience.hears();
+        } else if let Some(teller) = self.table.get(teller, now).fresh() {
+            let distance = |place: Position| place.since::<S>(teller.position).length_key();
+            let place = self.image(Position::from_mm(told.position_mm), teller.position);
+            if distance(place) > distance(self.image(own, teller.position)) {
+                self.relay.audience.tells_of_farther();
+            }
+        }
+    }
+
+    /// How others hear the own robot.
+    pub(in crate::agent) fn hearing(&self) -> Hearing {
+        self.relay.audience.hearing(self.table.len())
+    }
+
+    /// Whether a robot that should be heard is not. States are as old as `latency` at least.
+    pub(in crate::agent) fn misses_robots(&self, now: Instant, latency: Duration) -> bool {
+        let longest = self.table.ages().stale_after.as_micros().saturating_add(latency.as_micros());
+        let is_silent = |known: &Neighbor<S, _>| known.age(now).is_none_or(|age| age.as_micros() > longest);
+        let misses = |known: &Neighbor<S, _>| match known.trace {
+            Trace::Heard => is_silent(known),
+            Trace::Told => true,
+            Trace::Leaving | Trace::Lost => false,
+        };
+        self.table.iter().any(misses)
+    }
+
     /// The next state to tell, if one is due. Call it for each beacon. O(N).
     pub(super) fn state_to_tell(&mut self, now: Instant) -> Option<LostRobot> {
         // Robots on a grid use no told states.
         if self.listening == Listening::NotStarted {
             return None;
         }
-        let outdated = core::mem::replace(&mut self.relay.outdated, RobotId::NONE);
-        let known = self.table.all().find(|known| known.id == outdated).copied();
+        let urgent = core::mem::replace(&mut self.relay.urgent, RobotId::NONE);
+        let known = self.table.all().find(|known| known.id == urgent).copied();
         let is_urgent = known.is_some() || self.table.all().any(|known| self.is_silent(known, now));
-        let [silent_every, every] = TELL_EVERY;
+        let [started_every, silent_every, every] = TELL_EVERY;
+        let every = match self.listening {
+            Listening::Over(_) => if is_urgent { silent_every } else { every },
+            _ => started_every,
+        };
         self.relay.beacons = self.relay.beacons.saturating_add(1);
-        if self.relay.beacons < if is_urgent { silent_every } else { every } {
-            self.relay.outdated = outdated;
+        if self.relay.beacons < every {
+            self.relay.urgent = urgent;
             return None;
         }
         let next = known.or_else(|| self.next_in_turn(now))?;

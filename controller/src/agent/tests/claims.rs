@@ -91,16 +91,17 @@ fn ids_that_no_robot_has_evict_no_neighbour() {
     assert_eq!(known, [1, 2, 3, 4, 5, 6]);
 }
 
-/// A sender that forges known ids fills the table with duplicates, which replace only each other.
+/// A sender that forges known ids fills the table with duplicates. In a full one they replace each
+/// other, and the first owner of an id.
 #[test]
-fn duplicate_ids_evict_no_neighbour() {
+fn duplicate_ids_evict_at_most_one_first_owner() {
     let mut robot = listener(PlausibilityLimits::ANY);
     let truth = |n| (11..=18).flat_map(move |id| frame(id, n, &beacon(1000 * id as i32, |_| ()))).collect::<Vec<u8>>();
     let _ = robot.step(step_number(0), &truth(0));
     let ghosts: Vec<u8> = (11..=18).flat_map(|id| frame(id, 2, &beacon(-3000 - 10 * id as i32, |_| ()))).collect();
     let _ = robot.step(step_number(1), &[truth(1), ghosts].concat());
     let known: Vec<_> = robot.agent.neighbors().iter().map(|known| known.id.0).collect();
-    assert_eq!(known, [11, 12, 13, 14, 15, 16, 17, 18]);
+    assert_eq!(known, [12, 13, 14, 15, 16, 17, 18, RobotId(11).duplicate().0]);
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn a_released_robot_is_passive_and_a_holding_robot_gives_way() {
         for n in 0..3 {
             let out = robot.step(step_number(n), &bytes(2, 0, n as u16, std::slice::from_ref(&crowding)));
             let mode = match &sent(&out)[..] {
-                [Frame { message: Message::Beacon(beacon), .. }] => beacon.mode,
+                [Frame { message: Message::Beacon(beacon), .. }, ..] => beacon.mode,
                 other => panic!("{other:?}"),
             };
             let expected = match wish {

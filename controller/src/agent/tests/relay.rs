@@ -1,8 +1,9 @@
 //! States that robots tell of each other.
 
-use super::plane::{Robot, STEP, body_at, in_plane, orca, step_number, waypoint};
+use super::plane::{Robot, STEP, body_at, in_plane, orca, place, step_number, waypoint};
 use super::*;
 use crate::agent::contact_loss::Listening;
+use crate::agent::link::Hearing;
 use crate::neighbor::{PlausibilityLimits, Trace};
 use crate::wire::{LostRobot, Message, decode};
 
@@ -147,6 +148,8 @@ fn states_are_told_in_turn_and_silent_robots_every_other_time() {
         let others = [near(), told(5, false, 1, 2000)];
         said.extend(pair.hear(n, &others).map(|told| (n, told.id.0, told.is_lost)));
     }
+    // Behind each beacon first: it has just started.
+    said.drain(..4);
     let times: Vec<i32> = said.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
     assert!(times.iter().all(|&time| time == 2), "{times:?}");
     let ids: Vec<u32> = said.iter().map(|told| told.1).collect();
@@ -162,20 +165,73 @@ fn states_are_told_in_turn_and_silent_robots_every_other_time() {
 #[test]
 fn a_robot_that_finds_others_late_listens_longer() {
     let contact_loss = ContactLossPolicy { listen: STEP.saturating_mul(3), ..ContactLossPolicy::DEFAULT };
-    let start = |found: &[(i32, Message)]| {
-        let config = AgentConfig { contact_loss, ..in_plane(1) };
-        let mut pair = Pair::new(&config);
+    // From some steps on robot 1 hears other robots; in one it hears of another one.
+    let start = |found: &[(i32, u32)], told_at: i32| {
+        let mut pair = Pair::new(&AgentConfig { contact_loss, ..in_plane(1) });
         let is_over = |n: &i32| {
-            let messages: Vec<_> = found.iter().filter(|(step, _)| step == n).map(|(_, said)| said.clone()).collect();
-            pair.hear(*n, &messages);
+            let ids = found.iter().filter(|(step, _)| step <= n).map(|(_, id)| *id);
+            let heard = ids.flat_map(|id| bytes(id, 0, *n as u16, &[body_at([-400 * id as i32, 0], [0, 0], Mode::Idle)]));
+            let told = (*n == told_at).then(|| bytes(2, 0, *n as u16, &[near(), told(3, false, 1, -2000)]));
+            let _ = pair.robot.step(step_number(*n), &heard.chain(told.into_iter().flatten()).collect::<Vec<_>>());
             matches!(pair.robot.agent.link.listening, Listening::Over(_))
         };
         (0..200).find(is_over).unwrap()
     };
-    assert_eq!(start(&[]), 3);
-    assert_eq!(start(&[(1, near())]), 4, "three steps after it has found one");
-    assert_eq!(start(&[(1, near()), (3, told(3, false, 1, -2000))]), 6);
-    assert_eq!(start(&[(2, near()), (3, near()), (4, told(3, false, 1, -2000))]), 8, "as long as the search took");
-    let all = [2, 4, 7, 13, 25, 49].map(|n| (n, told(10 + n as u32, false, 1, -2000)));
-    assert_eq!(start(&[&[(2, near())], &all[1..]].concat()), 50, "not for ever");
+    assert_eq!(start(&[], 200), 3);
+    assert_eq!(start(&[(1, 5)], 200), 4, "three steps after it has found one");
+    assert_eq!(start(&[(1, 5), (3, 6)], 200), 6);
+    assert_eq!(start(&[(2, 5), (4, 6)], 200), 8, "as long as the search took");
+    let all = [2, 4, 7, 13, 25, 49].map(|n| (n, 4 + n as u32));
+    assert_eq!(start(&all, 200), 50, "not for ever");
+    assert_eq!(start(&[], 2), 2 + 6 * 3, "six times as long after it has heard of one that it does not hear");
+}
+
+#[test]
+fn a_robot_that_others_do_not_hear_notices() {
+    // Robot 2, three metres to the west of robot 1, tells of one robot.
+    let hear = |pair: &mut Pair, times: i32, (id, age_cs, x_mm): (u32, u16, i32)| {
+        let mut speed = 0.0;
+        for _ in 0..times {
+            // It starts, whatever it does.
+            (pair.robot.at_m, pair.robot.velocity_mps) = ([0.0; 2], [0.0; 2]);
+            pair.hear(pair.next, &[near(), told(id, false, age_cs, x_mm)]);
+            speed = pair.robot.speed();
+        }
+        (pair.robot.agent.link.hearing(), speed > 0.0)
+    };
+    let start = || {
+        let mut pair = Pair::new(&in_plane(1));
+        let _ = pair.robot.agent.order(&WaypointOrder::first(place(0, 90_000)));
+        pair
+    };
+    let mut pair = start();
+    assert_eq!(hear(&mut pair, 40, (3, 1, -1500)), (Hearing::Heard, true), "it may have forgotten the own robot");
+    let mut pair = start();
+    let farther = (3, 1, 3000);
+    assert_eq!(hear(&mut pair, 6, farther), (Hearing::Unclear, false), "it listens");
+    assert_eq!(hear(&mut pair, 1, farther), (Hearing::Never, true), "three times for each of two robots");
+    assert_eq!(hear(&mut pair, 1, (1, 200, 0)), (Hearing::Never, true), "heard long ago");
+    assert_eq!(hear(&mut pair, 1, (1, 2, 0)), (Hearing::Heard, true));
+    assert_eq!(hear(&mut pair, 6, farther), (Hearing::Heard, true));
+    assert_eq!(hear(&mut pair, 1, farther), (Hearing::NoLonger, false));
+    assert_eq!(hear(&mut pair, 1, (1, 2, 0)), (Hearing::Heard, true));
+}
+
+#[test]
+fn a_robot_listens_until_others_tell_of_it() {
+    let contact_loss = ContactLossPolicy { listen: STEP.saturating_mul(3), ..ContactLossPolicy::DEFAULT };
+    let start = |told_at: i32| {
+        let mut pair = Pair::new(&AgentConfig { contact_loss, ..in_plane(1) });
+        let is_over = |n: &i32| {
+            let third = bytes(3, 0, *n as u16, &[body_at([1000, 0], [0, 0], Mode::Idle)]);
+            let id = if *n == told_at { 1 } else { 3 };
+            let second = bytes(2, 0, 8 * *n as u16, &[near(), told(id, false, 1, 1000)]);
+            let _ = pair.robot.step(step_number(*n), &[third, second].concat());
+            matches!(pair.robot.agent.link.listening, Listening::Over(_))
+        };
+        (0..200).find(is_over).unwrap()
+    };
+    assert_eq!(start(0), 3, "no doubt");
+    assert_eq!(start(5), 5, "told of");
+    assert_eq!(start(200), 6, "it is not heard at all");
 }

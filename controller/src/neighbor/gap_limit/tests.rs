@@ -38,6 +38,7 @@ fn still<S: Scalar>(body: &Body<S>, own: Position, now: Instant) -> GapLimit<'_,
         may_be_alone: false,
         stands_after: STANDS_AFTER,
         is_agreed: false,
+        is_heard: true,
         downwash: S::ONE,
     }
 }

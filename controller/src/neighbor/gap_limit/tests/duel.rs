@@ -52,6 +52,7 @@ impl Rules {
             // No silent robot counts as standing: all of them may move.
             stands_after: Duration::from_millis(2_000_000),
             is_agreed: false,
+            is_heard: true,
             downwash: 1.0,
         }
     }
