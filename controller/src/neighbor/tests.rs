@@ -246,7 +246,10 @@ fn the_second_owner_of_an_id_enters_a_full_table_if_it_is_nearer() {
         for newcomer in newcomers {
             let _ = table.put(*newcomer, Position::ORIGIN, at(0), |id| is_needed && id == newcomer.id);
         }
-        table.iter().map(|known| known.id.duplicate_of().map_or(known.id.0 as i32, |id| -(id.0 as i32))).collect::<StdVec<_>>()
+        table
+            .iter()
+            .map(|known| known.id.duplicate_of().map_or(known.id.0 as i32, |id| -(id.0 as i32)))
+            .collect::<StdVec<_>>()
     };
     assert_eq!(after(&[double(3, 2.5)], false), [1, 2, 4, -3]);
     assert_eq!(after(&[double(3, 3.5)], false), [1, 2, 3, 4], "its first owner is nearer");

@@ -181,8 +181,9 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let known = self.table.all().find(|known| known.id == urgent).copied();
         let is_urgent = known.is_some() || self.table.all().any(|known| self.is_silent(known, now));
         let [started_every, silent_every, every] = TELL_EVERY;
-        let every = match self.listening {
-            Listening::Over(_) => if is_urgent { silent_every } else { every },
+        let every = match (self.listening, is_urgent) {
+            (Listening::Over(_), true) => silent_every,
+            (Listening::Over(_), false) => every,
             _ => started_every,
         };
         self.relay.beacons = self.relay.beacons.saturating_add(1);

@@ -170,7 +170,8 @@ fn a_robot_that_finds_others_late_listens_longer() {
         let mut pair = Pair::new(&AgentConfig { contact_loss, ..in_plane(1) });
         let is_over = |n: &i32| {
             let ids = found.iter().filter(|(step, _)| step <= n).map(|(_, id)| *id);
-            let heard = ids.flat_map(|id| bytes(id, 0, *n as u16, &[body_at([-400 * id as i32, 0], [0, 0], Mode::Idle)]));
+            let heard =
+                ids.flat_map(|id| bytes(id, 0, *n as u16, &[body_at([-400 * id as i32, 0], [0, 0], Mode::Idle)]));
             let told = (*n == told_at).then(|| bytes(2, 0, *n as u16, &[near(), told(3, false, 1, -2000)]));
             let _ = pair.robot.step(step_number(*n), &heard.chain(told.into_iter().flatten()).collect::<Vec<_>>());
             matches!(pair.robot.agent.link.listening, Listening::Over(_))
