@@ -223,9 +223,9 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     ///
     /// A [duplicate id](RobotId::duplicate) that is not protected only replaces another duplicate,
     /// or the first owner of its id while duplicates fill less than an eighth of the table. So
-    /// forged ids cannot crowd out other robots. The smaller id wins a tie; an unknown distance (NaN) is the
-    /// largest. Distances are extrapolated, so a burst of beacons gives the same content in any
-    /// order, unless more than `N` senders are protected.
+    /// forged ids cannot crowd out other robots. The smaller id wins a tie; an unknown distance
+    /// (NaN) is the largest. Distances are extrapolated, so a burst of beacons gives the same
+    /// content in any order, unless more than `N` senders are protected.
     pub fn put(
         &mut self,
         newcomer: Neighbor<S, P>,
