@@ -159,8 +159,12 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         self.relay.audience.hearing(self.table.len())
     }
 
-    /// Whether a robot that should be heard is not. States are as old as `latency` at least.
+    /// Whether a robot that listens does not hear one that it should. States are as old as
+    /// `latency` at least. O(N).
     pub(in crate::agent) fn misses_robots(&self, now: Instant, latency: Duration) -> bool {
+        if matches!(self.listening, Listening::Over(_)) {
+            return false;
+        }
         let longest = self.table.ages().stale_after.as_micros().saturating_add(latency.as_micros());
         let is_silent = |known: &Neighbor<S, _>| known.age(now).is_none_or(|age| age.as_micros() > longest);
         let misses = |known: &Neighbor<S, _>| match known.trace {
