@@ -19,7 +19,6 @@ use serde::{Deserialize, Serialize};
 /// | all lost, all left radio range | reports [`ContactLost`], moves freely |
 /// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
 /// | just started | stands and [listens](Self::listen) |
-/// | others do not tell of this robot any more | stands until one does |
 /// | others never told of this robot | goes on, and expects that no robot gives way |
 /// | never any since power-on | moves freely, or stands if it [expects others] |
 ///

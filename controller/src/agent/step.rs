@@ -355,7 +355,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         if let Some(inflation) = inflation {
             let doubts = hearing == Hearing::Unclear;
             let listens = link.listening.passes(now, config.contact_loss.listen, (doubts, misses));
-            if listens || hearing == Hearing::NoLonger {
+            if listens {
                 out.wait = (wish_mps != Vec3::ZERO).then_some(Wait::Radio);
                 wish_mps = Vec3::ZERO;
             }

@@ -24,8 +24,6 @@ pub(in crate::agent) enum Hearing {
     Unclear,
     /// No robot has ever told of it: none knows that it is there.
     Never,
-    /// No robot tells of it any more: they expect it near the place where it was heard last.
-    NoLonger,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -51,11 +49,11 @@ impl Audience {
     /// The judgement of a robot that knows `known` others.
     pub(super) fn hearing(self, known: usize) -> Hearing {
         let most = known.max(LEAST_KNOWN).saturating_mul(DOUBTS).min(MOST);
-        match (usize::from(self.doubts) > most, self.was_heard) {
-            (true, true) => Hearing::NoLonger,
-            (true, false) => Hearing::Never,
-            (false, false) if self.doubts > 0 => Hearing::Unclear,
-            (false, _) => Hearing::Heard,
+        match usize::from(self.doubts) {
+            0 => Hearing::Heard,
+            _ if self.was_heard => Hearing::Heard,
+            doubts if doubts > most => Hearing::Never,
+            _ => Hearing::Unclear,
         }
     }
 }

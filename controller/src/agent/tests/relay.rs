@@ -213,9 +213,7 @@ fn a_robot_that_others_do_not_hear_notices() {
     assert_eq!(hear(&mut pair, 1, farther), (Hearing::Never, true), "three times for each of two robots");
     assert_eq!(hear(&mut pair, 1, (1, 200, 0)), (Hearing::Never, true), "heard long ago");
     assert_eq!(hear(&mut pair, 1, (1, 2, 0)), (Hearing::Heard, true));
-    assert_eq!(hear(&mut pair, 6, farther), (Hearing::Heard, true));
-    assert_eq!(hear(&mut pair, 1, farther), (Hearing::NoLonger, false));
-    assert_eq!(hear(&mut pair, 1, (1, 2, 0)), (Hearing::Heard, true));
+    assert_eq!(hear(&mut pair, 30, farther), (Hearing::Heard, true), "it was heard once");
 }
 
 #[test]
