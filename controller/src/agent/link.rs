@@ -283,7 +283,6 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             let mut window = SequenceWindow::new();
             let _ = window.check(header);
             self.found(id, window, put, now);
-            self.relay.tell_next(id);
             report(out, id.duplicate_of().map_or(Event::NeighborFound(id), Event::DuplicateId));
         }
     }
@@ -294,6 +293,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let _ = self.windows.push((id, window));
         // In a full table others are found for ever.
         if put == Put::Inserted {
+            self.relay.tell_next(id);
             self.listening.note(now);
         }
     }

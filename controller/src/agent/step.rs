@@ -333,7 +333,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         // In the step after such a mode others may still take the whole gap.
         let is_trusted = !before.gives_way() && self.safety.inflation().is_some();
         if !self.mode.gives_way() || is_trusted {
-            let misses = self.link.misses_robots(now, self.config.latency);
+            let misses = self.link.misses_robots();
             let _ = self.link.listening.passes(now, self.config.contact_loss.listen, (false, misses));
             self.link.table.forget_gaps();
             self.commanded_mps = Vec3::ZERO;
@@ -348,14 +348,13 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let (body, steered) = (self.body(inputs), self.steered(inputs).position);
         let Self { link, safety, config, .. } = self;
         let elapsed = link.listening.elapsed(now, config.tick);
-        let (hearing, misses) = (link.hearing(), link.misses_robots(now, config.latency));
+        let (hearing, misses) = (link.hearing(), link.misses_robots());
         let is_heard = hearing != Hearing::Never;
         let (table, inflation) = (&mut link.table, safety.inflation());
         let mut wish_mps = wish_mps;
         if let Some(inflation) = inflation {
             let doubts = hearing == Hearing::Unclear;
-            let listens = link.listening.passes(now, config.contact_loss.listen, (doubts, misses));
-            if listens {
+            if link.listening.passes(now, config.contact_loss.listen, (doubts, misses)) {
                 out.wait = (wish_mps != Vec3::ZERO).then_some(Wait::Radio);
                 wish_mps = Vec3::ZERO;
             }

@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 const DOUBTS: usize = 3;
 /// Robots that are known at least, for this bound.
 const LEAST_KNOWN: usize = 2;
-
 /// The bound of large tables.
 const MOST: usize = 254;
 
@@ -28,7 +27,7 @@ pub(in crate::agent) enum Hearing {
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Audience {
-    /// Told states of robots that are farther from the teller, since the last one of the own robot.
+    /// Told states of robots that are farther from the teller.
     doubts: u8,
     was_heard: bool,
 }
@@ -50,8 +49,7 @@ impl Audience {
     pub(super) fn hearing(self, known: usize) -> Hearing {
         let most = known.max(LEAST_KNOWN).saturating_mul(DOUBTS).min(MOST);
         match usize::from(self.doubts) {
-            0 => Hearing::Heard,
-            _ if self.was_heard => Hearing::Heard,
+            doubts if self.was_heard || doubts == 0 => Hearing::Heard,
             doubts if doubts > most => Hearing::Never,
             _ => Hearing::Unclear,
         }

@@ -2,10 +2,9 @@
 //!
 //! Behind some beacons a robot tells the last known state of another one: first of a robot that it
 //! has just found, or whose old state a third one has told, then in turn of a silent robot and of
-//! any. A receiver
-//! stores a state that is newer than its own. It never stores one of itself, of an id that two
-//! robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown
-//! robot out of radio range, or at a place that the known robot cannot have reached.
+//! any. A receiver stores a state that is newer than its own. It never stores one of itself, of an
+//! id that two robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an
+//! unknown robot out of radio range, or at a place that the known robot cannot have reached.
 
 use super::audience::{Audience, Hearing};
 use super::{Link, Outputs, Protocol, ReceiveContext, report};
@@ -159,20 +158,9 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         self.relay.audience.hearing(self.table.len())
     }
 
-    /// Whether a robot that listens does not hear one that it should. States are as old as
-    /// `latency` at least. O(N).
-    pub(in crate::agent) fn misses_robots(&self, now: Instant, latency: Duration) -> bool {
-        if matches!(self.listening, Listening::Over(_)) {
-            return false;
-        }
-        let longest = self.table.ages().stale_after.as_micros().saturating_add(latency.as_micros());
-        let is_silent = |known: &Neighbor<S, _>| known.age(now).is_none_or(|age| age.as_micros() > longest);
-        let misses = |known: &Neighbor<S, _>| match known.trace {
-            Trace::Heard => is_silent(known),
-            Trace::Told => true,
-            Trace::Leaving | Trace::Lost => false,
-        };
-        self.table.iter().any(misses)
+    /// Whether a robot is known from others only, although it is near enough to be heard.
+    pub(in crate::agent) fn misses_robots(&self) -> bool {
+        self.table.iter().any(|known| known.trace == Trace::Told)
     }
 
     /// The next state to tell, if one is due. Call it for each beacon. O(N).
