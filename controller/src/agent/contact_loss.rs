@@ -127,8 +127,6 @@ impl ContactState {
 
 /// Time after which a robot that still finds others starts to move.
 const LONGEST: Duration = Duration::from_millis(5000);
-/// How much longer a robot listens at most while it doubts that others hear it.
-const DOUBTING: i32 = 2;
 /// How much longer a robot listens while links fade: one that it does not hear yet may be near by.
 const MISSING: i32 = 6;
 
@@ -146,10 +144,10 @@ pub(super) enum Listening {
 }
 
 impl Listening {
-    /// Updates the state; returns whether the robot still listens: until it has found no robot for
-    /// `listen`, for [`MISSING`] times that while it `misses` robots that it should hear, and for
-    /// as long as it took to find the last one; and for [`DOUBTING`] times `listen` while it
-    /// `doubts` that others hear it. Call it in each step.
+    /// Updates the state; returns whether the robot still listens: while it `doubts` that others
+    /// hear it, until it has found no robot for `listen`, for [`MISSING`] times that while it
+    /// `misses` robots that it should hear, and for as long as it took to find the last one. Call
+    /// it in each step.
     pub(super) fn passes(&mut self, now: Instant, listen: Duration, (doubts, misses): (bool, bool)) -> bool {
         let listen = if misses { listen.saturating_mul(MISSING) } else { listen };
         let (start, found) = match *self {
@@ -161,7 +159,6 @@ impl Listening {
             }
         };
         let has_time = now.since(start) < LONGEST.max(listen);
-        let doubts = doubts && now.since(start) < listen.saturating_mul(DOUBTING);
         let lasts = has_time && (doubts || now.since(found) < found.since(start).max(listen));
         *self = if lasts { Self::Since { start, found } } else { Self::Over(now) };
         lasts
