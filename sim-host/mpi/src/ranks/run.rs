@@ -202,9 +202,9 @@ impl<'a> Rank<'a> {
         let reach_m = engine.radio.range_m();
         self.wire.choose(|one, other| one.is_beside(other, reach_m));
         let engine = &self.engine;
-        let packets = self
-            .wire
-            .halo(|region| encode(&engine.radio.sent(|from_m| region.is_near(from_m, reach_m)).collect::<Vec<_>>()))?;
+        let packets = self.wire.halo(|region| {
+            encode(&engine.radio.sent(|from_m| region.is_near(flat(from_m), reach_m)).collect::<Vec<_>>())
+        })?;
         let mut elsewhere = Vec::new();
         for (rank, bytes) in packets {
             elsewhere.extend(decode::<Vec<Sent>>(rank, "packets", &bytes)?);
@@ -295,15 +295,14 @@ impl<'a> Rank<'a> {
         let engine = &self.engine;
         (0..engine.here.len()).map(|index| {
             let motion = engine.ground.motion(index, engine.tick);
-            let [x, y, _] = motion.position_m;
-            ([x, y], motion.cell)
+            (flat(motion.position_m), motion.cell)
         })
     }
 
     pub(super) fn tell_region(&mut self) -> Result<(), RankError> {
         let engine = &self.engine;
         let intruders = engine.view().intruders;
-        let own = Region::new(self.places(), engine.others.iter().map(|other| other.place_m(intruders)));
+        let own = Region::new(self.places(), engine.others.iter().map(|other| other.place_m(intruders)).map(flat));
         let all = self.wire.gather(encode(&own))?;
         let all = all.iter().enumerate().map(|(rank, bytes)| decode(rank, "a region", bytes));
         self.wire.regions = all.collect::<Result<_, _>>()?;
@@ -418,4 +417,9 @@ impl<'a> Rank<'a> {
         outcome.waits.retain(|count| count.robots > 0);
         Ok(Ended { outcome, traffic: all })
     }
+}
+
+/// Regions are bounds in the plane: what they leave out is farther away in space as well.
+const fn flat([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
 }

@@ -105,7 +105,7 @@ impl Rank<'_> {
         engine.ages.push(CommandAge::default());
         engine.statuses.push(Status::before(&robot));
         engine.chains.push(StateHash::new(robot.id));
-        engine.positions_m.insert(index, [0.0; 2]);
+        engine.positions_m.insert(index, [0.0; 3]);
         engine.arrivals.admit();
         engine.waits.admit();
         engine.radio.admit(index, robot.id);

@@ -149,8 +149,9 @@ impl Transmitter for Attacker {
         self.id
     }
 
-    fn place_m(&self, _: &[Disc]) -> [f64; 2] {
-        self.attack.place_m
+    fn place_m(&self, _: &[Disc]) -> [f64; 3] {
+        let [x, y] = self.attack.place_m;
+        [x, y, 0.0]
     }
 
     fn act(&mut self, tick: u32, inbox: &[u8], _: &[Disc]) {

@@ -155,8 +155,7 @@ impl Engine {
             .enumerate()
             .with_min_len(BATCH)
             .map_init(scratch, |scratch, (index, (computer, (command, age), status, position_m))| {
-                let [x, y, _] = moment.ground.motion(index, tick).position_m;
-                *position_m = [x, y];
+                *position_m = moment.ground.motion(index, tick).position_m;
                 computer.outbox.clear();
                 computer.events.clear();
                 if tick < computer.down_until {

@@ -33,8 +33,8 @@ impl Transmitter for Intruder {
         self.id
     }
 
-    fn place_m(&self, intruders: &[Disc]) -> [f64; 2] {
-        self.disc(intruders).map_or([0.0; 2], |disc| [disc.position_m[0], disc.position_m[1]])
+    fn place_m(&self, intruders: &[Disc]) -> [f64; 3] {
+        self.disc(intruders).map_or([0.0; 3], |disc| disc.position_m)
     }
 
     /// Prepares a beacon with position and velocity, of a robot that does not give way.

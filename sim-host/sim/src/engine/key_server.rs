@@ -61,8 +61,9 @@ impl Transmitter for KeyServer {
         RobotId(u32::MAX - 1_000_000)
     }
 
-    fn place_m(&self, _: &[Disc]) -> [f64; 2] {
-        self.place_m
+    fn place_m(&self, _: &[Disc]) -> [f64; 3] {
+        let [x, y] = self.place_m;
+        [x, y, 0.0]
     }
 
     fn outbox(&self) -> &[u8] {

@@ -141,7 +141,7 @@ pub struct Engine {
     #[doc(hidden)]
     pub chains: Vec<StateHash>,
     /// Positions of the robots and the other transmitters, in this order.
-    pub positions_m: Vec<[f64; 2]>,
+    pub positions_m: Vec<[f64; 3]>,
     /// Transmitters outside the swarm.
     pub others: Vec<Box<dyn Transmitter>>,
     /// Keys of robots on other ranks that attackers take over in this tick.
@@ -182,7 +182,7 @@ impl Engine {
         let others = if has_others { transmitters(scenario, intruders) } else { Vec::new() };
         let ids = here.iter().map(|&number| robots[number as usize].id);
         let ids = ids.chain(others.iter().map(|other| other.id()));
-        let mut positions_m = vec![[0.0; 2]; here.len()];
+        let mut positions_m = vec![[0.0; 3]; here.len()];
         positions_m.extend(others.iter().map(|other| other.place_m(intruders)));
         let mut engine = Self {
             roster: Roster::new(scenario, agents),

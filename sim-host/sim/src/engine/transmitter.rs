@@ -11,7 +11,7 @@ pub trait Transmitter: Send + Sync {
     fn id(&self) -> RobotId;
 
     /// Position of its antenna, metres; `intruders` are all foreign bodies.
-    fn place_m(&self, intruders: &[Disc]) -> [f64; 2];
+    fn place_m(&self, intruders: &[Disc]) -> [f64; 3];
 
     /// Receives frames and prepares its own.
     fn act(&mut self, tick: u32, inbox: &[u8], intruders: &[Disc]);

@@ -10,7 +10,7 @@ pub struct Sent {
     pub(crate) sender: RobotId,
     /// Index among the sender's packets of this tick, throttled packets included.
     pub(crate) number: u32,
-    pub(crate) from_m: [f64; 2],
+    pub(crate) from_m: [f64; 3],
     pub(crate) bytes: Vec<u8>,
 }
 
@@ -19,7 +19,7 @@ impl Radio {
     pub(crate) fn send<'a>(
         &mut self,
         tick: u32,
-        positions_m: &[[f64; 2]],
+        positions_m: &[[f64; 3]],
         outbox: impl Fn(usize) -> &'a [u8],
     ) -> Counts {
         let positions_m = &positions_m[..self.receivers.len()];
@@ -29,7 +29,7 @@ impl Radio {
     }
 
     /// Packets of this rank that other ranks need, selected by their position.
-    pub fn sent(&self, is_heard: impl Fn([f64; 2]) -> bool) -> impl Iterator<Item = Sent> {
+    pub fn sent(&self, is_heard: impl Fn([f64; 3]) -> bool) -> impl Iterator<Item = Sent> {
         self.medium.sent().filter(move |(packet, _)| is_heard(packet.from_m)).map(|(packet, bytes)| Sent {
             sender: packet.sender,
             number: packet.number,
@@ -39,7 +39,7 @@ impl Radio {
     }
 
     /// Second half of [`Radio::carry`]: delivers packets of this rank and from `elsewhere`.
-    pub fn receive(&mut self, tick: u32, positions_m: &[[f64; 2]], elsewhere: &[Sent], sent: Counts) -> Counts {
+    pub fn receive(&mut self, tick: u32, positions_m: &[[f64; 3]], elsewhere: &[Sent], sent: Counts) -> Counts {
         if !self.receivers.is_empty() {
             self.medium.add(tick, elsewhere);
         }

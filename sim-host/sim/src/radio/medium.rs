@@ -18,7 +18,7 @@ pub(super) struct Packet {
     pub(super) sender: RobotId,
     pub(super) number: u32,
     pub(super) key: u64,
-    pub(super) from_m: [f64; 2],
+    pub(super) from_m: [f64; 3],
     /// Location of its bytes: index of the [`Part`], start and length.
     part: u32,
     start: u32,
@@ -160,7 +160,7 @@ impl Medium {
         &mut self,
         tick: u32,
         ids: impl Fn(usize) -> RobotId + Sync,
-        positions_m: &[[f64; 2]],
+        positions_m: &[[f64; 3]],
         outboxes: &[&[u8]],
     ) -> Counts {
         self.lattice = Lattice::over(positions_m, self.range_m);
@@ -255,7 +255,7 @@ impl Medium {
     }
 
     /// Packets in range of a position, sorted by sender and number, without those of `own`.
-    pub(super) fn heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
+    pub(super) fn heard_at(&self, at_m: [f64; 3], own: RobotId, heard: &mut Vec<u32>) {
         heard.clear();
         self.add_heard_at(at_m, own, heard);
         if let Some(torus_m) = self.torus_m {
@@ -270,7 +270,7 @@ impl Medium {
         heard.dedup();
     }
 
-    fn add_heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
+    fn add_heard_at(&self, at_m: [f64; 3], own: RobotId, heard: &mut Vec<u32>) {
         let reach = self.range_m * self.range_m;
         for cells in self.lattice.around(at_m) {
             let begin = match cells.start {
@@ -280,8 +280,8 @@ impl Medium {
             let end = self.ends[cells.end - 1];
             for at in begin..end {
                 let packet = &self.packets[at as usize];
-                let [dx, dy] = [packet.from_m[0] - at_m[0], packet.from_m[1] - at_m[1]];
-                if packet.sender != own && dx * dx + dy * dy <= reach {
+                let [dx, dy, dz] = [0, 1, 2].map(|axis| packet.from_m[axis] - at_m[axis]);
+                if packet.sender != own && dx * dx + dy * dy + dz * dz <= reach {
                     heard.push(at);
                 }
             }
@@ -309,7 +309,7 @@ impl Medium {
 
 /// Estimated number of ordered pairs of senders and receivers in range, for robots at these
 /// positions. O(n).
-pub(super) fn pairs_in_range(positions_m: &[[f64; 2]], range_m: f64) -> f64 {
+pub(super) fn pairs_in_range(positions_m: &[[f64; 3]], range_m: f64) -> f64 {
     let lattice = Lattice::over(positions_m, range_m);
     let cells = lattice.columns * lattice.rows;
     let mut counts = vec![0.0_f64; cells];
@@ -318,7 +318,7 @@ pub(super) fn pairs_in_range(positions_m: &[[f64; 2]], range_m: f64) -> f64 {
     }
     let block = 9.0 * lattice.side_m * lattice.side_m;
     let share = if cells == 1 { 1.0 } else { (core::f64::consts::PI * range_m * range_m / block).min(1.0) };
-    let near = |at_m: &[f64; 2]| lattice.around(*at_m).map(|cells| counts[cells].iter().sum::<f64>()).sum::<f64>();
+    let near = |at_m: &[f64; 3]| lattice.around(*at_m).map(|cells| counts[cells].iter().sum::<f64>()).sum::<f64>();
     positions_m.iter().map(|at_m| near(at_m) * share).sum()
 }
 
@@ -332,14 +332,14 @@ fn packets<'a>(wire: &AnyWire, outbox: &'a [u8]) -> impl Iterator<Item = &'a [u8
     })
 }
 
-/// Images of a position on a torus, shifted by at most one period along each axis.
-fn images([x, y]: [f64; 2], [width, height]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+/// Images of a position on a torus, shifted by at most one period along each of its two axes.
+fn images([x, y, z]: [f64; 3], [width, height]: [f64; 2]) -> impl Iterator<Item = [f64; 3]> {
     let turns = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [i, j])).filter(|turns| *turns != [0, 0]);
-    turns.map(move |[i, j]| [x + f64::from(i) * width, y + f64::from(j) * height])
+    turns.map(move |[i, j]| [x + f64::from(i) * width, y + f64::from(j) * height, z])
 }
 
 impl Lattice {
-    fn over(positions_m: &[[f64; 2]], range_m: f64) -> Self {
+    fn over(positions_m: &[[f64; 3]], range_m: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for position in positions_m {
             for axis in 0..2 {
@@ -358,7 +358,7 @@ impl Lattice {
         Self { corner_m: low, side_m, columns: count(extent[0]), rows: count(extent[1]) }
     }
 
-    fn is_within(&self, at_m: [f64; 2], reach_m: f64) -> bool {
+    fn is_within(&self, at_m: [f64; 3], reach_m: f64) -> bool {
         let counts = [self.columns, self.rows];
         (0..2).all(|axis| {
             let off_m = at_m[axis] - self.corner_m[axis];
@@ -366,18 +366,18 @@ impl Lattice {
         })
     }
 
-    fn column_and_row(&self, at_m: [f64; 2]) -> (usize, usize) {
+    fn column_and_row(&self, at_m: [f64; 3]) -> (usize, usize) {
         let index = |axis: usize| ((at_m[axis] - self.corner_m[axis]) / self.side_m) as usize;
         (index(0).min(self.columns - 1), index(1).min(self.rows - 1))
     }
 
-    fn cell(&self, at_m: [f64; 2]) -> usize {
+    fn cell(&self, at_m: [f64; 3]) -> usize {
         let (column, row) = self.column_and_row(at_m);
         row * self.columns + column
     }
 
     /// The cells around a position, as up to three ranges of consecutive cells.
-    fn around(&self, at_m: [f64; 2]) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
+    fn around(&self, at_m: [f64; 3]) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
         let (column, row) = self.column_and_row(at_m);
         let columns = self.columns;
         let last_row = (row + 1).min(self.rows - 1);

@@ -156,7 +156,7 @@ const PACKET_BYTES: f64 = 40.0;
 /// Estimated memory of the radio of robots at these positions, bytes, if each sends `per_tick`
 /// packets in a tick and uses received ones when it sends. O(n).
 #[must_use]
-pub fn expected_bytes(params: &RadioParams, tick_us: u32, per_tick: f64, positions_m: &[[f64; 2]]) -> u64 {
+pub fn expected_bytes(params: &RadioParams, tick_us: u32, per_tick: f64, positions_m: &[[f64; 3]]) -> u64 {
     let fates = Fates::new(params, 0, tick_us);
     let held = fates.held_ticks() * late::HELD_BYTES as f64 * per_tick;
     let sent = f64::from(fates.longest_ticks().unwrap_or(0)) * per_tick * positions_m.len() as f64 * PACKET_BYTES;
@@ -241,12 +241,12 @@ impl Radio {
     ///
     /// # Panics
     /// If there are fewer positions than robots.
-    pub fn carry<'a>(&mut self, tick: u32, positions_m: &[[f64; 2]], outbox: impl Fn(usize) -> &'a [u8]) -> Counts {
+    pub fn carry<'a>(&mut self, tick: u32, positions_m: &[[f64; 3]], outbox: impl Fn(usize) -> &'a [u8]) -> Counts {
         let sent = self.send(tick, positions_m, outbox);
         self.deliver(tick, positions_m, sent)
     }
 
-    fn deliver(&mut self, tick: u32, positions_m: &[[f64; 2]], sent: Counts) -> Counts {
+    fn deliver(&mut self, tick: u32, positions_m: &[[f64; 3]], sent: Counts) -> Counts {
         let positions_m = &positions_m[..self.receivers.len()];
         if let Some(ticks) = self.fates.longest_ticks() {
             self.air.keep(tick, &self.medium, ticks);

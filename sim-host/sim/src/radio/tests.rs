@@ -9,8 +9,8 @@ fn radio(params: RadioParams, robots: u32) -> Radio {
     Radio::new(&params, 11, TICK_US, (1..=robots).map(RobotId))
 }
 
-fn line(robots: u32) -> Vec<[f64; 2]> {
-    (0..robots).map(|i| [f64::from(i), 0.0]).collect()
+fn line(robots: u32) -> Vec<[f64; 3]> {
+    (0..robots).map(|i| [f64::from(i), 0.0, 0.0]).collect()
 }
 
 fn one_way(params: RadioParams, ticks: u32) -> (Radio, Vec<Vec<u8>>) {
@@ -55,7 +55,7 @@ fn range_is_inclusive_and_may_be_infinite() {
 fn coincident_robots_and_an_empty_swarm_are_valid() {
     let params = RadioParams { range_m: 0.0, ..RadioParams::default() };
     let mut crowd = radio(params, 5);
-    let counts = crowd.carry(0, &[[2.0, 3.0]; 5], |_| &FRAME);
+    let counts = crowd.carry(0, &[[2.0, 3.0, 0.0]; 5], |_| &FRAME);
     assert_eq!(counts.delivered, 20);
     let mut empty = radio(RadioParams::default(), 0);
     assert_eq!(empty.carry(0, &[], |_| &FRAME), Counts::default());
@@ -289,7 +289,7 @@ proptest! {
     #[test]
     fn fates_depend_neither_on_threads_nor_on_the_order_of_robots(seed: u64, places in prop::collection::vec((0.0..20.0, 0.0..20.0), 1..80)) {
         let ids: Vec<_> = (1..).map(RobotId).take(places.len()).collect();
-        let positions: Vec<_> = places.iter().map(|&(x, y)| [x, y]).collect();
+        let positions: Vec<_> = places.iter().map(|&(x, y)| [x, y, 0.0]).collect();
         let frames: Vec<_> = ids.iter().map(|id| [id.0 as u8, 9, 0, 3, id.0 as u8, 0]).collect();
         let run = |threads: usize, reversed: bool| {
             let order = |list: Vec<usize>| -> Vec<usize> {
@@ -318,17 +318,17 @@ proptest! {
     #[test]
     fn exactly_the_robots_in_range_are_received(
         range_m in 0.0..30.0_f64,
-        places in prop::collection::vec((-50.0..50.0, -5.0..5.0), 1..60),
+        places in prop::collection::vec((-50.0..50.0, -5.0..5.0, -30.0..30.0), 1..60),
     ) {
-        let positions: Vec<_> = places.iter().map(|&(x, y)| [x, y]).collect();
+        let positions: Vec<_> = places.iter().map(|&(x, y, z)| [x, y, z]).collect();
         let frames: Vec<_> = (1..=places.len()).map(|i| [i as u8, 0]).collect();
         let params = RadioParams { range_m, ..RadioParams::default() };
         let mut radio = Radio::new(&params, 0, TICK_US, (1..).map(RobotId).take(places.len()));
         radio.carry(0, &positions, |i| &frames[i]);
         for (i, a) in positions.iter().enumerate() {
-            let near = |b: &[f64; 2]| {
-                let [dx, dy] = [a[0] - b[0], a[1] - b[1]];
-                dx * dx + dy * dy <= range_m * range_m
+            let near = |b: &[f64; 3]| {
+                let [dx, dy, dz] = [0, 1, 2].map(|axis| a[axis] - b[axis]);
+                dx * dx + dy * dy + dz * dz <= range_m * range_m
             };
             let expected: Vec<u8> = (0..positions.len())
                 .filter(|&j| j != i && near(&positions[j]))
@@ -389,14 +389,14 @@ proptest! {
         places in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 1..60),
     ) {
         let sides = [sides.0, sides.1];
-        let positions: Vec<_> = places.iter().map(|&(x, y)| [x * sides[0], y * sides[1]]).collect();
+        let positions: Vec<_> = places.iter().map(|&(x, y)| [x * sides[0], y * sides[1], 0.0]).collect();
         let frames: Vec<_> = (1..=places.len()).map(|i| [i as u8, 0]).collect();
         let params = RadioParams { range_m, ..RadioParams::default() };
         let ids = (1..).map(RobotId).take(places.len());
         let mut radio = Radio::new(&params, 0, TICK_US, ids).on_torus(Some(sides));
         radio.carry(0, &positions, |i| &frames[i]);
         for (i, a) in positions.iter().enumerate() {
-            let distance_m = |b: &[f64; 2]| {
+            let distance_m = |b: &[f64; 3]| {
                 let along = |axis: usize| {
                     let way = (a[axis] - b[axis]).abs();
                     way.min(sides[axis] - way)
@@ -429,7 +429,7 @@ fn memory_is_estimated_from_pairs_in_range() {
     let near = RadioParams { range_m: 10.0, ..RadioParams::default() };
     let slow = RadioParams { delay_ms: 1000.0, ..near.clone() };
     let all = RadioParams::default();
-    let square = |side: u32| (0..side * side).map(move |i| [f64::from(i % side), f64::from(i / side)]);
+    let square = |side: u32| (0..side * side).map(move |i| [f64::from(i % side), f64::from(i / side), 0.0]);
     let expected = |params: &RadioParams, side: u32| {
         let places: Vec<_> = square(side).collect();
         expected_bytes(params, TICK_US, 1.0, &places) as f64 / (places.len() as f64 * PACKET_BYTES)

@@ -117,9 +117,9 @@ const CELL_BYTES: u64 = 4;
 
 /// Refuses scenarios that do not fit into memory, before the system kills the process.
 pub(super) fn memory(draft: &Draft<'_>, robots: &[Robot], plane: Option<&PlaneSetup>, land: &Terrain) -> Checked {
-    let positions_m: Vec<[f64; 2]> = match plane {
-        Some(setup) => setup.starts.iter().map(|start| [start.position_m[0], start.position_m[1]]).collect(),
-        None => robots.iter().map(|robot| land.center_m(robot.start)).collect(),
+    let positions_m: Vec<[f64; 3]> = match plane {
+        Some(setup) => setup.starts.iter().map(|start| start.position_m).collect(),
+        None => robots.iter().map(|robot| land.center_m(robot.start)).map(|[x, y]| [x, y, 0.0]).collect(),
     };
     let (robots, cells) = (positions_m.len(), u64::from(land.width()) * u64::from(land.height()));
     let bytes = robots as u64 * ROBOT_BYTES + cells * CELL_BYTES;
