@@ -272,3 +272,22 @@ fn the_rule_applies_near_doors_with_robots_and_at_narrow_ones_that_are_the_only_
     let still = Situation { obstacles: &walls, wish: Vec2::ZERO, ..situation(&body, &nearby) };
     assert!(Approach::new(&still, Vec2::new(5.0, 0.0)).is_none(), "a robot that stands needs no way");
 }
+
+#[test]
+fn a_silent_robot_in_the_lane_behind_the_door_ends_the_rule_there() {
+    // Places relative to this robot, which is 0.2 m behind the door or before it.
+    for (own, at, gives_way, is_barred) in [
+        (0.2, [0.4, 0.0], false, true),
+        (0.2, [0.4, 0.34], false, true),
+        (0.2, [0.4, 0.36], false, false),
+        (0.2, [0.56, 0.0], false, false),
+        (0.2, [-0.3, 0.0], false, false),
+        (0.2, [0.4, 0.0], true, false),
+        (-0.2, [0.6, 0.0], false, false),
+    ] {
+        let gap = Gap { middle: Vec2::new(-own, 0.0), ..DOOR };
+        let nearby = [Nearby { gives_way, ..robot(1, at, [0.0; 2]) }];
+        let barred = with_approach(gap, &nearby, |approach| approach.is_barred_behind());
+        assert_eq!(barred, is_barred, "{own} {at:?} {gives_way}");
+    }
+}
