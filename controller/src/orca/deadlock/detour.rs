@@ -36,7 +36,12 @@ impl<'a, S: Scalar> Corners<'a, S> {
 
     /// About the length of the way to `target`, around the first [`CORNERS`]. O(walls).
     pub(super) fn rest(&self, from: Vec2<S>, target: Vec2<S>) -> S {
-        let (mut from, mut length) = (from, S::ZERO);
+        self.way(from, target).0
+    }
+
+    /// [`Corners::rest`], and the first corner of that way.
+    pub(super) fn way(&self, from: Vec2<S>, target: Vec2<S>) -> (S, Option<Vec2<S>>) {
+        let (mut from, mut length, mut first) = (from, S::ZERO, None);
         for _ in 0..CORNERS {
             let Some((wall, ends)) = first_wall(self.obstacles, from, target) else {
                 break;
@@ -55,8 +60,9 @@ impl<'a, S: Scalar> Corners<'a, S> {
                 break;
             };
             (from, length) = (next, length + way);
+            first = first.or(Some(next));
         }
-        length + (target - from).norm()
+        (length + (target - from).norm(), first)
     }
 }
 

@@ -128,7 +128,12 @@ pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, 
             return;
         }
         let corners = corners.get_or_insert_with(|| Corners::new(obstacles, wanted.radius_m));
-        let detour = gap.middle.norm() + corners.rest(gap.middle, target);
+        let (rest, next) = corners.way(gap.middle, target);
+        // From the gap the way leads back, past its outside.
+        if next.is_some_and(|corner| gap.place(corner).x < -wanted.radius_m * S::HALF) {
+            return;
+        }
+        let detour = gap.middle.norm() + rest;
         if best.is_none_or(|(least, _)| detour < least) {
             best = Some((detour, gap));
         }

@@ -162,7 +162,29 @@ fn corridors(seed: u32, kind: u32, widths: Range<f64>) -> Scene {
         _ => &[(&ne, false), (&se, false), (&sw, false), (&nw, false)],
     };
     let robots = f64::from(each * kind);
-    sheet.scene(seed, 2.0 * (2.0 * long + 20.0 + 12.0 * robots), walls)
+    sheet.scene(seed, 2.5 * (2.0 * long + 20.0 + 12.0 * robots), walls)
+}
+
+/// One robot in or before the mouth of one of four corridors, with a goal anywhere: through the
+/// corridors or around them. Another one stands far away.
+fn mouth(seed: u32) -> Scene {
+    let mut draw = Draw::new(32, seed);
+    let mut sheet = Sheet::new("mouth", &mut draw);
+    let (h, long) = (draw.within(1.1, 4.0), draw.within(8.0, 25.0));
+    let start = [draw.within(-1.0, 1.0) * (h - 1.05), -long + draw.within(-3.0, 3.0)];
+    let goal = loop {
+        let goal = [0; 2].map(|_| draw.within(-1.0, 1.0) * (long + 6.0));
+        if goal.iter().all(|x| (x.abs() - h).abs() > 1.3) {
+            break goal;
+        }
+    };
+    sheet.robot(start, &[], goal);
+    let stays = [-long - 12.0, -long - 12.0];
+    sheet.robot(stays, &[], stays);
+    let quarter = |sx: f64, sy: f64| [[sx * h, sy * long], [sx * h, sy * h], [sx * long, sy * h]];
+    let (ne, se, sw, nw) = (quarter(1.0, 1.0), quarter(1.0, -1.0), quarter(-1.0, -1.0), quarter(-1.0, 1.0));
+    let walls: &[(&[P], bool)] = &[(&ne, false), (&se, false), (&sw, false), (&nw, false)];
+    sheet.scene(seed, 1.5 * (4.0 * long + 20.0) + 20.0, walls)
 }
 
 /// Two groups that change places through a door or a passage of one to three bodies.
@@ -235,6 +257,21 @@ fn a_lone_robot_finds_its_way_around_a_shelf() {
 #[test]
 fn a_lone_robot_beside_a_door_passes_it() {
     all_arrive_in_time(30, beside_door);
+}
+
+/// The others turn back and forth between two ways: the rule for gaps takes a gap to lead to the
+/// side of the goal, also if the way there turns back around a wall.
+#[test]
+fn nearly_all_lone_robots_in_the_mouth_of_a_corridor_take_one_way() {
+    let seeds = || (0..100).chain(UNSEEN..UNSEEN + 100);
+    let is_late = |seed: &u32| {
+        let Scene { text, wanted_s } = mouth(*seed);
+        let outcome = simulate(&scenario(&text), |_, _| ControlFlow::Continue(())).expect("placed");
+        assert_eq!(outcome.collisions, 0, "seed {seed}\n{text}");
+        outcome.arrived < 2 || outcome.seconds > wanted_s
+    };
+    let late: Vec<u32> = seeds().filter(is_late).collect();
+    assert!(late.len() <= 14, "{} of {}: seeds {late:?}", late.len(), seeds().count());
 }
 
 #[test]
