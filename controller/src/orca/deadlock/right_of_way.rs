@@ -256,8 +256,8 @@ impl<'a, S: Scalar> Approach<'a, S> {
         (is_near || is_narrow && gap.is_only_way).then_some(approach).filter(|approach| !approach.is_barred_behind())
     }
 
-    /// Whether the robot is behind the gap, and one that does not give way stands in its lane out of
-    /// it. Straight ahead it could stop before that one forever.
+    /// Whether the robot is behind the gap, and one that does not give way stands in its lane. On
+    /// its straight way out it could stop before that one forever.
     fn is_barred_behind(&self) -> bool {
         let stands_there = |other: &Nearby<S>| {
             let place = self.gap.place(other.offset_m.xy());
