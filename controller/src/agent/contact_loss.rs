@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// | all lost, all left radio range | reports [`ContactLost`], moves freely |
 /// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
 /// | just started | stands and [listens](Self::listen) |
-/// | others never told of this robot | goes on, and expects that no robot gives way |
+/// | others never told of this robot | moves, and expects that no robot gives way |
 /// | never any since power-on | moves freely, or stands if it [expects others] |
 ///
 /// The place of a lost robot stays blocked until a robot hears that robot again, or an operator

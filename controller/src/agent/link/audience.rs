@@ -1,4 +1,4 @@
-//! Whether others hear the own robot, from what they tell of each other.
+//! Whether others hear the own robot, from the states that they tell of each other.
 //!
 //! A robot that tells the state of one robot also knows each robot that it hears and that is nearer
 //! to it, since full tables forget the farthest. So if others tell of robots that are farther from

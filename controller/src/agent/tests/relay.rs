@@ -184,7 +184,7 @@ fn a_robot_that_finds_others_late_listens_longer() {
     assert_eq!(start(&[(2, 5), (4, 6)], 200), 8, "as long as the search took");
     let all = [2, 4, 7, 13, 25, 49].map(|n| (n, 4 + n as u32));
     assert_eq!(start(&all, 200), 50, "not for ever");
-    assert_eq!(start(&[], 2), 2 + 6 * 3, "six times as long after it has heard of one that it does not hear");
+    assert_eq!(start(&[], 2), 2 + 6 * 3, "six times as long while others tell of one that it does not hear");
 }
 
 #[test]

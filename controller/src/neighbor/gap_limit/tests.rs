@@ -43,6 +43,23 @@ fn still<S: Scalar>(body: &Body<S>, own: Position, now: Instant) -> GapLimit<'_,
     }
 }
 
+/// A neighbour 0.2 m away, as it told, comes at 1 m/s: 0.1 m in this step, and half of the rest is
+/// the own robot's, unless that neighbour does not know it.
+#[test]
+fn a_robot_that_is_not_heard_leaves_a_neighbour_all_of_its_path() {
+    let mover = Mover::<f64>::new(1, [0.0; 3], f64::INFINITY);
+    let limit = |is_heard| {
+        let mut other = Mover::<f64>::new(2, [0.5, 0.0, 0.0], f64::INFINITY);
+        other.body.velocity_mps = Vec3::new(-1.0, 0.0, 0.0);
+        let (mut table, now) = (mover.table.clone(), moment(1));
+        let _ = table.put(other.news(0), mover.position(), now, |_| false);
+        let room = GapLimit { is_heard, ..still(&mover.body, mover.position(), now) };
+        room.limit(&mut table, &[], Vec3::new(1.0, 0.0, 0.0)).expect("up to date").x
+    };
+    assert!((0.4..0.5).contains(&limit(true)), "{}", limit(true));
+    assert!(limit(false) <= 0.0, "{}", limit(false));
+}
+
 struct Mover<S> {
     table: NeighborTable<S, 4>,
     body: Body<S>,

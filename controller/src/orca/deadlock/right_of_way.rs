@@ -18,7 +18,7 @@
 //!   those in the lane still pass. If no robot waits on the opposite side, a turn does not end.
 //! - **Inside the gap.** If two robots meet, the one nearer to its exit continues; the other moves
 //!   back beside the lane, with the robots that follow it.
-//! - **Behind the gap** robots move straight ahead, unless a silent robot stands there.
+//! - **Behind the gap** robots move straight ahead, unless one that does not give way is there.
 //! - **Timeout.** Robots may see different things. If the gap was empty for a random time and no
 //!   robot before this one moved, turns no longer count; later ranks wait longer.
 //! - **Distant gaps.** A robot that a wall separates from its goal heads for the gap that it sees.
@@ -256,14 +256,14 @@ impl<'a, S: Scalar> Approach<'a, S> {
         (is_near || is_narrow && gap.is_only_way).then_some(approach).filter(|approach| !approach.is_barred_behind())
     }
 
-    /// Whether the robot is behind the gap, and one that does not give way stands in its lane. On
-    /// its straight way out it could stop before that one forever.
+    /// Whether the robot is behind the gap, and one that does not give way is in its lane. On its
+    /// straight way out it could stop before that one forever.
     fn is_barred_behind(&self) -> bool {
-        let stands_there = |other: &Nearby<S>| {
+        let bars = |other: &Nearby<S>| {
             let place = self.gap.place(other.offset_m.xy());
             !other.gives_way && place.x > S::ZERO && self.is_in_lane(place)
         };
-        self.own.x > S::ZERO && self.situation.nearby.iter().any(stands_there)
+        self.own.x > S::ZERO && self.situation.nearby.iter().any(bars)
     }
 
     fn radii(&self, thousandths: i32) -> S {

@@ -127,7 +127,7 @@ fn a_robot_takes_at_its_decision_what_arrived_since_the_last_one() {
     assert!(engine.computers[1].mail.is_empty());
     steps(&mut engine, 5);
     assert_eq!(neighbors(&engine), [1, 1]);
-    assert_eq!(engine.packets.delivered, 5, "two of robot 1, one of robot 2, and what they tell of each other");
+    assert_eq!(engine.packets.delivered, 5, "two of robot 1, one of robot 2, and a told state of each");
     assert_eq!(engine.packets.rejected, 0);
 }
 

@@ -153,8 +153,7 @@ fn corridors(seed: u32, kind: u32, widths: Range<f64>) -> Scene {
             sheet.robot(start, &[[0.0, 0.0]], goal);
         }
     }
-    let quarter = |sx: f64, sy: f64| [[sx * h, sy * long], [sx * h, sy * h], [sx * long, sy * h]];
-    let (ne, se, sw, nw) = (quarter(1.0, 1.0), quarter(1.0, -1.0), quarter(-1.0, -1.0), quarter(-1.0, 1.0));
+    let [ne, se, sw, nw] = quarters(h, long);
     let (north, outer) = ([[-long, h], [long, h]], [[-h, -long], [-h, h], [long, h]]);
     let walls: &[(&[P], bool)] = match kind {
         2 => &[(&outer, false), (&se, false)],
@@ -162,7 +161,14 @@ fn corridors(seed: u32, kind: u32, widths: Range<f64>) -> Scene {
         _ => &[(&ne, false), (&se, false), (&sw, false), (&nw, false)],
     };
     let robots = f64::from(each * kind);
+    // Seed 1003 with three corridors takes 2.4 ways; no other one takes more than 1.1.
     sheet.scene(seed, 2.5 * (2.0 * long + 20.0 + 12.0 * robots), walls)
+}
+
+/// The corners between four corridors of half the width `h`, which end `long` from their crossing.
+fn quarters(h: f64, long: f64) -> [[P; 3]; 4] {
+    [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]]
+        .map(|[x, y]| [[x * h, y * long], [x * h, y * h], [x * long, y * h]])
 }
 
 /// One robot in or before the mouth of one of four corridors, with a goal anywhere: through the
@@ -181,10 +187,8 @@ fn mouth(seed: u32) -> Scene {
     sheet.robot(start, &[], goal);
     let stays = [-long - 12.0, -long - 12.0];
     sheet.robot(stays, &[], stays);
-    let quarter = |sx: f64, sy: f64| [[sx * h, sy * long], [sx * h, sy * h], [sx * long, sy * h]];
-    let (ne, se, sw, nw) = (quarter(1.0, 1.0), quarter(1.0, -1.0), quarter(-1.0, -1.0), quarter(-1.0, 1.0));
-    let walls: &[(&[P], bool)] = &[(&ne, false), (&se, false), (&sw, false), (&nw, false)];
-    sheet.scene(seed, 1.5 * (4.0 * long + 20.0) + 20.0, walls)
+    let [ne, se, sw, nw] = quarters(h, long);
+    sheet.scene(seed, 1.5 * (4.0 * long + 20.0) + 20.0, &[(&ne, false), (&se, false), (&sw, false), (&nw, false)])
 }
 
 /// Two groups that change places through a door or a passage of one to three bodies.
@@ -263,15 +267,15 @@ fn a_lone_robot_beside_a_door_passes_it() {
 /// side of the goal, also if the way there turns back around a wall.
 #[test]
 fn nearly_all_lone_robots_in_the_mouth_of_a_corridor_take_one_way() {
-    let seeds = || (0..100).chain(UNSEEN..UNSEEN + 100);
     let is_late = |seed: &u32| {
         let Scene { text, wanted_s } = mouth(*seed);
         let outcome = simulate(&scenario(&text), |_, _| ControlFlow::Continue(())).expect("placed");
         assert_eq!(outcome.collisions, 0, "seed {seed}\n{text}");
         outcome.arrived < 2 || outcome.seconds > wanted_s
     };
-    let late: Vec<u32> = seeds().filter(is_late).collect();
-    assert!(late.len() <= 14, "{} of {}: seeds {late:?}", late.len(), seeds().count());
+    let [seen, unseen] = [0, UNSEEN].map(|first| (first..first + 100).filter(is_late).collect::<Vec<_>>());
+    println!("late: {} of 100, seeds {seen:?}, and {} of 100, seeds {unseen:?}", seen.len(), unseen.len());
+    assert!(seen.len() + unseen.len() <= 14);
 }
 
 #[test]
