@@ -91,15 +91,15 @@ fn each_figure_is_found_by_name_and_by_place() {
     assert_eq!(error, "doorwya: there is no such experiment; did you mean doorway?");
 }
 
-/// Seeds in which robots once met in a narrow corridor, or met one that had arrived there. Of the
-/// crowd one robot does not get past those that have arrived (docs/limits.md).
+/// Seeds in which robots once met in a narrow corridor, or met one that had arrived there. The
+/// last of the crowd passes those that have arrived.
 #[test]
 fn discs_that_route_among_walls_all_arrive() {
     let path = root().join("scenarios/twenty-discs.toml");
     let text = fs::read_to_string(&path).unwrap();
     let crowd = text.replace("count = 20", "count = 40");
     for (text, seed, robots) in [(&text, 2, 20), (&text, 9, 20), (&crowd, 5, 40)] {
-        let overrides = Overrides { seed: Some(seed), ticks: Some(2000) };
+        let overrides = Overrides { seed: Some(seed), ticks: Some(3000) };
         let scenario = Scenario::parse(text, &path, &overrides).unwrap();
         let outcome = run(&scenario).0;
         assert_eq!((outcome.arrived, outcome.collisions), (robots, 0), "seed {seed}");

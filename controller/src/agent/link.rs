@@ -359,6 +359,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
         let period = config.beacon_period;
         if !self.has_sent || now.has_reached(self.beacon_due, period) {
+            let own = Position::from_mm(beacon.position_mm);
             let mut outgoing = Outgoing::default();
             let payload = payload(&mut Radio::new(now, config.message_valid, &mut outgoing));
             let (protocol, payload) = payload.encode::<MAX_PAYLOAD>(Q::ID).unwrap_or_default();
@@ -372,7 +373,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             if let Some((protocol, content)) = outgoing.broadcast {
                 let _ = self.say(&Message::Broadcast(Broadcast { protocol, content }), 0, out);
             }
-            if let Some(told) = self.state_to_tell(now) {
+            if let Some(told) = self.state_to_tell(own, now) {
                 let _ = self.say(&Message::Lost(told), 0, out);
             }
             self.has_sent = true;

@@ -349,12 +349,13 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let Self { link, safety, config, .. } = self;
         let elapsed = link.listening.elapsed(now, config.tick);
         let (hearing, misses) = (link.hearing(), link.misses_robots());
-        let is_heard = hearing != Hearing::Never;
+        let is_heard = hearing == Hearing::Heard;
         let (table, inflation) = (&mut link.table, safety.inflation());
         let mut wish_mps = wish_mps;
         if let Some(inflation) = inflation {
             let doubts = hearing == Hearing::Unclear;
-            if link.listening.passes(now, config.contact_loss.listen, (doubts, misses)) {
+            let is_listening = link.listening.passes(now, config.contact_loss.listen, (doubts, misses));
+            if is_listening || hearing == Hearing::NoLonger {
                 out.wait = (wish_mps != Vec3::ZERO).then_some(Wait::Radio);
                 wish_mps = Vec3::ZERO;
             }

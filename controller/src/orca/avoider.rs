@@ -242,16 +242,21 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
     fn robots(&self, body: &Body<S>, nearby: &[Nearby<S>], constraints: &mut Vec<HalfSpace<P::Velocity>, K>) {
         let own = own_velocity(body);
         let horizon_s = self.params.horizon_s.max(body.least_horizon_s());
+        let four = S::from_i32(4);
         for other in nearby {
             let tie = if body.id < other.id { -S::ONE } else { S::ONE };
+            // Beside a moving robot that does not give way, it makes all of the room alone, also
+            // for a turn of that robot in this step.
+            let is_alone = !other.gives_way && other.velocity_mps != Vec3::ZERO;
+            let turn_m = if is_alone { body.max_speed_mps * body.step_s } else { S::ZERO };
             let ball = MovingBall {
                 offset_m: other.offset_m.into(),
                 velocity_mps: other.velocity_mps.into(),
-                radii_m: body.radius_m + other.radius_m + self.params.margin_m,
+                radii_m: body.radius_m + other.radius_m + self.params.margin_m + turn_m,
                 tie: Vec3::new(tie, S::ZERO, S::ZERO).into(),
             };
             let params = Params {
-                horizon_s,
+                horizon_s: if is_alone { horizon_s.max((horizon_s * four).min(four)) } else { horizon_s },
                 separation_s: body.step_s,
                 share: if other.gives_way { self.params.share } else { S::ONE },
             };

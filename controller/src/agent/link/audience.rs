@@ -2,13 +2,17 @@
 //!
 //! A robot that tells the state of one robot also knows each robot that it hears and that is nearer
 //! to it, since full tables forget the farthest. So if others tell of robots that are farther from
-//! them than the own one, but never of that, they do not hear it.
+//! them than the own one, but never of that, they do not hear it. And if they tell that it is lost,
+//! and none corrects them, they no longer do.
 
 use serde::{Deserialize, Serialize};
 
 /// States of farther robots, for each known robot, after which the own one is not heard: each
 /// neighbour tells in turn of all that it knows.
 const DOUBTS: usize = 3;
+/// How often others tell that the own robot is lost until that counts: a robot that knows a newer
+/// state of it tells that one next.
+const LOST: usize = 3;
 /// Robots that are known at least, for this bound.
 const LEAST_KNOWN: usize = 2;
 /// The bound of large tables.
@@ -23,11 +27,14 @@ pub(in crate::agent) enum Hearing {
     Unclear,
     /// No robot has ever told of it: none knows that it is there.
     Never,
+    /// For others it is lost: they expect that it stands.
+    NoLonger,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Audience {
-    /// Told states of robots that are farther from the teller.
+    /// Before it was heard, told states of robots that are farther from the teller; then, how
+    /// often others told that it is lost.
     doubts: u8,
     was_heard: bool,
 }
@@ -42,13 +49,23 @@ impl Audience {
 
     /// Notes that another robot tells of one that is farther from it.
     pub(super) const fn tells_of_farther(&mut self) {
-        self.doubts = self.doubts.saturating_add(1);
+        if !self.was_heard {
+            self.doubts = self.doubts.saturating_add(1);
+        }
+    }
+
+    /// Notes that another robot tells that the own one is lost.
+    pub(super) const fn loses(&mut self) {
+        if self.was_heard {
+            self.doubts = self.doubts.saturating_add(1);
+        }
     }
 
     /// The judgement of a robot that knows `known` others.
     pub(super) fn hearing(self, known: usize) -> Hearing {
         let most = known.max(LEAST_KNOWN).saturating_mul(DOUBTS).min(MOST);
         match usize::from(self.doubts) {
+            doubts if self.was_heard && doubts >= LOST && known > 0 => Hearing::NoLonger,
             doubts if self.was_heard || doubts == 0 => Hearing::Heard,
             doubts if doubts > most => Hearing::Never,
             _ => Hearing::Unclear,

@@ -1,10 +1,11 @@
 //! States of robots, told from robot to robot: a robot that is not heard is known all the same.
 //!
 //! Behind some beacons a robot tells the last known state of another one: first of a robot that it
-//! has just found, or whose old state a third one has told, then in turn of a silent robot and of
-//! any. A receiver stores a state that is newer than its own. It never stores one of itself, of an
-//! id that two robots use, of one beyond [`last`](crate::neighbor::PlausibilityLimits::last), of an
-//! unknown robot out of radio range, or at a place that the known robot cannot have reached.
+//! has just found, or whose old state a third one has told, then in turn of a silent robot, a near
+//! one, a silent one and any. A receiver stores a state that is newer than its own. It never stores
+//! one of itself, of an id that two robots use, of one beyond
+//! [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown robot out of radio range, or
+//! at a place that the known robot cannot have reached.
 
 use super::audience::{Audience, Hearing};
 use super::{Link, Outputs, Protocol, ReceiveContext, report};
@@ -27,13 +28,16 @@ const UNIT: Duration = Duration::from_millis(10);
 /// Age of a told state that shows whom its teller hears, in units of the age of a stale neighbour.
 const RECENT: i32 = 2;
 
+/// Spreads the turns of near robots.
+const MIXED: u8 = 157;
+
 /// Which state to tell next.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Relay {
     /// Beacons since the last told state.
     beacons: u8,
-    /// Whether the last state was that of a silent robot.
-    was_silent: bool,
+    /// The number of the turn: every second one is that of a silent robot.
+    turn: u8,
     /// The last robot in the turn of silent ones.
     silent: RobotId,
     /// The last robot in the turn of all.
@@ -47,7 +51,7 @@ pub(super) struct Relay {
 impl Relay {
     /// Each robot begins with those after itself, so that not all tell the same.
     pub(super) const fn new(own: RobotId) -> Self {
-        Self { beacons: 0, was_silent: false, silent: own, any: own, urgent: RobotId::NONE, audience: Audience::NEW }
+        Self { beacons: 0, turn: 0, silent: own, any: own, urgent: RobotId::NONE, audience: Audience::NEW }
     }
 
     /// Tells the state of this robot next, so that it knows that it is heard.
@@ -132,17 +136,25 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     }
 
     /// Notes whether `teller` hears the own robot: a recent state of it, or of a robot that is
-    /// farther from the teller.
+    /// farther from the teller, or that it is lost.
     fn note_audience(&mut self, teller: RobotId, told: &LostRobot, now: Instant, listener: &ReceiveContext<'_, S>) {
         // The teller's states are as old as the latency when they arrive.
         let recent = self.table.ages().stale_after.saturating_mul(RECENT).as_micros();
         let recent = recent.saturating_add(now.since(listener.heard_at).as_micros());
         let is_recent = UNIT.saturating_mul(told.age_cs.into()).as_micros() <= recent;
-        if told.is_lost || told.radius_mm == 0 || !is_recent {
+        let is_own = told.id == self.header.sender;
+        // An operator clears a place without a body.
+        if told.radius_mm == 0 {
+            return;
+        }
+        if told.is_lost && is_own {
+            self.relay.audience.loses();
+        }
+        if told.is_lost || !is_recent {
             return;
         }
         let own = listener.position;
-        if told.id == self.header.sender {
+        if is_own {
             self.relay.audience.hears();
         } else if let Some(teller) = self.table.get(teller, now).fresh() {
             let distance = |place: Position| place.since::<S>(teller.position).length_key();
@@ -164,7 +176,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     }
 
     /// The next state to tell, if one is due. Call it for each beacon. O(N).
-    pub(super) fn state_to_tell(&mut self, now: Instant) -> Option<LostRobot> {
+    pub(super) fn state_to_tell(&mut self, own: Position, now: Instant) -> Option<LostRobot> {
         // Robots on a grid use no told states.
         if self.listening == Listening::NotStarted {
             return None;
@@ -183,31 +195,52 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             self.relay.urgent = urgent;
             return None;
         }
-        let next = known.or_else(|| self.next_in_turn(now))?;
+        let next = known.or_else(|| self.next_in_turn(own, now))?;
         self.relay.beacons = 0;
         Some(tell(&next, now))
     }
 
-    fn next_in_turn(&mut self, now: Instant) -> Option<Neighbor<S, Q::Payload>> {
-        let silent = if self.relay.was_silent { None } else { self.next_after(self.relay.silent, now, true) };
-        self.relay.was_silent = silent.is_some();
+    /// In turn a silent robot, a near one, a silent one and any.
+    fn next_in_turn(&mut self, own: Position, now: Instant) -> Option<Neighbor<S, Q::Payload>> {
+        let turn = self.relay.turn;
+        self.relay.turn = turn.wrapping_add(1);
+        let silent = self.next_after(self.relay.silent, |known| turn & 1 == 0 && self.is_silent(known, now));
         if let Some(next) = silent {
             self.relay.silent = next.id;
             return silent;
         }
-        let next = self.next_after(self.relay.any, now, false)?;
+        let near = if turn & 2 == 0 { self.near(own, turn) } else { None };
+        if near.is_some() {
+            return near;
+        }
+        let next = self.next_after(self.relay.any, |_| true)?;
         self.relay.any = next.id;
         Some(next)
     }
 
+    /// One of the robots within half of the distance of the farthest, another one for another turn.
+    fn near(&self, own: Position, turn: u8) -> Option<Neighbor<S, Q::Payload>> {
+        let offset_m = |known: &Neighbor<S, Q::Payload>| known.position.since::<S>(own);
+        let farthest = self.told().map(|known| offset_m(known).length_key()).max()?;
+        let near = || self.told().filter(|known| (offset_m(known) * S::TWO).length_key() <= farthest);
+        let at = usize::from(turn.wrapping_mul(MIXED) >> 3).checked_rem(near().count())?;
+        near().nth(at).copied()
+    }
+
     /// The robot with the next higher id, or the lowest one.
-    fn next_after(&self, last: RobotId, now: Instant, only_silent: bool) -> Option<Neighbor<S, Q::Payload>> {
-        let is_told = |known: &&Neighbor<S, Q::Payload>| {
-            let is_single = known.id.duplicate_of().is_none() && known.trace != Trace::Leaving;
-            is_single && (!only_silent || self.is_silent(known, now))
-        };
-        let all = self.table.all().filter(is_told);
-        all.min_by_key(|known| (known.id <= last, known.id)).copied()
+    fn next_after(
+        &self,
+        last: RobotId,
+        is_wanted: impl Fn(&Neighbor<S, Q::Payload>) -> bool,
+    ) -> Option<Neighbor<S, Q::Payload>> {
+        self.told().filter(|known| is_wanted(known)).min_by_key(|known| (known.id <= last, known.id)).copied()
+    }
+
+    /// The robots of which this one tells.
+    fn told(&self) -> impl Iterator<Item = &Neighbor<S, Q::Payload>> {
+        let is_told =
+            |known: &&Neighbor<S, Q::Payload>| known.id.duplicate_of().is_none() && known.trace != Trace::Leaving;
+        self.table.all().filter(is_told)
     }
 
     fn is_silent(&self, known: &Neighbor<S, Q::Payload>, now: Instant) -> bool {

@@ -256,7 +256,7 @@ fn a_stationary_robot_gives_way_and_a_robot_in_fault_does_not() {
 }
 
 #[test]
-fn a_neighbour_that_does_not_give_way_gets_the_whole_correction() {
+fn a_neighbour_that_does_not_give_way_gets_at_least_the_whole_correction() {
     let correction = |mode| {
         let mut robot = Robot::new(&in_plane(1), Onlooker::default(), orca(), [0.0; 2]);
         let inbox = bytes(2, 0, 0, &[body_at([900, 100], [-600, 0], mode)]);
@@ -269,7 +269,7 @@ fn a_neighbour_that_does_not_give_way_gets_the_whole_correction() {
     assert!(half > 0.01);
     for mode in [Mode::Fault, Mode::Passive] {
         let whole = correction(mode);
-        assert!((whole / half - 2.0).abs() < 0.02, "{half} {whole} {mode:?}");
+        assert!(whole / half > 1.98, "{half} {whole} {mode:?}");
     }
 }
 

@@ -115,7 +115,7 @@ fn some_states_are_never_stored() {
 fn an_old_state_is_answered_unless_another_robot_has() {
     let next_after = |messages: &[Message]| {
         let mut pair = Pair::new(&in_plane(1));
-        let fresh: Vec<_> = [&[near()][..], &(3..9).map(|id| told(id, false, 1, 1000)).collect::<Vec<_>>()].concat();
+        let fresh: Vec<_> = [&[near()][..], &(3..9).map(|id| told(id, false, 1, 2000)).collect::<Vec<_>>()].concat();
         let mut last = None;
         let mut n = 0;
         while last != Some(5) {
@@ -132,10 +132,10 @@ fn an_old_state_is_answered_unless_another_robot_has() {
         next.map(|told| (told.id.0, told.is_lost))
     };
     assert_eq!(next_after(&[]), Some((6, false)), "in turn");
-    assert_eq!(next_after(&[told(3, true, 90, 1000)]), Some((3, false)));
-    assert_eq!(next_after(&[told(3, false, 90, 1000)]), Some((3, false)));
-    assert_eq!(next_after(&[told(3, true, 20, 1000)]), Some((6, false)), "it is not old");
-    assert_eq!(next_after(&[told(3, true, 90, 1000), told(3, false, 2, 1000)]), Some((6, false)), "answered");
+    assert_eq!(next_after(&[told(3, true, 90, 2000)]), Some((3, false)));
+    assert_eq!(next_after(&[told(3, false, 90, 2000)]), Some((3, false)));
+    assert_eq!(next_after(&[told(3, true, 20, 2000)]), Some((6, false)), "it is not old");
+    assert_eq!(next_after(&[told(3, true, 90, 2000), told(3, false, 2, 2000)]), Some((6, false)), "answered");
 }
 
 #[test]
@@ -160,6 +160,23 @@ fn states_are_told_in_turn_and_silent_robots_every_other_time() {
         assert!(ids.iter().filter(|told| **told == id).count() >= 3, "{ids:?}");
     }
     assert!(said.iter().all(|told| told.2 == [3, 4].contains(&told.1)));
+}
+
+#[test]
+fn near_robots_are_told_more_often() {
+    let mut pair = Pair::new(&in_plane(1));
+    let place = |id: u32| told(id, false, 1, if id < 7 { 300 + 100 * id as i32 } else { 1300 + 100 * id as i32 });
+    let mut said = Vec::new();
+    for n in 0..800 {
+        let others: Vec<Message> = (3..10).map(place).collect();
+        said.extend(pair.hear(n, &[&[near()][..], &others].concat()).map(|told| told.id.0));
+    }
+    let times = |id: u32| said.iter().filter(|told| **told == id).count();
+    let far = (7..10).map(times);
+    assert!(said.len() >= 190 && far.clone().min() >= Some(6), "{:?}", far.collect::<Vec<_>>());
+    for id in 3..7 {
+        assert!(far.clone().all(|far| times(id) > 2 * far), "{id}: {said:?}");
+    }
 }
 
 #[test]
@@ -214,6 +231,37 @@ fn a_robot_that_others_do_not_hear_notices() {
     assert_eq!(hear(&mut pair, 1, (1, 200, 0)), (Hearing::Never, true), "heard long ago");
     assert_eq!(hear(&mut pair, 1, (1, 2, 0)), (Hearing::Heard, true));
     assert_eq!(hear(&mut pair, 30, farther), (Hearing::Heard, true), "it was heard once");
+}
+
+#[test]
+fn a_robot_that_is_lost_for_others_stands_until_one_hears_it() {
+    // Robot 2 tells of robot 1 or 3, and whether that is lost.
+    let hear = |pair: &mut Pair, times: i32, (id, is_lost, age_cs): (u32, bool, u16)| {
+        for _ in 0..times {
+            (pair.robot.at_m, pair.robot.velocity_mps) = ([0.0; 2], [0.0; 2]);
+            let x_mm = if id == 1 { 0 } else { -9000 };
+            pair.hear(pair.next, &[near(), told(id, is_lost, age_cs, x_mm)]);
+        }
+        (pair.robot.agent.link.hearing(), pair.robot.speed() > 0.0)
+    };
+    let mut pair = Pair::new(&in_plane(1));
+    let _ = pair.robot.agent.order(&WaypointOrder::first(place(0, 90_000)));
+    let lost = (1, true, 90);
+    assert_eq!(hear(&mut pair, 9, lost), (Hearing::Heard, true), "it has restarted: that is told of its former life");
+    assert_eq!(hear(&mut pair, 1, (1, false, 2)), (Hearing::Heard, true));
+    assert_eq!(hear(&mut pair, 2, lost), (Hearing::Heard, true), "another one may correct it");
+    assert_eq!(hear(&mut pair, 1, (1, false, 2)), (Hearing::Heard, true), "and does");
+    assert_eq!(hear(&mut pair, 2, lost), (Hearing::Heard, true));
+    assert_eq!(hear(&mut pair, 9, (3, true, 90)), (Hearing::Heard, true), "a third one is lost");
+    assert_eq!(hear(&mut pair, 1, lost), (Hearing::NoLonger, false));
+    assert_eq!(hear(&mut pair, 20, (3, false, 2)), (Hearing::NoLonger, false));
+    assert_eq!(hear(&mut pair, 1, (1, false, 2)), (Hearing::Heard, true));
+    // Alone it need not stand.
+    assert_eq!(hear(&mut pair, 3, lost), (Hearing::NoLonger, false));
+    for n in pair.next..pair.next + 100 {
+        let _ = pair.robot.step(step_number(n), &[]);
+    }
+    assert_eq!(pair.robot.agent.link.hearing(), Hearing::Heard);
 }
 
 #[test]

@@ -18,6 +18,7 @@ pub(in super::super) fn remarks(scenario: &Scenario, setup: &PlaneSetup) -> Vec<
     };
     let mut remarks: Vec<_> = setup.kinds().filter_map(gains).collect();
     remarks.extend(setup.kinds().filter_map(|group| long_tick(group, tick_s)));
+    remarks.extend(setup.kinds().filter_map(|group| late_news(group, scenario)));
     remarks.extend(loops.iter().filter_map(|corners| crossing(corners)));
     let robots = || setup.starts.iter().enumerate();
     let is = |trouble: &dyn Fn(&RobotGroup, &Start, [f64; 3]) -> bool| {
@@ -81,6 +82,24 @@ fn long_tick(group: &RobotGroup, tick_s: f64) -> Option<String> {
             "tick_s = {tick_s}: at {speed_mps} m/s a robot goes {way_m:.2} m in a tick, more than its body's {wide_m:.2} m, and can be \
              through another one unseen; at most {:.3} would do",
             wide_m / speed_mps
+        )
+    })
+}
+
+/// Warns of robots that do not move, since each may be anywhere by the time it is heard.
+fn late_news(group: &RobotGroup, scenario: &Scenario) -> Option<String> {
+    let (SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. }) = group.safety else { return None };
+    let (delay_s, _) = scenario.radio.news(scenario.step_s());
+    let unknown_s = (delay_s - scenario.step_s()).max(0.0);
+    let (growth_mps, wide_m) = (f64::from(inflation.growth_mps), 2.0 * group.radius_m);
+    let swerve_m = group.abilities.max_acceleration_mps2 * unknown_s * unknown_s / 2.0;
+    let way_m = (growth_mps * unknown_s).min(swerve_m);
+    (way_m > wide_m).then(|| {
+        format!(
+            "radio.delay_ms and jitter_ms: a robot at {growth_mps} m/s goes up to {way_m:.2} m before its next beacon counts, more \
+             than its body's {wide_m:.2} m; robots nearer to each other than that do not approach, and a crowd may stand; \
+             max_speed_mps of at most {:.2} would do",
+            wide_m / unknown_s
         )
     })
 }

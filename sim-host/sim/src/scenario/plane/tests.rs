@@ -32,7 +32,8 @@ fn setup(text: &str) -> PlaneSetup {
 fn staleness_inflation_accepts_its_former_names() {
     for (growth, most) in [("inflation_mps", "inflation_m"), ("doubt_mps", "doubt_m")] {
         let table = format!("[plane.orca]\n{growth} = 0.25\n{most} = 0.75\n");
-        let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 0.25, max_m: 0.75 });
+        let (params, inflation) =
+            (AvoidParams::for_body(0.2, 1.0), StalenessInflation { growth_mps: 0.25, max_m: 0.75 });
         let safety = SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic };
         assert_eq!(setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.safety, safety);
     }
@@ -63,7 +64,8 @@ fn the_smallest_plane_has_the_documented_defaults() {
     assert_eq!(group.abilities.max_acceleration_mps2, f64::INFINITY);
     assert_eq!((group.cruise_mps, group.sight_m), (1.0, 10.0));
     assert!((group.tolerance_m - 0.02).abs() < 1e-12);
-    let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 1.0, max_m: 0.2 });
+    let (params, inflation) = (AvoidParams::for_body(0.2, 1.0), StalenessInflation { growth_mps: 1.0, max_m: 0.2 });
+    assert!((0.6399..0.6401).contains(&params.horizon_s), "0.4 s and 1.2 radii");
     assert_eq!(group.guidance, GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.02 });
     assert_eq!(group.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
     assert!(!plane.has_terrain);
@@ -96,8 +98,8 @@ fn the_defaults_of_orca_match_the_readme() {
         row.trim_end_matches(" |").rsplit(" | ").next().expect("a column")
     };
     let params = AvoidParams::<f32>::default();
-    let horizons = format!("{}, {}", params.horizon_s, params.wall_horizon_s);
-    assert_eq!(row("horizon_s"), horizons);
+    assert_eq!(row("horizon_s"), "by the body");
+    assert_eq!(row("wall_horizon_s"), params.wall_horizon_s.to_string());
     assert_eq!(row("share"), params.share.to_string());
     assert_eq!(row("margin_m"), params.margin_m.to_string());
 }

@@ -104,7 +104,7 @@ fn the_defaults_in_the_readme_match_the_controller() {
     let footprint = f64::from(formation.footprint) / 16.0;
     assert_eq!(last_column("footprint"), footprint.to_string());
     let orca = AvoidParams::<f32>::default();
-    assert_eq!(last_column("horizon_s"), format!("{}, {}", orca.horizon_s, orca.wall_horizon_s));
+    assert_eq!(last_column("wall_horizon_s"), orca.wall_horizon_s.to_string());
     assert_eq!((last_column("share"), last_column("margin_m")), (orca.share.to_string(), orca.margin_m.to_string()));
     assert_eq!((formation.prediction, formation.recovery), (Prediction::Constant, Recovery::Wait));
     assert_eq!((last_column("prediction"), last_column("recovery")), ("\"constant\"".into(), "\"wait\"".into()));

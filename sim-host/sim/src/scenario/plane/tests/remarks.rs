@@ -56,6 +56,21 @@ fn a_tick_in_which_a_body_moves_more_than_its_width_causes_a_warning() {
 }
 
 #[test]
+fn news_that_is_older_than_a_body_is_wide_causes_a_warning() {
+    let of = |radio: &str, safety: &str| {
+        let text = format!("tick_s = 0.1\n{HEAD}[radio]\n{radio}\n{PLANE}{safety}[plane.robots]\nlist = [{ONE}]\n");
+        parse(&text).expect("good").remarks()
+    };
+    // At 1 m/s and 0.4 m wide.
+    assert_eq!(of("delay_ms = 490", ""), Vec::<String>::new());
+    assert_eq!(of("delay_ms = 400\njitter_ms = 200", "safety = \"none\"\n"), Vec::<String>::new());
+    let [remark] = &of("delay_ms = 400\njitter_ms = 200", "")[..] else { panic!("one remark") };
+    assert!(remark.contains("goes up to 0.50 m") && remark.contains("max_speed_mps of at most 0.80"), "{remark}");
+    // A body that turns slowly is known for longer.
+    assert_eq!(of("delay_ms = 600", "max_acceleration_mps2 = 2\n"), Vec::<String>::new());
+}
+
+#[test]
 fn a_closed_wall_that_crosses_itself_causes_a_warning() {
     let bow = "[[plane.wall]]\npoints_m = [[4, 4], [8, 8], [8, 4], [4, 8]]\nclosed = true\n";
     assert_eq!(
