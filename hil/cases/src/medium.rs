@@ -8,14 +8,18 @@ use staya_controller::wire::Wire;
 const SAID: usize = 120;
 pub(crate) const INBOX: usize = 400;
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");
+const FADES: u32 = u32::from_be_bytes(*b"fade");
+/// Ticks for which a link stays as it is: 2 s.
+const FADE_TICKS: u32 = 20;
 
-/// Probabilities per frame as Q0.32.
+/// Probabilities per frame as Q0.32; `fade` is the share of time in which a link brings nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Faults {
     pub(crate) seed: u64,
     pub(crate) loss: u32,
     pub(crate) flip: u32,
     pub(crate) twice: u32,
+    pub(crate) fade: u32,
 }
 
 /// Between `R` senders, with inboxes of `B` bytes.
@@ -55,6 +59,11 @@ impl<W: Wire, const R: usize, const B: usize> Medium<W, R, B> {
                 continue;
             }
             let way = ((sender << 8) | receiver) as u32;
+            if self.faults.fade > 0
+                && Rng::keyed(self.faults.seed, FADES, way, tick / FADE_TICKS).chance_q32(self.faults.fade)
+            {
+                continue;
+            }
             let mut rng = Rng::keyed(self.faults.seed, PURPOSE, way, tick);
             let mut rest = said.as_slice();
             while let Some((len, packet)) = next_packet(&self.wire, &mut rest) {

@@ -24,7 +24,8 @@ pub enum Case {
     OrcaAnalytic,
     /// Like [`Case::OrcaAnalytic`], with half-planes from a table of 2 KiB.
     OrcaTemplate2k,
-    /// Robots in two rooms change places through a door that is one robot wide.
+    /// Robots in two rooms change places through a door that is one robot wide, while links fade
+    /// for a fifth of the time.
     Doorway,
     /// Five robots on a sphere change sides above a floor and around a ball.
     Fly,

@@ -112,7 +112,7 @@ fn in_formation<S: Scalar, P: Probe<S>>(prediction: Prediction, probe: &mut P) -
 pub(crate) fn packets<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -> Summary {
     let scene = Scene {
         land: LAND,
-        faults: Faults { seed: 5, loss: u32::MAX >> 3, flip: u32::MAX >> 4, twice: u32::MAX >> 3 },
+        faults: Faults { seed: 5, loss: u32::MAX >> 3, flip: u32::MAX >> 4, twice: u32::MAX >> 3, fade: 0 },
         ticks: 400,
     };
     let mut walkers = Vec::new();

@@ -95,7 +95,8 @@ pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let starts = [[-1500, 0, 0], [-2500, 300, 0], [1500, 100, 0], [2500, -300, 0]];
     let goals = [[2500, 300, 0], [1500, 0, 0], [-2500, -300, 0], [-1500, 100, 0]];
     let safety = || OrcaSafety::<S, PLANES>::new(AvoidParams::default(), inflation());
-    to_places(&scene(&WALLS), &starts, &goals, safety, probe)
+    let faults = Faults { seed: 7, fade: u32::MAX / 5, loss: u32::MAX >> 4, ..Faults::default() };
+    to_places(&Scene { faults, ..scene(&WALLS) }, &starts, &goals, safety, probe)
 }
 
 #[inline(never)]

@@ -295,6 +295,8 @@ impl Engine {
         let members: Vec<_> = self.members().collect();
         let quality = self.formation_quality(&members, true);
         self.tick += 1;
+        #[cfg(test)]
+        self.check_gaps();
         self.row = self.row(quality, packets);
         self.row
     }

@@ -349,6 +349,7 @@ mod attack;
 mod clocks;
 mod crossing;
 mod external;
+mod gaps;
 mod intervene;
 mod intruder;
 mod land;
