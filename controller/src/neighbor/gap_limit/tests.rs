@@ -1,4 +1,5 @@
 use super::*;
+use crate::geom::Vec2;
 use crate::neighbor::Ages;
 use crate::rand::Rng;
 use crate::robot::{Mode, RobotId};
@@ -58,6 +59,47 @@ fn a_robot_that_is_not_heard_leaves_a_neighbour_all_of_its_path() {
     };
     assert!((0.4..0.5).contains(&limit(true)), "{}", limit(true));
     assert!(limit(false) <= 0.0, "{}", limit(false));
+}
+
+/// A velocity inside the cone, beside it, and one whose direction is known but for rounding.
+#[test]
+fn a_velocity_is_turned_until_its_approach_is_the_permitted_one() {
+    let rule = still::<f64>;
+    let body = Mover::new(1, [0.0; 3], f64::INFINITY).body;
+    let rule = rule(&body, Position::ORIGIN, moment(1));
+    for (sin, side, most_mps) in [(0.6, 0.2, 0.5), (0.6, 0.9, 0.7), (0.001, 0.3, 0.4)] {
+        let cos = if sin < 0.01 { 1.0 } else { cos_of(sin, 1.0) };
+        let limit = Limit { ahead: Vec3::new(1.0, 0.0, 0.0), slant: sin, cos, left_m: 0.0, growth_mps: 0.0 };
+        let fast = Vec3::new(1.0, side, 0.0);
+        let turned = fast + limit.ahead * limit.turn(&rule.pace(fast), most_mps);
+        let approach = limit.approach(&rule.pace(turned));
+        assert!((approach - most_mps).abs() < 1e-3, "{sin} {side}: {approach}");
+    }
+}
+
+/// From 1 m/s a body with 2 m/s^2 covers half of its braking time, 0.25 s, and a step of 0.1 s.
+#[test]
+fn a_body_with_inertia_approaches_a_wall_as_fast_as_it_can_brake() {
+    let body = Mover::new(1, [0.0; 3], 2.0).body;
+    let rule = still::<f64>(&body, Position::ORIGIN, moment(1));
+    let (room_m, rounding_m) = (0.14, f64::from(ROUNDING_MM) / 1000.0);
+    let x = RADIUS_M + rounding_m + room_m;
+    let wall = [Obstacle::Wall([Vec2::new(x, -1.0), Vec2::new(x, 1.0)])];
+    let v = rule.before(&wall, Vec3::new(1.0, 0.0, 0.0));
+    assert!((v.x - room_m / 0.35).abs() < 1e-6, "{v:?}");
+}
+
+/// The place of a lost robot may have been told anew, and its direction is as uncertain.
+#[test]
+fn the_direction_of_a_lost_robot_is_as_uncertain_as_its_place() {
+    let body = Mover::new(1, [0.0; 3], f64::INFINITY).body;
+    let rule = still::<f64>(&body, Position::ORIGIN, moment(5));
+    let slant = |gap_m| {
+        let news = Mover::<f64>::new(2, [2.0, 0.0, 0.0], f64::INFINITY).news(0);
+        let mut lost = Neighbor { trace: Trace::Lost, gap_m, ..news };
+        rule.limit_of(&mut lost, STANDS_AFTER).0.slant
+    };
+    assert!(((slant(0.3) - slant(0.0)) * 2.0 - 0.3).abs() < 1e-6, "{} {}", slant(0.0), slant(0.3));
 }
 
 struct Mover<S> {

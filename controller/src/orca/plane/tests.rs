@@ -48,6 +48,10 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     };
     assert_eq!(tied(v(0.0, 3.0)), -tied(v(0.0, -3.0)));
     assert_eq!(tied(V::ZERO), v(1.0, 0.0));
+    let q = |x: f64, y: f64| Vec2::new(Q16::from_f64(x).unwrap(), Q16::from_f64(y).unwrap());
+    let other = MovingBall { offset_m: q(0.5, 0.0), velocity_mps: q(0.0, 0.0), radii_m: Q16::ONE, tie: q(0.0, 0.0) };
+    let fixed = half_plane(q(0.0, 0.0), &other, &params(2.0, 0.5)).unwrap();
+    assert!((fixed.point.x.to_f64() + 5.0).abs() < 0.01, "{fixed:?}");
     let touching = half_plane(V::ZERO, &ball(v(1.0, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert!(touching.penetration(V::ZERO).abs() < 1e-9);
     assert!(touching.penetration(v(0.1, 0.0)) > 0.0);
