@@ -33,8 +33,8 @@ pub(in crate::agent) enum Hearing {
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Audience {
-    /// Before it was heard, told states of robots that are farther from the teller; then, how
-    /// often others told that it is lost.
+    /// Until others hear it, told states of robots that are farther from the teller; then, how
+    /// often they told that it is lost.
     doubts: u8,
     was_heard: bool,
 }

@@ -247,7 +247,7 @@ fn a_robot_that_is_lost_for_others_stands_until_one_hears_it() {
     let mut pair = Pair::new(&in_plane(1));
     let _ = pair.robot.agent.order(&WaypointOrder::first(place(0, 90_000)));
     let lost = (1, true, 90);
-    assert_eq!(hear(&mut pair, 9, lost), (Hearing::Heard, true), "it has restarted: that is told of its former life");
+    assert_eq!(hear(&mut pair, 9, lost), (Hearing::Heard, true), "before a restart it was lost");
     assert_eq!(hear(&mut pair, 1, (1, false, 2)), (Hearing::Heard, true));
     assert_eq!(hear(&mut pair, 2, lost), (Hearing::Heard, true), "another one may correct it");
     assert_eq!(hear(&mut pair, 1, (1, false, 2)), (Hearing::Heard, true), "and does");

@@ -89,7 +89,7 @@ fn a_body_with_inertia_approaches_a_wall_as_fast_as_it_can_brake() {
     assert!((v.x - room_m / 0.35).abs() < 1e-6, "{v:?}");
 }
 
-/// The place of a lost robot may have been told anew, and its direction is as uncertain.
+/// The ball of a lost robot may have moved, and the direction of its centre is as uncertain.
 #[test]
 fn the_direction_of_a_lost_robot_is_as_uncertain_as_its_place() {
     let body = Mover::new(1, [0.0; 3], f64::INFINITY).body;

@@ -162,8 +162,8 @@ impl Group<'_> {
         Ok(setup)
     }
 
-    /// A flock has the longest look-ahead: its members move together, and have no places of their own
-    /// that they could be late at. So have flyers with a downwash, which jam with less.
+    /// A flock has the longest look-ahead: its members move together, and have no places of their
+    /// own that they could be late at. So have flyers with a downwash, which jam with less.
     fn look_ahead(&self, table: &OrcaTable) -> AvoidParams<f32> {
         let has_goals =
             matches!(self.body.guidance, GuidanceKind::Waypoint | GuidanceKind::Route | GuidanceKind::Formation);
