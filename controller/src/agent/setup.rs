@@ -158,6 +158,12 @@ impl GuidanceKind {
     pub const fn is_on_grid(self) -> bool {
         matches!(self, Self::Route | Self::Formation)
     }
+
+    /// Returns whether each robot has a goal of its own, at which it stays.
+    #[must_use]
+    pub const fn has_goals(self) -> bool {
+        matches!(self, Self::Waypoint | Self::Route | Self::Formation)
+    }
 }
 
 named! {

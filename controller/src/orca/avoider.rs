@@ -26,6 +26,9 @@ mod space;
 #[cfg(test)]
 mod tests;
 
+/// The look-ahead beside a moving robot that does not give way, in units of that beside others.
+const ALONE: i32 = 4;
+
 /// The space in which robots avoid each other, and the constraint of a moving neighbour.
 pub trait HalfSpaces<S: Scalar> {
     /// Velocities: [`Vec2`] in the plane, [`Vec3`] in space.
@@ -242,7 +245,6 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
     fn robots(&self, body: &Body<S>, nearby: &[Nearby<S>], constraints: &mut Vec<HalfSpace<P::Velocity>, K>) {
         let own = own_velocity(body);
         let horizon_s = self.params.horizon_s.max(body.least_horizon_s());
-        let four = S::from_i32(4);
         for other in nearby {
             let tie = if body.id < other.id { -S::ONE } else { S::ONE };
             // Beside a moving robot that does not give way, it makes all of the room alone, also
@@ -256,7 +258,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
                 tie: Vec3::new(tie, S::ZERO, S::ZERO).into(),
             };
             let params = Params {
-                horizon_s: if is_alone { horizon_s.max((horizon_s * four).min(four)) } else { horizon_s },
+                horizon_s: if is_alone { horizon_s * S::from_i32(ALONE) } else { horizon_s },
                 separation_s: body.step_s,
                 share: if other.gives_way { self.params.share } else { S::ONE },
             };

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// The look-ahead of [`AvoidParams::for_body`]: a time, and how many thousandths of its radius the
 /// body covers in the rest.
-const HORIZON_MS: i32 = 400;
+const HORIZON_MS: i32 = 500;
 const HORIZON_MILLIRADII: i32 = 1200;
 
 /// Parameters of an [`Avoider`](super::Avoider). Not `non_exhaustive`, so that a change can be
@@ -46,10 +46,11 @@ impl<S: Scalar> Default for AvoidParams<S> {
 
 impl<S: Scalar> AvoidParams<S> {
     /// The default with a look-ahead that suits bodies of `radius_m`, metres, and `max_speed_mps`,
-    /// m/s: 0.4 s and the time for 1.2 of their radii, at most that of the default. Small or quick
+    /// m/s: 0.5 s and the time for 1.2 of their radii, at most that of the default. Small or quick
     /// robots with the look-ahead of large or slow ones make way for others that are far away.
     ///
-    /// The two numbers were chosen in 500 random scenes (`docs/results.md`).
+    /// The two numbers were chosen in swaps, crowds and 500 scenes with bad radios
+    /// (`docs/limits.md`).
     #[must_use]
     pub fn for_body(radius_m: S, max_speed_mps: S) -> Self {
         let radii_m = radius_m * S::from_milli(HORIZON_MILLIRADII);

@@ -61,9 +61,7 @@ impl GroupFigures {
 
     /// Whether its robots have goals at which they stay.
     fn has_goals(&self) -> bool {
-        [GuidanceKind::Route, GuidanceKind::Formation, GuidanceKind::Waypoint]
-            .map(GuidanceKind::name)
-            .contains(&self.guidance)
+        self.guidance.parse().is_ok_and(GuidanceKind::has_goals)
     }
 }
 

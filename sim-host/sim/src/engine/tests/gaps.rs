@@ -16,7 +16,7 @@ impl Engine {
             return;
         }
         let discs = self.ground.view(self.tick).discs;
-        let disc_of = |id: RobotId| discs.iter().find(|disc| disc.id == id);
+        let disc_of = |id: RobotId| discs.binary_search_by_key(&id, |disc| disc.id).ok().and_then(|at| discs.get(at));
         let mut seen = Vec::new();
         for (index, computer) in self.computers.iter().enumerate() {
             self.ground.sightings(index, self.tick, 1, &mut seen);

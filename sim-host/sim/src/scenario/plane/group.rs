@@ -137,7 +137,7 @@ impl Group<'_> {
     }
 
     fn safety(&self, abilities: &Abilities, table: &OrcaTable) -> Checked<SafetySetup> {
-        let mut params = self.look_ahead(table);
+        let mut params = self.look_ahead();
         let brake_s = abilities.least_horizon_s();
         params.horizon_s = params.horizon_s.max(brake_s as f32);
         if let Some(given) = table.params.get("horizon_s").filter(|&given| given < brake_s) {
@@ -163,11 +163,9 @@ impl Group<'_> {
     }
 
     /// A flock has the longest look-ahead: its members move together, and have no places of their
-    /// own that they could be late at. So have flyers with a downwash, which jam with less.
-    fn look_ahead(&self, table: &OrcaTable) -> AvoidParams<f32> {
-        let has_goals =
-            matches!(self.body.guidance, GuidanceKind::Waypoint | GuidanceKind::Route | GuidanceKind::Formation);
-        if !has_goals || table.downwash.is_some() {
+    /// own that they could be late at. So have flyers, which jam in a downwash with less.
+    fn look_ahead(&self) -> AvoidParams<f32> {
+        if !self.body.guidance.has_goals() || self.body.safety == SafetyKind::Fly {
             return AvoidParams::default();
         }
         AvoidParams::for_body(self.body.radius_m as f32, self.body.max_speed_mps as f32)

@@ -86,20 +86,20 @@ fn long_tick(group: &RobotGroup, tick_s: f64) -> Option<String> {
     })
 }
 
-/// Warns of robots that do not move, since each may be anywhere by the time it is heard.
+/// Warns of robots that stand beside each other, since each may be anywhere by the time it is heard.
 fn late_news(group: &RobotGroup, scenario: &Scenario) -> Option<String> {
     let (SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. }) = group.safety else { return None };
     let (delay_s, _) = scenario.radio.news(scenario.step_s());
     let unknown_s = (delay_s - scenario.step_s()).max(0.0);
-    let (growth_mps, wide_m) = (f64::from(inflation.growth_mps), 2.0 * group.radius_m);
+    let (growth_mps, radius_m) = (f64::from(inflation.growth_mps), group.radius_m);
     let swerve_m = group.abilities.max_acceleration_mps2 * unknown_s * unknown_s / 2.0;
     let way_m = (growth_mps * unknown_s).min(swerve_m);
-    (way_m > wide_m).then(|| {
+    (scenario.robots.len() > 1 && way_m > radius_m).then(|| {
         format!(
-            "radio.delay_ms and jitter_ms: a robot at {growth_mps} m/s goes up to {way_m:.2} m before its next beacon counts, more \
-             than its body's {wide_m:.2} m; robots nearer to each other than that do not approach, and a crowd may stand; \
-             max_speed_mps of at most {:.2} would do",
-            wide_m / unknown_s
+            "radio.delay_ms and jitter_ms: a robot may go {way_m:.2} m before its next beacon counts, more than its radius \
+             of {radius_m:.2} m; others do not approach within that distance, and a crowd may stand; \
+             {:.2} m/s or less would do (max_speed_mps, and inflation_mps if you give it)",
+            radius_m / unknown_s
         )
     })
 }

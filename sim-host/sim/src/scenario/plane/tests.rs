@@ -65,7 +65,7 @@ fn the_smallest_plane_has_the_documented_defaults() {
     assert_eq!((group.cruise_mps, group.sight_m), (1.0, 10.0));
     assert!((group.tolerance_m - 0.02).abs() < 1e-12);
     let (params, inflation) = (AvoidParams::for_body(0.2, 1.0), StalenessInflation { growth_mps: 1.0, max_m: 0.2 });
-    assert!((0.6399..0.6401).contains(&params.horizon_s), "0.4 s and 1.2 radii");
+    assert!((0.7399..0.7401).contains(&params.horizon_s), "0.5 s and 1.2 radii");
     assert_eq!(group.guidance, GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.02 });
     assert_eq!(group.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
     assert!(!plane.has_terrain);

@@ -56,18 +56,24 @@ fn a_tick_in_which_a_body_moves_more_than_its_width_causes_a_warning() {
 }
 
 #[test]
-fn news_that_is_older_than_a_body_is_wide_causes_a_warning() {
-    let of = |radio: &str, safety: &str| {
-        let text = format!("tick_s = 0.1\n{HEAD}[radio]\n{radio}\n{PLANE}{safety}[plane.robots]\nlist = [{ONE}]\n");
+fn news_so_late_that_a_robot_goes_its_radius_causes_a_warning() {
+    let of = |radio: &str, rest: &str, robots: &str| {
+        let text = format!("tick_s = 0.1\n{HEAD}[radio]\n{radio}\n{PLANE}{rest}[plane.robots]\nlist = [{robots}]\n");
         parse(&text).expect("good").remarks()
     };
-    // At 1 m/s and 0.4 m wide.
-    assert_eq!(of("delay_ms = 490", ""), Vec::<String>::new());
-    assert_eq!(of("delay_ms = 400\njitter_ms = 200", "safety = \"none\"\n"), Vec::<String>::new());
-    let [remark] = &of("delay_ms = 400\njitter_ms = 200", "")[..] else { panic!("one remark") };
-    assert!(remark.contains("goes up to 0.50 m") && remark.contains("max_speed_mps of at most 0.80"), "{remark}");
-    // A body that turns slowly is known for longer.
-    assert_eq!(of("delay_ms = 600", "max_acceleration_mps2 = 2\n"), Vec::<String>::new());
+    let two = format!("{ONE}, {{ start_m = [0, 3], goal_m = [6, 3] }}");
+    let late = "delay_ms = 200\njitter_ms = 200";
+    // At 1 m/s, with a radius of 0.2 m.
+    assert_eq!(of("delay_ms = 290", "", &two), Vec::<String>::new());
+    assert_eq!(of(late, "safety = \"none\"\n", &two), Vec::<String>::new());
+    assert_eq!(of(late, "", ONE), Vec::<String>::new(), "it is alone");
+    let [remark] = &of(late, "", &two)[..] else { panic!("one remark") };
+    assert!(remark.contains("may go 0.30 m") && remark.contains("0.67 m/s or less"), "{remark}");
+    // A body that turns slowly is known for longer; one that may be quicker, for less.
+    assert_eq!(of(late, "max_acceleration_mps2 = 4\n", &two), Vec::<String>::new());
+    let quick = "[plane.orca]\ninflation_mps = 2\n";
+    assert!(of("delay_ms = 210", quick, &two)[0].contains("may go 0.22 m"));
+    assert_eq!(of("delay_ms = 210", "", &two), Vec::<String>::new());
 }
 
 #[test]
