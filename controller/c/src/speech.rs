@@ -43,6 +43,10 @@ impl Wire for Speech {
         each!(self, wire => wire.decode(frame))
     }
 
+    fn is_authenticated(&self) -> bool {
+        each!(self, wire => wire.is_authenticated())
+    }
+
     fn held(&self) -> Option<(u16, KeyPhase)> {
         each!(self, wire => wire.held())
     }

@@ -145,6 +145,10 @@ where
         each!(self, wire => wire.decode(frame))
     }
 
+    fn is_authenticated(&self) -> bool {
+        each!(self, wire => wire.is_authenticated())
+    }
+
     fn held(&self) -> Option<(u16, KeyPhase)> {
         each!(self, wire => wire.held())
     }

@@ -76,6 +76,10 @@ impl<const N: usize> Wire for Signed<N> {
         }
     }
 
+    fn is_authenticated(&self) -> bool {
+        true
+    }
+
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {
         Mavlink.next_frame(rest)
     }

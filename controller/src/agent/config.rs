@@ -26,7 +26,8 @@ pub struct AgentConfig<S> {
     /// Whether all robots decide at the same instants, as robots of a simulator may. Robots with
     /// clocks of their own do not.
     pub is_synchronous: bool,
-    /// Time between two beacons. A longer period saves airtime but gives neighbours older states.
+    /// Time between two beacons, the same in all robots of a swarm with a key, whose numbers count
+    /// these periods. A longer period saves airtime but gives neighbours older states.
     pub beacon_period: Duration,
     /// Radius of the ball around the body, metres.
     pub radius_m: S,

@@ -120,6 +120,14 @@ impl ContactState {
         matches!(before, Self::InContact(_)) && *self != before
     }
 
+    /// The state after a frame that was sent at `at`; a delayed one is older than others.
+    pub(super) const fn heard(self, at: Instant) -> Self {
+        match self {
+            Self::InContact(last) if at.is_before(last) => self,
+            _ => Self::InContact(at),
+        }
+    }
+
     pub(super) const fn is_lost(self) -> bool {
         matches!(self, Self::Lost(_) | Self::Forgotten)
     }

@@ -9,18 +9,22 @@ use crate::body::Body;
 use crate::geom::{Position, Torus, Vec3};
 use crate::law::Queued;
 use crate::list::SparseVec;
-use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put};
+use crate::neighbor::{
+    Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put, Trace,
+};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
     Ack, Addressed, Arrival, Beacon, Broadcast, Content, DecodeError, Due, EncodeError, Frame, Header,
-    IncomingMessages, IncomingOrders, KeyHeld, MAX_PAYLOAD, Message, OutgoingMessages, SequenceWindow, Wire,
+    IncomingMessages, IncomingOrders, KeyHeld, MAX_PAYLOAD, Message, OutgoingMessages, Wire,
 };
+use dates::{Pace, Sender};
 use relay::Relay;
 use serde::{Deserialize, Serialize};
 
 mod audience;
+mod dates;
 mod identity;
 mod relay;
 mod sight;
@@ -58,11 +62,13 @@ pub(super) struct Link<S, const N: usize, W, Q: Protocol> {
     pub(super) listening: Listening,
     suspects: PlausibilityFilter,
     loss: LossEstimate,
-    windows: SparseVec<(RobotId, SequenceWindow), N>,
+    senders: SparseVec<Sender, N>,
     outgoing: OutgoingMessages<PENDING>,
     incoming: IncomingMessages<INCOMING>,
     orders: IncomingOrders<ORDERS>,
     beacon_due: Instant,
+    /// Up to when the own numbers count beacon periods.
+    counted: Instant,
     has_sent: bool,
     relay: Relay,
     /// Constant in a run, so digests omit it.
@@ -72,12 +78,14 @@ pub(super) struct Link<S, const N: usize, W, Q: Protocol> {
 }
 
 /// The context of received frames; `heard_at` is the time at which arriving frames were sent.
+#[derive(Clone, Copy)]
 pub(super) struct ReceiveContext<'a, S> {
     pub(super) position: Position,
     pub(super) velocity_mps: Vec3<S>,
     pub(super) heard_at: Instant,
     pub(super) fastest_mps: Option<S>,
     pub(super) period: Duration,
+    pub(super) latency: Duration,
     pub(super) plausibility: &'a PlausibilityLimits<S>,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
@@ -94,11 +102,12 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             listening: Listening::NotStarted,
             suspects: PlausibilityFilter::new(),
             loss: LossEstimate::new(),
-            windows: SparseVec::new(),
+            senders: SparseVec::new(),
             outgoing: OutgoingMessages::new(id, boot, retry),
             incoming: IncomingMessages::new(ages.expire_after),
             orders: IncomingOrders::new(),
             beacon_due: Instant::from_micros(0),
+            counted: Instant::from_micros(0),
             has_sent: false,
             relay: Relay::new(id),
             #[cfg(feature = "host")]
@@ -145,7 +154,11 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         if let Some(torus) = self.torus() {
             self.table.see_at(|place| torus.image(place, own));
         }
-        let (windows, loss) = (&mut self.windows, &mut self.loss);
+        let keeps = self.wire.is_authenticated();
+        if keeps {
+            self.forget_numbers(now, period);
+        }
+        let (senders, loss) = (&mut self.senders, &mut self.loss);
         let Ages { stale_after, expire_after } = self.table.ages();
         let patience = if remembers {
             expire_after
@@ -157,7 +170,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let on_s = S::from_micro(period.as_micros()).max(body.step_s) + config.lag_s;
         self.table.expire((body, on_s), now, (longest, remembers), |lost| {
             loss.gave_up(u16::try_from(missed).unwrap_or(u16::MAX));
-            windows.retain(|(id, _)| *id != lost);
+            // With a key its next frame may be one that an attacker has kept.
+            if !keeps {
+                senders.retain(|sender| sender.id != lost);
+            }
             report(out, Event::NeighborLost(lost));
         });
     }
@@ -188,18 +204,35 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         out: &mut Outputs<S>,
     ) -> Option<Received<Q>> {
         let id = self.known_as(frame, listener, out);
-        let accepted = id.and_then(|id| Some((id, self.arrival(id, frame.header, out)?)));
+        let accepted = id.and_then(|id| {
+            let (arrival, heard_at) = self.arrival(id, frame.header, listener, out)?;
+            Some((id, arrival, ReceiveContext { heard_at, ..*listener }))
+        });
         let count = if accepted.is_some() { &mut out.received } else { &mut out.rejected };
         *count = count.saturating_add(1);
-        let (id, arrival) = accepted?;
-        self.take(frame, id, arrival, now, listener, out)
+        let (id, arrival, listener) = accepted?;
+        self.take(frame, id, arrival, now, &listener, out)
     }
 
-    /// `None` if the frame must be refused.
-    fn arrival(&mut self, sender: RobotId, header: Header, out: &mut Outputs<S>) -> Option<Arrival> {
-        let window = self.windows.iter_mut().find(|(id, _)| *id == sender);
-        let (missed, arrival) =
-            window.map_or((0, Arrival::New), |(_, window)| (window.skipped(header), window.check(header)));
+    /// Returns also when it was sent; `None` if the frame must be refused.
+    fn arrival(
+        &mut self,
+        sender: RobotId,
+        header: Header,
+        listener: &ReceiveContext<'_, S>,
+        out: &mut Outputs<S>,
+    ) -> Option<(Arrival, Instant)> {
+        let ReceiveContext { heard_at, period, latency, .. } = *listener;
+        let Some(known) = self.senders.iter_mut().find(|known| known.id == sender) else {
+            return Some((Arrival::New, heard_at));
+        };
+        let (missed, arrival, sent_at) = if self.wire.is_authenticated() {
+            let missed = known.window.periods(header).saturating_sub(1);
+            let (arrival, sent_at) = known.date(header, heard_at, &Pace { period, latency });
+            (missed, arrival, sent_at)
+        } else {
+            (known.window.skipped(header), known.window.check(header), heard_at)
+        };
         if arrival == Arrival::New {
             self.loss.heard(missed);
         }
@@ -207,7 +240,8 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             self.incoming.forget(sender);
             report(out, Event::NeighborRebooted(sender));
         }
-        arrival.is_accepted().then_some(arrival)
+        let is_recent = heard_at.since(sent_at) <= self.table.ages().expire_after;
+        (arrival.is_accepted() && is_recent).then_some((arrival, sent_at))
     }
 
     fn take(
@@ -275,22 +309,25 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let id = neighbor.id;
         neighbor.position = self.image(neighbor.position, listener.position);
         self.cut(&mut neighbor, listener.plausibility, out);
+        // Another robot has told of it since.
+        let is_older = |known: &Neighbor<S, _>| known.trace == Trace::Told && neighbor.heard.is_before(known.heard);
+        if self.known(id).is_some_and(is_older) {
+            return;
+        }
         self.table.note_reception(&mut neighbor, listener.position, listener.velocity_mps);
-        self.contact = ContactState::InContact(neighbor.heard);
+        self.contact = self.contact.heard(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);
         self.note_eviction(put, out);
         if matches!(put, Put::Inserted | Put::Evicted(_)) {
-            let mut window = SequenceWindow::new();
-            let _ = window.check(header);
-            self.found(id, window, put, now);
+            self.found(Sender::first(id, header, neighbor.heard), put, now);
             report(out, id.duplicate_of().map_or(Event::NeighborFound(id), Event::DuplicateId));
         }
     }
 
     /// Notes a robot that was put into the table.
-    fn found(&mut self, id: RobotId, window: SequenceWindow, put: Put, now: Instant) {
-        // Cannot fail: there are as many windows as entries.
-        let _ = self.windows.push((id, window));
+    fn found(&mut self, sender: Sender, put: Put, now: Instant) {
+        let id = sender.id;
+        self.note_sender(sender);
         // In a full table others are found for ever.
         if put == Put::Inserted {
             self.relay.tell_next(id);
@@ -300,7 +337,9 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
 
     fn note_eviction(&mut self, put: Put, out: &mut Outputs<S>) {
         if let Put::Evicted(evicted) = put {
-            self.windows.retain(|(id, _)| *id != evicted);
+            if !self.wire.is_authenticated() {
+                self.senders.retain(|sender| sender.id != evicted);
+            }
             report(out, Event::NeighborEvicted(evicted));
         }
     }
@@ -364,6 +403,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             let payload = payload(&mut Radio::new(now, config.message_valid, &mut outgoing));
             let (protocol, payload) = payload.encode::<MAX_PAYLOAD>(Q::ID).unwrap_or_default();
             let beacon = Message::Beacon(Beacon { protocol, payload, ..beacon });
+            self.count_periods(now, period);
             self.said.note(self.header.sequence, &beacon);
             if self.say(&beacon, 0, out) == Err(EncodeError::Exhausted) {
                 report(out, Event::Muted);

@@ -184,6 +184,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 heard_at,
                 fastest_mps,
                 period: config.beacon_period,
+                latency: config.latency,
                 plausibility: &config.plausibility,
                 needs: &|id| id == leader || id == config.id.duplicate() || law.needs(id),
             };

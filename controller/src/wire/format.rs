@@ -34,6 +34,13 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
     /// The reason for rejecting the frame, see [`DecodeError`].
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError>;
 
+    /// Whether only senders with the key are accepted. Their numbers then count beacon periods, two
+    /// numbers each ([`SequenceWindow::periods`](super::SequenceWindow::periods)), so that a
+    /// receiver can date a delayed frame.
+    fn is_authenticated(&self) -> bool {
+        false
+    }
+
     /// The robot's progress with its assigned keys; `None` for a format without own keys.
     fn held(&self) -> Option<(u16, KeyPhase)> {
         None

@@ -32,7 +32,7 @@ pub use outgoing::{Due, OutgoingMessages, Retry, SendError};
 pub use ring::{Ring, Signer};
 #[cfg(feature = "auth")]
 pub use sealed::{PEERS, REACH_STARTS, Sealed};
-pub use sequence::{Arrival, SEQUENCE_SPAN, SequenceWindow};
+pub use sequence::{Arrival, MOST_PERIODS, SEQUENCE_SPAN, SequenceWindow, next_beacon};
 
 #[cfg(test)]
 pub(crate) mod arbitrary;

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// Default number of senders that a [`Sealed`] can track.
 pub const PEERS: usize = 64;
 
-/// 268 million frames per start, a month at 100 frames per second.
+/// 268 million numbers per start. A robot takes two for a beacon: 15 days at 100 beacons per second.
 const WRAP_BITS: u32 = 12;
 const EPOCH_LEN: usize = 4;
 /// Largest accepted lead of a sender, in starts over its latest known start: see [`Sealed`].
@@ -37,8 +37,10 @@ pub const REACH_STARTS: u32 = 1024;
 /// - **Replay.** A recorded frame is rejected because its counter (epoch and sequence together) was
 ///   received before: see [`ReplayGuard`].
 /// - **Not covered.** All robots share the key, so a captured robot can impersonate all others.
-///   Frames are not encrypted. No code protects against jamming, or against delays below the
-///   maximum age of a neighbour.
+///   Frames are not encrypted. No code protects against jamming.
+/// - **Delay.** A frame that the receiver has not heard can be repeated later. Its number tells how
+///   old it is at least, if the receiver knows an earlier frame of its sender
+///   ([`SequenceWindow::periods`](super::SequenceWindow::periods)); of the first one it does not.
 ///
 /// # Counters too far ahead
 ///
@@ -245,6 +247,10 @@ impl<const N: usize> Wire for Sealed<N> {
             Message::Key(told) if self.ring.own().is_some() && !self.ring.apply(told) => Err(DecodeError::Forged),
             _ => Ok(frame),
         }
+    }
+
+    fn is_authenticated(&self) -> bool {
+        true
     }
 
     fn held(&self) -> Option<(u16, KeyPhase)> {

@@ -107,6 +107,19 @@ impl SequenceWindow {
         if self.seen == 0 || header.boot != self.boot || ahead.cast_signed() <= 0 { 0 } else { ahead - 1 }
     }
 
+    /// At most how many beacon periods after the newest frame an authenticated sender sent this
+    /// newer one; 0 for other frames. Such a sender takes two numbers in each period of its clock,
+    /// the even one for its beacon, and more only if it has more to send ([`next_beacon`]).
+    #[must_use]
+    #[expect(clippy::arithmetic_side_effects, reason = "at most 2^15")]
+    pub const fn periods(&self, header: Header) -> u16 {
+        let ahead = header.sequence.wrapping_sub(self.newest);
+        if self.seen == 0 || header.boot != self.boot || ahead.cast_signed() <= 0 {
+            return 0;
+        }
+        ((self.newest & 1) + ahead) >> 1
+    }
+
     /// The distance of this frame from the newest one, before or behind; 0 after a reboot.
     #[must_use]
     pub const fn distance(&self, header: Header) -> u16 {
@@ -118,6 +131,18 @@ impl SequenceWindow {
         *self = Self { seen: 1, newest: header.sequence, boot: header.boot, previous };
     }
 }
+
+/// The number of an authenticated sender's beacon that is sent `periods` after the last one, for a
+/// sender whose next frame would have the number `next`. At most [`MOST_PERIODS`] are counted.
+#[must_use]
+pub fn next_beacon(next: u16, periods: u16) -> u16 {
+    let even = next.wrapping_add(next & 1);
+    even.wrapping_add(periods.clamp(1, MOST_PERIODS).wrapping_sub(1).wrapping_mul(2))
+}
+
+/// The longest pause that [`next_beacon`] counts, in beacon periods. Its numbers cannot look older
+/// than the last ones.
+pub const MOST_PERIODS: u16 = 1 << 13;
 
 #[cfg(test)]
 mod tests;

@@ -43,7 +43,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         self.is_believed(id, header, place, listener, out).then_some(id)
     }
 
-    fn known(&self, id: RobotId) -> Option<&Neighbor<S, Q::Payload>> {
+    pub(super) fn known(&self, id: RobotId) -> Option<&Neighbor<S, Q::Payload>> {
         let all = self.table.as_slice();
         all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at))
     }
@@ -55,9 +55,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         header: Header,
         listener: &ReceiveContext<'_, S>,
     ) -> Duration {
-        let window = self.windows.iter().find(|(id, _)| *id == known.id);
-        let frames = window.map_or(0, |(_, window)| window.distance(header));
-        let counted = listener.period.saturating_mul(frames.into());
+        let sender = self.senders.iter().find(|sender| sender.id == known.id);
+        let frames = sender.map_or(0, |sender| sender.window.distance(header));
+        let periods = if self.wire.is_authenticated() { frames >> 1 } else { frames };
+        let counted = listener.period.saturating_mul(periods.into());
         counted.max(known.age(listener.heard_at).unwrap_or(Duration::ZERO))
     }
 

@@ -8,6 +8,7 @@
 //! at a place that the known robot cannot have reached.
 
 use super::audience::{Audience, Hearing};
+use super::dates::Sender;
 use super::{Link, Outputs, Protocol, ReceiveContext, report};
 use crate::agent::contact_loss::Listening;
 use crate::agent::duplicate_id::is_within;
@@ -17,7 +18,7 @@ use crate::neighbor::{Neighbor, Put, Trace};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::{Beacon, LostRobot, SequenceWindow, Wire};
+use crate::wire::{Beacon, LostRobot, Wire};
 use serde::{Deserialize, Serialize};
 
 /// Beacons for each told state: after the start, while a robot is silent, and while none is.
@@ -130,7 +131,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let put = self.table.put(state, listener.position, now, listener.needs);
         self.note_eviction(put, out);
         if is_alive && matches!(put, Put::Inserted | Put::Evicted(_)) {
-            self.found(id, SequenceWindow::new(), put, now);
+            self.found(Sender::silent(id), put, now);
             report(out, Event::NeighborFound(id));
         }
     }
@@ -138,8 +139,12 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     /// Notes whether `teller` hears the own robot: a recent state of it, or of a robot that is
     /// farther from the teller, or that it is lost.
     fn note_audience(&mut self, teller: RobotId, told: &LostRobot, now: Instant, listener: &ReceiveContext<'_, S>) {
+        let stale_after = self.table.ages().stale_after;
+        if (now - listener.latency).since(listener.heard_at) > stale_after {
+            return;
+        }
         // The teller's states are as old as the latency when they arrive.
-        let recent = self.table.ages().stale_after.saturating_mul(RECENT).as_micros();
+        let recent = stale_after.saturating_mul(RECENT).as_micros();
         let recent = recent.saturating_add(now.since(listener.heard_at).as_micros());
         let is_recent = UNIT.saturating_mul(told.age_cs.into()).as_micros() <= recent;
         let is_own = told.id == self.header.sender;

@@ -2,13 +2,14 @@
 
 use super::super::contact_loss::ContactState;
 use super::super::io::{Event, Outputs};
+use super::dates::Sender;
 use super::{Link, Protocol, report};
 use crate::geom::Position;
 use crate::neighbor::{Put, Tracker};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use crate::wire::{SequenceWindow, Wire};
+use crate::wire::Wire;
 
 impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     /// Runs after the frames of a step. A detection counts as contact only for a robot that was in
@@ -23,9 +24,9 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         out: &mut Outputs<S>,
     ) {
         tracker.hear(&self.table, own);
-        let windows = &mut self.windows;
+        let senders = &mut self.senders;
         tracker.forget(&mut self.table, now, |gone| {
-            windows.retain(|(id, _)| *id != gone);
+            senders.retain(|sender| sender.id != gone);
             report(out, Event::NeighborLost(gone));
         });
         for &neighbor in &tracker.seen(&self.table, flock, now) {
@@ -36,7 +37,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             let put = self.table.put(neighbor, own, now, |id| needed.contains(&id));
             self.note_eviction(put, out);
             if matches!(put, Put::Inserted | Put::Evicted(_)) {
-                let _ = self.windows.push((id, SequenceWindow::new()));
+                self.note_sender(Sender::silent(id));
                 report(out, Event::NeighborFound(id));
             }
         }

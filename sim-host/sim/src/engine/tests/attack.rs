@@ -1,5 +1,6 @@
 //! Attackers without the key have no effect; without authentication they divert the swarm.
 
+use super::safety_scenes::{Draw, UNSEEN};
 use crate::engine::{Moment, Outcome, simulate};
 use crate::record::RobotRow;
 use crate::scenario::{Overrides, Scenario};
@@ -149,4 +150,34 @@ fn a_key_rotation_does_not_affect_the_run() {
             assert_eq!((rolled.trace_hash, rolled.packets.forged), (still.trace_hash, 0));
         }
     }
+}
+
+/// Robots of one key that cross while links fade, and a radio that repeats all packets later, from
+/// when the robots have heard each other.
+fn repeated(seed: u32) -> String {
+    let mut draw = Draw::new(40, seed);
+    let (count, radius_m) = (draw.whole(6, 14), draw.within(0.15, 0.4));
+    let (share, mean_ms) = (draw.within(0.2, 0.5), draw.within(500.0, 1500.0));
+    let (speed, ring_m) = (draw.within(0.5, 1.5), (1.2 * radius_m * f64::from(count)).max(5.0));
+    let format = if seed.is_multiple_of(2) { "postcard" } else { "mavlink" };
+    format!(
+        "name = \"repeated\"\nseed = {seed}\nticks = 3000\ntick_s = 0.05\n[radio]\nformat = \"{format}\"\n\
+         burst = {{ share = {share}, mean_ms = {mean_ms} }}\n[authentication]\nkey = \"passphrase: a test\"\n\
+         [[attack]]\nkind = \"replay\"\nplace_m = [0, 0]\nfrom_s = 6\ndelay_s = {}\n[plane]\n\
+         radius_m = {radius_m}\nmax_speed_mps = {speed}\n\
+         [plane.robots.circle]\ncount = {count}\nradius_m = {ring_m}\nnoise_m = 0.05\n",
+        draw.within(0.6, 2.5)
+    )
+}
+
+/// If receivers did not date packets by their numbers, robots would touch in a quarter of these.
+#[test]
+fn packets_that_are_repeated_while_links_fade_are_as_old_as_they_are() {
+    let is_touched = |seed: &u32| {
+        let outcome = run(&repeated(*seed));
+        outcome.clearance.expect("bodies").bodies_m < -1e-3
+    };
+    let [seen, unseen] = [0, UNSEEN].map(|first| (first..first + 12).filter(is_touched).collect::<Vec<_>>());
+    println!("robots touch in {} of 12, seeds {seen:?}, and {} of 12, seeds {unseen:?}", seen.len(), unseen.len());
+    assert!(seen.len() + unseen.len() <= 1);
 }
