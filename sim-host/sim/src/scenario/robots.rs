@@ -6,7 +6,8 @@ pub use table::{RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 
 use super::formation::{FormationEntries, FormationEntry, FormationStarts};
 use super::source::{Checked, Section};
-use super::{Draft, Part, Placed};
+use super::{Draft, LandSource, Part, Placed};
+use crate::shown::Shown as _;
 use crate::terrain::Terrain;
 use crate::terrain::movingai;
 use staya_controller::agent::TEMPLATE;
@@ -15,7 +16,9 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateError};
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::ops::Range;
+use std::path::Path;
 
 const PLACES: u32 = 0x0053_0001;
 const GOALS: u32 = 0x0053_0002;
@@ -71,11 +74,13 @@ struct Entry {
     field: String,
     /// The robot itself moves a goal in a wall to the nearest free cell (KUZ formation targets).
     goal_moves: bool,
+    /// Line of the `.scen` that has the robot.
+    line: Option<usize>,
 }
 
 impl Entry {
     fn new(number: u32, start: Cell, goal: Cell, field: impl Into<String>) -> Self {
-        Self { robot: Robot { id: RobotId(number), start, goal }, field: field.into(), goal_moves: false }
+        Self { robot: Robot { id: RobotId(number), start, goal }, field: field.into(), goal_moves: false, line: None }
     }
 }
 
@@ -280,16 +285,29 @@ fn placed(at: &Section<'_>, entry: &FormationEntry, graph: &Formation, first: u3
 
 fn from_scen(draft: &Draft<'_>, entry: &ScenEntry, terrain: &Terrain) -> Checked<Vec<Entry>> {
     let (at, count) = (draft.at("robots.scen"), entry.count as usize);
-    let queries = movingai::load_scen(&draft.source.file(&entry.file))
+    let path = draft.source.file(&entry.file);
+    let queries = movingai::load_scen(&path)
         .map_err(|error| at.error("file", error.to_string(), "file names are relative to the scenario file"))?;
     let what = format!("{count} robots are wanted, the file has {}", queries.len());
     at.require((1..=queries.len()).contains(&count), "count", what, format!("give 1 to {}", queries.len()))?;
+    let land = match draft.file.terrain.as_ref().map(|table| &table.land) {
+        Some(LandSource::File(land)) => land.file_name().and_then(OsStr::to_str),
+        _ => None,
+    };
     let robot = |(number, query): (u32, &movingai::Query)| {
+        let refuse = |what: String| {
+            let what = format!("{}:{}: {what}", path.shown(), query.line);
+            Err(at.error("file", what, format!("use the map {} uncropped", query.map)))
+        };
+        if let Some(land) = land.filter(|land| *land != query.map_name()) {
+            return refuse(format!("the query is for the map {}, the terrain is {land}", query.map_name()));
+        }
         let (map, [width, height]) = ([query.width, query.height], [terrain.width(), terrain.height()]);
-        let what =
-            format!("it is for a map of {} x {} cells, the terrain has {width} x {height}", query.width, query.height);
-        at.require(map == [width, height], "file", what, format!("use the map {} uncropped", query.map))?;
-        Ok(Entry::new(number, query.start, query.goal, &at.path))
+        if map != [width, height] {
+            let [columns, rows] = map;
+            return refuse(format!("the map has {columns} x {rows} cells, the terrain {width} x {height}"));
+        }
+        Ok(Entry { line: Some(query.line), ..Entry::new(number, query.start, query.goal, &at.path) })
     };
     (1..).zip(&queries[..count]).map(robot).collect()
 }
@@ -341,30 +359,48 @@ fn check(draft: &Draft<'_>, entries: &[Entry], terrain: &Terrain) -> Checked {
     let mut ids = BTreeSet::new();
     let mut starts = vec![0; terrain.cells().len()];
     let mut goals = starts.clone();
-    for Entry { robot, field, goal_moves } in entries {
+    for Entry { robot, field, goal_moves, line } in entries {
         let RobotId(id) = robot.id;
-        let refuse = |name: &str, what: String, remedy: String| Err(draft.at(field).error(name, what, remedy));
+        let refuse = |name: &str, what: String, remedy: String| {
+            let at = draft.at(field);
+            Err(match (line, &draft.file.robots) {
+                (Some(line), Some(RobotsTable::Scen(entry))) => {
+                    let path = draft.source.path().parent().unwrap_or(Path::new("")).join(&entry.file);
+                    at.error("file", format!("{}:{line}: {what}", path.shown()), remedy)
+                }
+                _ => at.error(name, what, remedy),
+            })
+        };
+        // A .scen counts columns and rows from the north-west.
+        let shown = |place: Cell| match line {
+            Some(_) => movingai::in_file(place, terrain.height()).map(i32::from),
+            None => [place.x, place.y].map(i32::from),
+        };
         if id == 0 || !ids.insert(id) {
             let remedy = "numbers are 1 or more, and each robot has its own";
             return refuse("id", format!("{id} is not free"), remedy.to_owned());
         }
         for (name, place, taken) in [("start", robot.start, &mut starts), ("goal", robot.goal, &mut goals)] {
-            let the = || format!("the {name} ({}, {}) of robot {id}", place.x, place.y);
             let Some(index) = terrain.index(place) else {
                 let (columns, rows) = (terrain.width() - 1, terrain.height() - 1);
                 let remedy = format!("the map has columns 0 to {columns} and rows 0 to {rows}");
-                return refuse(name, the() + " is not on the map", remedy);
+                let what = format!("the {name} ({}, {}) of robot {id} is not on the map", place.x, place.y);
+                return refuse(name, what, remedy);
             };
+            let [x, y] = shown(place);
             if !(terrain.is_passable(place) || name == "goal" && *goal_moves) {
-                let remedy = match nearest_passable(terrain, place) {
-                    Some(near) => format!("the nearest free cell is [{}, {}]", near.x, near.y),
+                let remedy = match nearest_passable(terrain, place).map(shown) {
+                    Some([x, y]) => format!("the nearest free cell is [{x}, {y}]"),
                     None => "the map has no free cell at all".to_owned(),
                 };
-                return refuse(name, the() + " is in a wall", remedy);
+                let kind = if terrain.is_unknown(place) { "an unknown cell" } else { "a wall" };
+                return refuse(name, format!("the {name} ({x}, {y}) of robot {id} is in {kind}"), remedy);
             }
             let other = std::mem::replace(&mut taken[index], id);
             if other != 0 {
-                let what = format!("robots {other} and {id} have the same {name} ({}, {})", place.x, place.y);
+                let first = entries.iter().find(|entry| entry.robot.id.0 == other).and_then(|entry| entry.line);
+                let line = first.map_or_else(String::new, |line| format!(", which line {line} has, too"));
+                let what = format!("robots {other} and {id} have the same {name} ({x}, {y}){line}");
                 return refuse(name, what, "a cell holds one robot: move one of them".to_owned());
             }
         }

@@ -27,11 +27,18 @@ pub struct Heights {
 struct Header {
     columns: Option<u16>,
     rows: Option<u16>,
-    cell_m: Option<f64>,
+    /// Sides of a cell along x and y, with the line that gives them.
+    cell_m: [Option<(f64, usize)>; 2],
     /// Position along x and y, and whether it is that of a cell's centre.
     origin: [Option<(f64, bool)>; 2],
-    no_data: Option<f32>,
+    no_data: Option<f64>,
 }
+
+/// No height is larger, metres. Programs write such numbers for unknown heights only.
+const HIGHEST_M: f64 = 1e30;
+
+/// Rounding of a no-data value in the body: a few units in the last place of an `f32`.
+const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 
 impl Header {
     /// Stores the value of a header line; false if the line is not a header, so the data begins.
@@ -46,17 +53,25 @@ impl Header {
             "yllcorner" | "yllcenter" => {
                 self.origin[1] = Some((finite(path, line, &key, word)?, key == "yllcenter"));
             }
-            "cellsize" => {
-                let cell_m = finite(path, line, "cellsize", word)?;
+            "cellsize" | "dx" | "dy" => {
+                let cell_m = finite(path, line, &key, word)?;
                 if cell_m <= 0.0 {
                     return Err(format_error(
                         path,
                         Place::Line(line),
-                        format!("cellsize is {word}"),
+                        format!("{key} is {word}"),
                         "give the side of a cell in metres, more than 0",
                     ));
                 }
-                self.cell_m = Some(cell_m);
+                let axes = match key.as_str() {
+                    "dx" => 0..1,
+                    "dy" => 1..2,
+                    _ => 0..2,
+                };
+                for side in &mut self.cell_m[axes] {
+                    let before = *side.get_or_insert((cell_m, line));
+                    same_side(path, line, before.0, cell_m)?;
+                }
             }
             // Some programs write "nan" here, which is valid.
             "nodata_value" => {
@@ -69,19 +84,37 @@ impl Header {
         Ok(true)
     }
 
+    /// Side of a cell, with the line that gives it.
+    fn cell_m(&self, path: &Path) -> Result<Option<(f64, usize)>, TerrainError> {
+        let [Some((along_x, _)), Some((along_y, line))] = self.cell_m else { return Ok(None) };
+        same_side(path, line, along_x, along_y)?;
+        Ok(Some((along_x, line)))
+    }
+
     fn origin_m(&self, axis: usize, cell_m: f64) -> Option<f64> {
         let (at, is_center) = self.origin[axis]?;
         Some(if is_center { at - cell_m / 2.0 } else { at })
     }
 }
 
+/// Refuses cells that are not square.
+fn same_side(path: &Path, line: usize, one: f64, other: f64) -> Result<(), TerrainError> {
+    if (one - other).abs() <= 1e-6 * one {
+        return Ok(());
+    }
+    let what = format!("the cells are not square: sides of {one} and {other}");
+    Err(format_error(path, Place::Line(line), what, "resample the grid to square cells"))
+}
+
 /// Reads an ESRI ASCII grid with heights and cell sizes in metres.
 ///
-/// Header lines may have any order and case. Line breaks between values are ignored. `NODATA_value`
-/// (-9999 if the header has none) and numbers that are not finite become NaN. O(size).
+/// Header lines may have any order and case, with equal `dx` and `dy` in place of `cellsize`. Line
+/// breaks between values are ignored. Numbers within a few units in the last place of `NODATA_value`
+/// (-9999 if the header has none), beyond 1e30 or not finite become NaN. O(size).
 ///
 /// # Errors
-/// A [`TerrainError::Format`] with the line, if the file violates the format.
+/// A [`TerrainError::Format`] with the line, if the file violates the format or its cells are
+/// degrees wide ([`Heights::is_in_degrees`]).
 pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError> {
     let text = text(bytes, path)?;
     let mut header = Header::default();
@@ -106,7 +139,7 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
     };
     let width = header.columns.ok_or_else(|| missing("ncols"))?;
     let height = header.rows.ok_or_else(|| missing("nrows"))?;
-    let cell_m = header.cell_m.ok_or_else(|| missing("cellsize"))?;
+    let (cell_m, cell_line) = header.cell_m(path)?.ok_or_else(|| missing("cellsize"))?;
     let origin_m = [
         header.origin_m(0, cell_m).ok_or_else(|| missing("xllcorner"))?,
         header.origin_m(1, cell_m).ok_or_else(|| missing("yllcorner"))?,
@@ -120,7 +153,7 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
     for (line, row) in rows {
         for word in row.split_whitespace() {
             last = line;
-            let metre: f32 = word.parse().map_err(|_| {
+            let metre: f64 = word.parse().map_err(|_| {
                 format_error(
                     path,
                     Place::Line(line),
@@ -136,8 +169,9 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
                     "correct ncols and nrows, or remove what is too much",
                 ));
             }
-            let is_known = metre.is_finite() && metre != no_data;
-            metres.push(if is_known { metre } else { f32::NAN });
+            let is_no_data = (metre - no_data).abs() <= ROUNDING * no_data.abs();
+            let is_known = metre.abs() < HIGHEST_M && !is_no_data;
+            metres.push(if is_known { metre as f32 } else { f32::NAN });
         }
     }
     if metres.len() < wanted {
@@ -149,10 +183,61 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
         ));
     }
     flip_rows(&mut metres, width);
-    Ok(Heights { width, height, metres, cell_m, origin_m })
+    let heights = Heights { width, height, metres, cell_m, origin_m };
+    if heights.is_in_degrees() {
+        return Err(format_error(
+            path,
+            Place::Line(cell_line),
+            format!("cells of {cell_m} are degrees: as metres, the land would be a wall"),
+            "project the grid to metres, for example to UTM with gdalwarp; if these are metres, give another corner",
+        ));
+    }
+    Ok(heights)
 }
 
+/// Steps to neighbours that are steeper, rise over run, are no land.
+const CLIFF: f64 = 20.0;
+/// Land is not this much higher than it is wide.
+const SPIRE: f64 = 4.0;
+/// No object is this much higher than the map is wide.
+const NEEDLE: f64 = 100.0;
+/// Walls on a floor have fewer heights than land.
+const LEVELS: usize = 5;
+
 impl Heights {
+    /// Whether the sides of the cells must be degrees of longitude and latitude: the map lies
+    /// within their ranges, and as metres most of its slopes would be cliffs and the map higher
+    /// than wide. So grids of degrees are found with lakes and seas in them, and floors with cells
+    /// of millimetres are not. O(size).
+    fn is_in_degrees(&self) -> bool {
+        let sides = [self.width, self.height].map(|cells| f64::from(cells) * self.cell_m);
+        let is_within = |axis: usize, low: f64, high: f64| {
+            self.origin_m[axis] >= low - self.cell_m && self.origin_m[axis] + sides[axis] <= high + self.cell_m
+        };
+        if !(is_within(0, -180.0, 360.0) && is_within(1, -90.0, 90.0)) {
+            return false;
+        }
+        let known = || self.metres.iter().filter(|metre| !metre.is_nan());
+        let [low, high] = known().fold([f32::MAX, f32::MIN], |[low, high], &metre| [low.min(metre), high.max(metre)]);
+        let slenderness = f64::from(high - low) / sides[0].max(sides[1]);
+        if slenderness < SPIRE || (slenderness < NEEDLE && levels(known()) < LEVELS) {
+            return false;
+        }
+        let width = usize::from(self.width);
+        let along_x = self.metres.chunks_exact(width).flat_map(|row| row.windows(2).map(|pair| pair[1] - pair[0]));
+        let along_y = self.metres.iter().zip(self.metres.iter().skip(width)).map(|(south, north)| north - south);
+        // A step from or to an unknown height is NaN, and not more than 0.
+        let (mut cliffs, mut slopes) = (0_usize, 0_usize);
+        for step in along_x.chain(along_y).map(f32::abs).filter(|step| *step > 0.0) {
+            if f64::from(step) > CLIFF * self.cell_m {
+                cliffs += 1;
+            } else {
+                slopes += 1;
+            }
+        }
+        cliffs > slopes
+    }
+
     /// Combines `factor` x `factor` cells into one: the mean of their known heights, or unknown if
     /// fewer than half are known. Drops incomplete cells in the east and north. O(size).
     ///
@@ -184,6 +269,20 @@ impl Heights {
         }
         Ok(Self { width, height, metres, cell_m: self.cell_m * f64::from(factor), origin_m: self.origin_m })
     }
+}
+
+/// The number of different heights, at most [`LEVELS`].
+fn levels<'a>(heights: impl Iterator<Item = &'a f32>) -> usize {
+    let mut levels = Vec::new();
+    for height in heights {
+        if !levels.contains(height) {
+            levels.push(*height);
+        }
+        if levels.len() == LEVELS {
+            break;
+        }
+    }
+    levels.len()
 }
 
 #[cfg(test)]
@@ -222,6 +321,111 @@ mod tests {
         assert!(heights(text).unwrap().metres.iter().all(|m| m.is_nan()));
         let text = "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value nan\n-9999";
         assert_eq!(heights(text).unwrap().metres, [-9999.0]);
+    }
+
+    #[test]
+    fn no_data_is_found_if_it_was_rounded() {
+        let pairs = [
+            ("-3.4028234663852886e+38", "-3.402823e+38"),
+            ("-3.40282347e+38", "-3.4028234663852886e+38"),
+            ("-1.70141183460469231731687303715884105728e+38", "-1.70141e+38"),
+            ("-9999", "-9.999000e+03"),
+            ("-32767.9999", "-32768"),
+            ("1e20", "1.0000001e20"),
+        ];
+        for (header, body) in pairs {
+            let text = GRID.replace("_value -1", &format!("_value {header}")).replace("4 -1", &format!("4 {body}"));
+            assert!(heights(&text).unwrap().metres[1].is_nan(), "{header}, {body}");
+        }
+        for (header, body) in [("-9999", "-9998"), ("0", "1e-6"), ("-32768", "-32767")] {
+            let text = GRID.replace("_value -1", &format!("_value {header}")).replace("4 -1", &format!("4 {body}"));
+            assert_eq!(heights(&text).unwrap().metres[1], body.parse::<f32>().unwrap(), "{header}, {body}");
+        }
+    }
+
+    #[test]
+    fn no_height_is_beyond_1e30() {
+        for word in ["1e30", "-3.4e38", "1.70141e38", "inf", "-1e400"] {
+            assert!(heights(&GRID.replace("4 -1", &format!("4 {word}"))).unwrap().metres[1].is_nan(), "{word}");
+        }
+    }
+
+    #[test]
+    fn square_cells_may_have_two_sides() {
+        let both = |sides: &str| heights(&GRID.replace("cellsize 10", sides));
+        for sides in ["dx 10\ndy 10", "DY 10\nDX 10.0", "dx 10\ndy 10.000001", "cellsize 10\ndx 10\ndy 10"] {
+            assert_eq!(both(sides).unwrap().cell_m, 10.0, "{sides}");
+        }
+        for (sides, expected) in [
+            ("dx 20\ndy 25", "a.asc:6: the cells are not square: sides of 20 and 25; resample"),
+            ("dx 20\ndy 25\ncellsize 20", "a.asc:7: the cells are not square: sides of 25 and 20"),
+            ("dx 20", "a.asc:7: the header has no cellsize"),
+            ("dx 20\ndy -20", "a.asc:6: dy is -20; give the side"),
+        ] {
+            let message = both(sides).unwrap_err().to_string();
+            assert!(message.starts_with(expected), "{message}");
+        }
+    }
+
+    /// A grid with a corner, a side of its cells, and heights by column and row.
+    fn grid(corner: [f64; 2], cell: f64, sides: [usize; 2], height: impl Fn(usize, usize) -> f64) -> String {
+        let ([x, y], [columns, rows]) = (corner, sides);
+        let mut text = format!("ncols {columns}\nnrows {rows}\nxllcorner {x}\nyllcorner {y}\ncellsize {cell}\n");
+        for row in 0..rows {
+            let row: Vec<String> = (0..columns).map(|column| height(column, row).to_string()).collect();
+            text += &format!("{}\n", row.join(" "));
+        }
+        text
+    }
+
+    /// Land with hills, metres.
+    fn hills(x: usize, y: usize) -> f64 {
+        let [x, y] = [x as f64, y as f64];
+        300.0 + 12.0 * libm::sin(x / 3.0) + 9.0 * libm::cos(y / 4.0) + (x * 7.0 + y * 3.0) % 2.0
+    }
+
+    #[test]
+    fn grids_in_degrees_are_refused() {
+        let lake = |x: usize, y: usize| if x < 16 { 284.0 } else { hills(x, y) };
+        let isle = |x: usize, y: usize| if (x + y) % 40 < 34 { 0.0 } else { hills(x, y) / 10.0 };
+        let sea = |x: usize, y: usize| if x < 10 { -9999.0 } else { hills(x, y) };
+        let polder = |x: usize, y: usize| ((x / 7 + y / 5) % 6) as f64 / 4.0 - 2.0;
+        let grids = [
+            grid([8.5, 47.2], 3.0 / 3600.0, [20, 20], hills),
+            grid([-122.0, -45.0], 1.0 / 3600.0, [20, 20], lake),
+            grid([0.0, 0.0], 1.0 / 10_800.0, [20, 20], hills),
+            grid([8.5, 47.2], 3.0 / 3600.0, [20, 20], sea),
+            grid([8.5, 47.2], 3.0 / 3600.0, [40, 40], isle),
+            grid([4.5, 52.0], 1.0 / 3600.0, [60, 60], polder),
+            grid([-180.0, -90.0], 0.25, [10, 10], |x, y| 10.0 * hills(x, y)),
+            grid([170.0, -45.0], 1.0 / 60.0, [20, 20], hills),
+        ];
+        for text in grids {
+            let message = heights(&text).unwrap_err().to_string();
+            assert!(message.starts_with("a.asc:5: cells of "), "{message}");
+            assert!(message.contains("project the grid to metres"), "{message}");
+        }
+    }
+
+    #[test]
+    fn grids_in_metres_are_read_however_small_their_cells_are() {
+        let floor = |x: usize, y: usize| 0.04 + 0.0004 * ((x * 5 + y * 3) % 7) as f64;
+        let walls = |x: usize, y: usize| if x % 9 == 0 || y % 11 == 0 { 2.5 } else { 0.0 };
+        let boxes = |x: usize, y: usize| [0.0, 12.0, 21.0][usize::from(x % 8 > 4) + usize::from(y % 9 > 5)];
+        let rough = |x: usize, y: usize| walls(x, y) + floor(x, y);
+        let grids = [
+            grid([2.4, 1.1], 0.005, [8, 6], floor),
+            grid([0.0, 0.0], 0.005, [100, 80], walls),
+            grid([0.0, 0.0], 0.005, [100, 80], rough),
+            grid([0.0, 0.0], 1.0, [60, 60], boxes),
+            grid([0.0, 0.0], 0.5, [100, 100], hills),
+            grid([500_000.0, 4e6], 0.0008, [20, 20], hills),
+            grid([8.0, 47.0], 30.0, [3, 3], hills),
+            grid([0.0, 0.0], 0.001, [30, 30], |_, _| 100.0),
+        ];
+        for text in grids {
+            heights(&text).unwrap();
+        }
     }
 
     #[test]

@@ -55,6 +55,8 @@ pub struct Terrain {
     height: u16,
     /// Ticks to cross each cell, or [`BLOCKED`]; row by row from the south-west corner.
     cells: Vec<u8>,
+    /// Indices of blocked cells of which the file knows nothing, in ascending order.
+    unknown: Vec<u32>,
     /// Side of a cell, metres.
     pub cell_m: f64,
     /// World position of the south-west corner, metres (x east, y north).
@@ -66,7 +68,7 @@ impl Terrain {
     #[must_use]
     pub fn flat(width: u16, height: u16) -> Self {
         let cells = vec![1; usize::from(width) * usize::from(height)];
-        Self { width, height, cells, cell_m: 1.0, origin_m: [0.0; 2] }
+        Self { width, height, cells, unknown: Vec::new(), cell_m: 1.0, origin_m: [0.0; 2] }
     }
 
     /// Creates terrain from impassabilities, row by row from the south-west; cells of 1 m.
@@ -80,7 +82,14 @@ impl Terrain {
         if !(sides.contains(&width) && sides.contains(&height) && fits) {
             return Err(TerrainError::Size { width: width.into(), height: height.into(), cells: cells.len() });
         }
-        Ok(Self { width, height, cells, cell_m: 1.0, origin_m: [0.0; 2] })
+        Ok(Self { width, height, cells, unknown: Vec::new(), cell_m: 1.0, origin_m: [0.0; 2] })
+    }
+
+    /// Marks the blocked ones of these cells as unknown; `is_unknown` has a value for each cell.
+    pub(in crate::terrain) fn mark_unknown(&mut self, is_unknown: impl Iterator<Item = bool>) {
+        let cells = (0..).zip(&self.cells).zip(is_unknown);
+        let blocked = cells.filter(|((_, class), is_unknown)| *is_unknown && **class == BLOCKED);
+        self.unknown = blocked.map(|((index, _), _)| index).collect();
     }
 
     /// Reads a terrain file with the default [`LoadOptions`].
@@ -107,7 +116,7 @@ impl Terrain {
                         path,
                         Place::File,
                         "every cell is steeper than the maximum slope or unknown",
-                        "heights and cellsize must both be in metres (project grids in degrees first); or raise slope.max_slope",
+                        "heights and cellsize must both be in metres; or raise slope.max_slope",
                     ));
                 }
                 Ok(terrain)
@@ -148,10 +157,16 @@ impl Terrain {
             .flat_map(|row| &row[columns.clone()])
             .copied()
             .collect();
+        let place = |index: &u32| {
+            let [column, row] = [index % u32::from(self.width), index / u32::from(self.width)];
+            let [column, row] = [column.checked_sub(x.into())?, row.checked_sub(y.into())?];
+            (column < width.into() && row < height.into()).then_some(row * u32::from(width) + column)
+        };
         Ok(Self {
             width,
             height,
             cells,
+            unknown: self.unknown.iter().filter_map(place).collect(),
             cell_m: self.cell_m,
             origin_m: [self.origin_m[0] + f64::from(x) * self.cell_m, self.origin_m[1] + f64::from(y) * self.cell_m],
         })
@@ -228,6 +243,44 @@ impl Terrain {
     pub fn is_passable(&self, cell: Cell) -> bool {
         self.get(cell) != BLOCKED
     }
+
+    /// Whether the cell is blocked because the map file knows nothing of it.
+    #[must_use]
+    pub fn is_unknown(&self, cell: Cell) -> bool {
+        let index = self.index(cell).filter(|at| self.cells[*at] == BLOCKED);
+        index.is_some_and(|at| self.unknown.binary_search(&(at as u32)).is_ok())
+    }
+
+    /// World coordinates of the map's sides along an axis, metres.
+    #[must_use]
+    pub fn sides_m(&self, axis: usize) -> [f64; 2] {
+        let cells = if axis == 0 { self.width } else { self.height };
+        [self.origin_m[axis], self.origin_m[axis] + f64::from(cells) * self.cell_m]
+    }
+
+    /// Whether a place on the map is `within_m` metres or more from blocked cells and from the
+    /// map's sides. O(cells around it).
+    #[must_use]
+    pub fn is_clear(&self, place_m: [f64; 2], within_m: f64) -> bool {
+        let is_inside = (0..2).all(|axis| {
+            let [low, high] = self.sides_m(axis);
+            place_m[axis] - low >= within_m && high - place_m[axis] >= within_m
+        });
+        is_inside && self.blocked_within(place_m, within_m).is_none()
+    }
+
+    /// A blocked cell of the map that is nearer to a place than `within_m` metres.
+    #[must_use]
+    pub fn blocked_within(&self, [x, y]: [f64; 2], within_m: f64) -> Option<Cell> {
+        let (low, high) =
+            (self.nearest_cell([x - within_m, y - within_m]), self.nearest_cell([x + within_m, y + within_m]));
+        let mut cells = (low.y..=high.y).flat_map(|row| (low.x..=high.x).map(move |column| Cell::new(column, row)));
+        cells.find(|&cell| {
+            let [middle_x, middle_y] = self.center_m(cell);
+            let off = |way: f64| (way.abs() - self.cell_m / 2.0).max(0.0);
+            !self.is_passable(cell) && libm::hypot(off(x - middle_x), off(y - middle_y)) < within_m
+        })
+    }
 }
 
 #[cfg(test)]
@@ -256,6 +309,43 @@ mod tests {
             let message = map.crop(x, y, width, height).unwrap_err().to_string();
             assert!(message.contains("leaves the map of 4 x 3"), "{message}");
         }
+    }
+
+    #[test]
+    fn a_cropped_part_keeps_its_unknown_cells() {
+        let mut map = Terrain::from_cells(4, 3, vec![BLOCKED; 12]).unwrap();
+        map.mark_unknown((0..12).map(|at| at % 5 == 0));
+        map.set(Cell::new(2, 2), 1);
+        let unknown = |map: &Terrain| {
+            let all = (0..3).flat_map(|y| (0..4).map(move |x| Cell::new(x, y)));
+            all.filter(|cell| map.is_unknown(*cell)).map(|cell| (cell.x, cell.y)).collect::<Vec<_>>()
+        };
+        assert_eq!(unknown(&map), [(0, 0), (1, 1)]);
+        assert_eq!(unknown(&map.crop(1, 0, 3, 3).unwrap()), [(0, 1)]);
+    }
+
+    #[test]
+    fn places_are_clear_of_blocked_cells_and_of_the_sides() {
+        // Cells of 2 m; the south-west corner is (10, 20), and the cell in the middle is blocked.
+        let mut map = Terrain::from_cells(3, 3, vec![1; 9]).unwrap();
+        map.set(Cell::new(1, 1), BLOCKED);
+        (map.cell_m, map.origin_m) = (2.0, [10.0, 20.0]);
+        for (place, within, is_clear) in [
+            ([11.0, 23.0], 1.0, true),
+            ([11.0, 23.0], 1.001, false),
+            ([11.0, 21.0], 1.0, true),
+            ([13.0, 23.0], 0.0, true),
+            ([13.0, 23.0], 1e-9, false),
+            ([11.5, 21.5], 0.7, true),
+            ([11.5, 21.5], 0.71, false),
+            ([10.4, 21.0], 0.5, false),
+            ([9.0, 21.0], 0.0, false),
+            ([16.0, 26.0], 0.0, true),
+            ([16.1, 26.0], 0.0, false),
+        ] {
+            assert_eq!(map.is_clear(place, within), is_clear, "{place:?}, {within}");
+        }
+        assert_eq!(map.blocked_within([11.5, 21.5], 0.71), Some(Cell::new(1, 1)));
     }
 
     #[test]
@@ -289,6 +379,9 @@ mod tests {
         let path = dir.path().join("degrees.asc");
         let text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0.00083\n100 130\n";
         std::fs::write(&path, text).unwrap();
+        let message = Terrain::load(&path).unwrap_err().to_string();
+        assert!(message.contains("degrees.asc:5: cells of 0.00083 are degrees"), "{message}");
+        std::fs::write(&path, text.replace("0.00083", "5")).unwrap();
         let message = Terrain::load(&path).unwrap_err().to_string();
         assert!(message.contains("degrees.asc: every cell is steeper"), "{message}");
         std::fs::write(&path, text.replace("0.00083", "92")).unwrap();

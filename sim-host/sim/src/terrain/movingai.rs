@@ -16,6 +16,9 @@ pub const SWAMP: u8 = 3;
 /// Reads a `.map`: `.` and `G` are ground (impassability 1), `S` is `swamp`, and `@`, `O`, `T`, `W`
 /// are blocked. Cells are 1 m wide, and the south-west corner is the origin. O(size).
 ///
+/// A map with an `E` is one of the League of Robot Runners (github.com/MAPF-Competition): there `E`
+/// is an emitter and `S` a service point, both ground.
+///
 /// # Errors
 /// A [`TerrainError::Format`] with the line, if the file violates the format.
 pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, TerrainError> {
@@ -23,6 +26,8 @@ pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, Terrai
     let mut rows = lines(text);
     let (width, height) = header(&mut rows, path)?;
     fits(path, width, height, 2)?;
+    let rows: Vec<_> = rows.collect();
+    let swamp = if rows.iter().any(|(_, row)| row.contains('E')) { 1 } else { swamp };
     let mut cells = Vec::new();
     let mut found = 0;
     let mut last = 0;
@@ -49,7 +54,7 @@ pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, Terrai
         }
         for (column, letter) in row.chars().enumerate() {
             cells.push(match letter {
-                '.' | 'G' => 1,
+                '.' | 'G' | 'E' => 1,
                 'S' => swamp,
                 '@' | 'O' | 'T' | 'W' => BLOCKED,
                 other => {
@@ -57,7 +62,7 @@ pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, Terrai
                         path,
                         Place::Line(line),
                         format!("{other:?} in column {}", column + 1),
-                        "cells are . G S (passable) or @ O T W (blocked)",
+                        "cells are . G S E (passable) or @ O T W (blocked)",
                     ));
                 }
             });
@@ -110,6 +115,8 @@ fn header<'a>(rows: &mut impl Iterator<Item = (usize, &'a str)>, path: &Path) ->
 /// A query of a `.scen` file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Query {
+    /// Line of the file, counted from 1.
+    pub line: usize,
     /// Bucket; queries of similar length share one.
     pub bucket: u32,
     /// Name of the map in the file.
@@ -124,6 +131,26 @@ pub struct Query {
     pub goal: Cell,
     /// Length of the shortest route in cells; a diagonal move is sqrt 2 long and cuts no corner.
     pub optimal_length: f64,
+}
+
+impl Query {
+    /// Column and row of a cell as in the file, where row 0 is in the north.
+    #[must_use]
+    pub const fn in_file(&self, cell: Cell) -> [u16; 2] {
+        in_file(cell, self.height)
+    }
+
+    /// The last part of the map's name.
+    #[must_use]
+    pub fn map_name(&self) -> &str {
+        self.map.rsplit(['/', '\\']).next().unwrap_or_default()
+    }
+}
+
+/// Column and row, counted from the north-west, of a cell on a map of `height` rows.
+#[must_use]
+pub const fn in_file(cell: Cell, height: u16) -> [u16; 2] {
+    [cell.x.cast_unsigned(), flip_row(cell.y.cast_unsigned(), height)]
 }
 
 /// Reads a `.scen`, versions 1 and 1.0. O(size).
@@ -191,6 +218,7 @@ fn query(row: &str, line: usize, path: &Path) -> Result<Query, TerrainError> {
         ));
     }
     Ok(Query {
+        line,
         bucket: integer(path, line, "bucket", bucket)?,
         map: map.to_owned(),
         width,
@@ -222,6 +250,15 @@ mod tests {
         assert_eq!((terrain.width(), terrain.height()), (4, 3));
         assert_eq!(terrain.cells(), [1, 1, 1, 1, 3, 3, BLOCKED, BLOCKED, 1, 1, BLOCKED, BLOCKED]);
         assert_eq!(terrain.get(Cell::new(2, 2)), BLOCKED);
+    }
+
+    #[test]
+    fn emitters_and_service_points_of_robot_runners_are_ground() {
+        let runners = MAP.replace('G', "E");
+        let terrain = map(&runners).unwrap();
+        assert_eq!(terrain.cells(), [1, 1, 1, 1, 1, 1, BLOCKED, BLOCKED, 1, 1, BLOCKED, BLOCKED]);
+        let message = message(map(&MAP.replace('G', "e")));
+        assert!(message.starts_with("a.map:5: 'e' in column 2; cells are . G S E (passable)"), "{message}");
     }
 
     #[test]
@@ -264,6 +301,9 @@ mod tests {
         assert_eq!(queries[0].goal, Cell::new(3, 0));
         assert_eq!(queries[0].optimal_length, 3.41421);
         assert_eq!(queries[1].start, Cell::new(1, 1));
+        assert_eq!(queries.iter().map(|query| query.line).collect::<Vec<_>>(), [2, 4]);
+        assert_eq!(queries[0].in_file(queries[0].goal), [3, 2]);
+        assert_eq!([queries[0].map_name(), queries[1].map_name()], ["my map.map", "a.map"]);
     }
 
     #[test]

@@ -73,6 +73,7 @@ impl SlopeRule {
         let mut terrain = Terrain::from_cells(heights.width, heights.height, cells)?;
         terrain.cell_m = heights.cell_m;
         terrain.origin_m = heights.origin_m;
+        terrain.mark_unknown(heights.metres.iter().map(|metre| metre.is_nan()));
         Ok(terrain)
     }
 }
@@ -139,6 +140,8 @@ mod tests {
     fn unknown_heights_are_blocked_and_neighbours_keep_their_slope() {
         let terrain = RULE.apply(&heights(3, &[0.0, 3.0, f32::NAN])).unwrap();
         assert_eq!(terrain.cells(), [2, 2, BLOCKED]);
+        let is_unknown = [0, 1, 2].map(|x| terrain.is_unknown(staya_controller::grid::Cell::new(x, 0)));
+        assert_eq!(is_unknown, [false, false, true]);
         let alone = RULE.apply(&heights(1, &[5.0])).unwrap();
         assert_eq!(alone.cells(), [1]);
     }

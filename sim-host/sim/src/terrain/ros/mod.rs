@@ -56,17 +56,16 @@ pub fn interpret(picture: &Picture, meta: &Meta, options: &LoadOptions) -> Resul
     if options.classes == 0 {
         return Err(parameter_error("classes is 0", "give the number of classes, 1..=255"));
     }
-    let largest = f64::from(picture.largest);
-    let mut cells: Vec<u8> = picture
-        .pixels
-        .iter()
-        .map(|pixel| {
-            let x = f64::from(if meta.negate { *pixel } else { picture.largest - *pixel });
-            impassability(x / largest, meta, options)
-        })
-        .collect();
-    flip_rows(&mut cells, picture.width);
+    let probability = |pixel: &u16| {
+        let x = f64::from(if meta.negate { *pixel } else { picture.largest - *pixel });
+        x / f64::from(picture.largest)
+    };
+    let is_unknown = |p: f64| meta.mode == Mode::Trinary && (meta.free_thresh..=meta.occupied_thresh).contains(&p);
+    let mut probabilities: Vec<f64> = picture.pixels.iter().map(probability).collect();
+    flip_rows(&mut probabilities, picture.width);
+    let cells = probabilities.iter().map(|p| impassability(*p, meta, options)).collect();
     let mut terrain = Terrain::from_cells(picture.width, picture.height, cells)?;
+    terrain.mark_unknown(probabilities.into_iter().map(is_unknown));
     terrain.cell_m = meta.resolution_m;
     terrain.origin_m = meta.origin_m;
     Ok(terrain)
@@ -161,6 +160,9 @@ mod tests {
         assert_eq!((terrain.cell_m, terrain.origin_m), (0.05, [-1.5, 2.0]));
         let brave = LoadOptions { unknown: 7, ..LoadOptions::default() };
         assert_eq!(read(META, PICTURE, &brave).get(Cell::new(1, 1)), 7);
+        let unknown = |terrain: &Terrain| [0, 1].map(|y| [0, 1, 2].map(|x| terrain.is_unknown(Cell::new(x, y))));
+        assert_eq!(unknown(&terrain), [[false; 3], [false, true, false]]);
+        assert_eq!(unknown(&read(META, PICTURE, &brave)), [[false; 3]; 2]);
     }
 
     #[test]

@@ -1,10 +1,11 @@
-//! The YAML file of a `map_server` map, which consists of flat `key: value` lines.
+//! The YAML file of a `map_server` map: a table of values, and the origin as a list.
 //!
-//! A hand-written parser: a serde YAML crate has six to twenty dependencies, and does not report
-//! the line of a value that is valid YAML but out of range.
+//! Reads the events of a parser, since they have lines; serde loses the line of a value that is
+//! valid YAML but out of range.
 
 use super::super::error::{Place, TerrainError, format_error};
-use super::super::text::{finite, lines, quoted, text};
+use super::super::text::{finite, quoted, text};
+use saphyr_parser::{Event, Parser, StrInput};
 use std::path::Path;
 
 /// Interpretation of pixels between the thresholds.
@@ -38,194 +39,249 @@ pub struct Meta {
     pub classes: Option<u8>,
 }
 
-type Entry<'a> = Option<(usize, &'a str)>;
-
-#[derive(Default)]
-struct Entries<'a> {
-    image: Entry<'a>,
-    resolution: Entry<'a>,
-    origin: Entry<'a>,
-    origin_items: Vec<(usize, &'a str)>,
-    occupied_thresh: Entry<'a>,
-    free_thresh: Entry<'a>,
-    negate: Entry<'a>,
-    mode: Entry<'a>,
-    classes: Entry<'a>,
+/// A value of the file, with the line where it begins.
+struct Entry {
+    line: usize,
+    value: Value,
 }
 
-/// Reads the YAML file of a map. Keys that ROS does not know are ignored, as in ROS.
+enum Value {
+    Text(String),
+    /// The items, if each of them is a text.
+    List(Option<Vec<(usize, String)>>),
+    Table,
+    Alias,
+}
+
+impl Value {
+    /// What it is, for people.
+    fn words(&self) -> String {
+        match self {
+            Self::Text(text) => quoted(text),
+            Self::List(_) => "a list".to_owned(),
+            Self::Table => "a table".to_owned(),
+            Self::Alias => "an alias (*name), which is not read".to_owned(),
+        }
+    }
+}
+
+/// The entries at the top of a file.
+struct Entries<'a> {
+    path: &'a Path,
+    found: Vec<(String, Entry)>,
+}
+
+const KEYS: [&str; 8] =
+    ["image", "resolution", "origin", "occupied_thresh", "free_thresh", "negate", "mode", "impassability_classes"];
+
+impl Entries<'_> {
+    fn get(&self, key: &str) -> Option<&Entry> {
+        self.found.iter().find(|(name, _)| name == key).map(|(_, entry)| entry)
+    }
+
+    fn need(&self, key: &str) -> Result<&Entry, TerrainError> {
+        self.get(key).ok_or_else(|| {
+            format_error(
+                self.path,
+                Place::File,
+                format!("{key} is missing"),
+                "a map_server file has image, resolution, origin, occupied_thresh, free_thresh, negate at its top",
+            )
+        })
+    }
+
+    fn refuse<T>(&self, line: usize, what: String, remedy: &str) -> Result<T, TerrainError> {
+        Err(format_error(self.path, Place::Line(line), what, remedy))
+    }
+
+    fn text<'e>(&self, key: &str, entry: &'e Entry) -> Result<&'e str, TerrainError> {
+        match &entry.value {
+            Value::Text(text) if !text.is_empty() => Ok(text),
+            Value::Text(_) => self.refuse(entry.line, format!("{key} is empty"), "give its value"),
+            other => self.refuse(entry.line, format!("{key} is {}", other.words()), "give one value"),
+        }
+    }
+
+    /// A number with the line where it stands.
+    fn number(&self, key: &str) -> Result<(usize, f64), TerrainError> {
+        let entry = self.need(key)?;
+        Ok((entry.line, finite(self.path, entry.line, key, self.text(key, entry)?)?))
+    }
+
+    fn threshold(&self, key: &str) -> Result<(usize, f64), TerrainError> {
+        let (line, share) = self.number(key)?;
+        if !(0.0..=1.0).contains(&share) {
+            let remedy = "give a probability from 0 to 1: 65 % is 0.65";
+            return self.refuse(line, format!("{key} is {share}"), remedy);
+        }
+        Ok((line, share))
+    }
+
+    /// The origin: x, y, yaw.
+    fn origin_m(&self) -> Result<[f64; 2], TerrainError> {
+        let (entry, remedy) = (self.need("origin")?, "give origin: [x, y, yaw] in metres and radians");
+        let [x, y, yaw] = match &entry.value {
+            Value::List(Some(items)) => match &items[..] {
+                [x, y, yaw] => [x, y, yaw],
+                _ => {
+                    let what = format!("origin has {} of three numbers", items.len());
+                    return self.refuse(entry.line, what, remedy);
+                }
+            },
+            Value::List(None) => return self.refuse(entry.line, "origin is not a list of numbers".into(), remedy),
+            other => return self.refuse(entry.line, format!("origin is {}", other.words()), remedy),
+        };
+        let number = |(line, word): &(usize, String)| finite(self.path, *line, "origin", word);
+        if number(yaw)? != 0.0 {
+            let remedy = "rotated maps are not supported: resample the picture so that north is up and give yaw 0";
+            return self.refuse(yaw.0, format!("the origin is turned by {} radians", yaw.1), remedy);
+        }
+        Ok([number(x)?, number(y)?])
+    }
+}
+
+/// Reads the YAML file of a map: block or flow style, of which the first document counts, as in
+/// ROS. Keys that ROS does not know are ignored, as in ROS.
 ///
 /// # Errors
 /// A [`TerrainError::Format`] with the line: a key is missing, duplicated or has an invalid value,
-/// the origin is rotated (yaw other than 0), or the mode is `raw`.
+/// a threshold is not a probability, the origin is rotated (yaw other than 0), or the mode is
+/// `raw`.
 pub fn parse_meta(bytes: &[u8], path: &Path) -> Result<Meta, TerrainError> {
-    let text = text(bytes, path)?;
-    let entries = collect(text, path)?;
-    let need = |entry: Entry<'_>, key: &str| -> Result<(usize, String), TerrainError> {
-        entry.map(|(line, word)| (line, word.to_owned())).ok_or_else(|| {
-            format_error(
-                path,
-                Place::File,
-                format!("{key} is missing"),
-                "a map_server file has image, resolution, origin, occupied_thresh, free_thresh, negate",
-            )
-        })
-    };
-    let number = |entry: Entry<'_>, key: &str| -> Result<(usize, f64), TerrainError> {
-        let (line, word) = need(entry, key)?;
-        Ok((line, finite(path, line, key, &word)?))
-    };
-    let (_, image) = need(entries.image, "image")?;
-    let (line, resolution_m) = number(entries.resolution, "resolution")?;
+    let entries = collect(text(bytes, path)?, path)?;
+    let image = entries.text("image", entries.need("image")?)?.to_owned();
+    let (line, resolution_m) = entries.number("resolution")?;
     if resolution_m <= 0.0 {
-        return Err(format_error(
-            path,
-            Place::Line(line),
-            format!("resolution is {resolution_m}"),
-            "give metres per pixel, more than 0",
-        ));
+        let what = format!("resolution is {resolution_m}");
+        return entries.refuse(line, what, "give metres per pixel, more than 0");
     }
-    let (line, occupied_thresh) = number(entries.occupied_thresh, "occupied_thresh")?;
-    let (_, free_thresh) = number(entries.free_thresh, "free_thresh")?;
+    let (line, occupied_thresh) = entries.threshold("occupied_thresh")?;
+    let (_, free_thresh) = entries.threshold("free_thresh")?;
     if free_thresh > occupied_thresh {
-        return Err(format_error(
-            path,
-            Place::Line(line),
-            format!("occupied_thresh {occupied_thresh} is less than free_thresh {free_thresh}"),
-            "give free_thresh <= occupied_thresh",
-        ));
+        let what = format!("occupied_thresh {occupied_thresh} is less than free_thresh {free_thresh}");
+        return entries.refuse(line, what, "give free_thresh <= occupied_thresh");
     }
-    let (line, word) = need(entries.negate, "negate")?;
+    let entry = entries.need("negate")?;
+    let word = entries.text("negate", entry)?;
     let negate = match word.to_ascii_lowercase().as_str() {
-        "0" | "false" => false,
-        "1" | "true" => true,
-        _ => return Err(choice(path, line, "negate", &word, "give 0 or 1")),
+        "0" | "false" | "no" | "off" => false,
+        "1" | "true" | "yes" | "on" => true,
+        _ => return entries.refuse(entry.line, format!("negate is {}", quoted(word)), "give 0 or 1"),
     };
-    let mode = match entries.mode {
-        None | Some((_, "trinary")) => Mode::Trinary,
-        Some((_, "scale")) => Mode::Scale,
-        Some((line, word)) => {
-            let remedy = "give trinary or scale; raw pixels have no agreed meaning for robots";
-            return Err(choice(path, line, "mode", word, remedy));
-        }
-    };
-    let classes = match entries.classes {
-        None => None,
-        Some((line, word)) => match word.parse() {
-            Ok(classes @ 1..=255_u8) => Some(classes),
-            _ => {
-                let key = "impassability_classes";
-                return Err(choice(path, line, key, word, "give a whole number from 1 to 255"));
+    let mode = match entries.get("mode") {
+        None => Mode::Trinary,
+        Some(entry) => match entries.text("mode", entry)? {
+            "trinary" => Mode::Trinary,
+            "scale" => Mode::Scale,
+            word => {
+                let remedy = "give trinary or scale; raw pixels have no agreed meaning for robots";
+                return entries.refuse(entry.line, format!("mode is {}", quoted(word)), remedy);
             }
         },
     };
-    Ok(Meta {
-        image,
-        resolution_m,
-        origin_m: origin(&entries, path)?,
-        occupied_thresh,
-        free_thresh,
-        negate,
-        mode,
-        classes,
-    })
-}
-
-fn choice(path: &Path, line: usize, key: &str, word: &str, remedy: &str) -> TerrainError {
-    let what = format!("{key} is {}", quoted(word));
-    format_error(path, Place::Line(line), what, remedy)
-}
-
-fn collect<'a>(text: &'a str, path: &Path) -> Result<Entries<'a>, TerrainError> {
-    let mut entries = Entries::default();
-    let mut in_origin = false;
-    for (line, raw) in lines(text) {
-        let row = without_comment(raw);
-        let bare = row.trim();
-        if in_origin && let Some(item) = bare.strip_prefix("- ") {
-            entries.origin_items.push((line, item.trim()));
-            continue;
-        }
-        // Indented lines belong to foreign keys.
-        let is_top = !row.starts_with([' ', '\t', '-']);
-        if bare.is_empty() || bare == "---" || bare == "..." || !is_top {
-            continue;
-        }
-        let Some((key, value)) = bare.split_once(':') else {
-            return Err(format_error(
-                path,
-                Place::Line(line),
-                quoted(bare),
-                "each line of a map_server file is: key: value",
-            ));
-        };
-        let value = unquoted(value.trim());
-        in_origin = key == "origin";
-        let entry = match key {
-            "image" => &mut entries.image,
-            "resolution" => &mut entries.resolution,
-            "origin" => &mut entries.origin,
-            "occupied_thresh" => &mut entries.occupied_thresh,
-            "free_thresh" => &mut entries.free_thresh,
-            "negate" => &mut entries.negate,
-            "mode" => &mut entries.mode,
-            "impassability_classes" => &mut entries.classes,
-            _ => continue,
-        };
-        if entry.replace((line, value)).is_some() {
-            return Err(format_error(path, Place::Line(line), format!("{key} is given twice"), "keep one of them"));
-        }
-    }
-    Ok(entries)
-}
-
-/// The line up to a `#` at its start or after whitespace, outside quotes.
-fn without_comment(row: &str) -> &str {
-    let mut quote = None;
-    let mut before = ' ';
-    for (at, letter) in row.char_indices() {
-        match quote {
-            Some(open) if letter == open => quote = None,
-            Some(_) => {}
-            None if matches!(letter, '"' | '\'') => quote = Some(letter),
-            None if letter == '#' && before.is_whitespace() => return &row[..at],
-            None => {}
-        }
-        before = letter;
-    }
-    row
-}
-
-fn unquoted(value: &str) -> &str {
-    ['"', '\''].into_iter().find_map(|quote| value.strip_prefix(quote)?.strip_suffix(quote)).unwrap_or(value)
-}
-
-/// Parses the origin: `[x, y, yaw]` in one line, or three lines with a dash.
-fn origin(entries: &Entries<'_>, path: &Path) -> Result<[f64; 2], TerrainError> {
-    let place = entries.origin.map_or(Place::File, |(line, _)| Place::Line(line));
-    let in_line = entries.origin.and_then(|(line, value)| {
-        let items = value.strip_prefix('[')?.strip_suffix(']')?;
-        Some(items.split(',').map(|item| (line, item.trim())).collect())
-    });
-    let items: Vec<(usize, &str)> = in_line.unwrap_or_else(|| entries.origin_items.clone());
-    let [x, y, yaw] = items[..] else {
-        return Err(format_error(
-            path,
-            place,
-            "origin is missing or has no three numbers",
-            "give origin: [x, y, yaw] in metres and radians",
-        ));
+    let key = "impassability_classes";
+    let classes = match entries.get(key) {
+        None => None,
+        Some(entry) => match entries.text(key, entry)? {
+            word if matches!(word.parse(), Ok(1..=255_u8)) => word.parse().ok(),
+            word => {
+                let remedy = "give a whole number from 1 to 255";
+                return entries.refuse(entry.line, format!("{key} is {}", quoted(word)), remedy);
+            }
+        },
     };
-    let number = |(line, word): (usize, &str)| finite(path, line, "origin", word);
-    if number(yaw)? != 0.0 {
-        return Err(format_error(
-            path,
-            place,
-            format!("the origin is turned by {} radians", yaw.1),
-            "rotated maps are not supported: resample the picture so that north is up and give yaw 0",
-        ));
+    let origin_m = entries.origin_m()?;
+    Ok(Meta { image, resolution_m, origin_m, occupied_thresh, free_thresh, negate, mode, classes })
+}
+
+/// The keys of a map at the top of the first document.
+fn collect<'a>(text: &str, path: &'a Path) -> Result<Entries<'a>, TerrainError> {
+    let mut entries = Entries { path, found: Vec::new() };
+    let mut events = Events { parser: Parser::new_from_str(text), path, last_line: text.lines().count().max(1) };
+    loop {
+        match events.next()? {
+            (_, Event::MappingStart(..)) => break,
+            (_, Event::StreamEnd | Event::DocumentEnd) => return Ok(entries),
+            (line, Event::Scalar(..) | Event::SequenceStart(..) | Event::Alias(_)) => {
+                let what = "the file is not a table of keys and values".to_owned();
+                return entries.refuse(line, what, SHAPE);
+            }
+            _ => {}
+        }
     }
-    Ok([number(x)?, number(y)?])
+    loop {
+        let (line, key) = match events.next()? {
+            (_, Event::MappingEnd) => return Ok(entries),
+            (line, Event::Scalar(key, ..)) => (line, key.into_owned()),
+            (line, event) => {
+                events.value(line, event)?;
+                (line, String::new())
+            }
+        };
+        let (value_line, event) = events.next()?;
+        let value = events.value(value_line, event)?;
+        if key == "<<" {
+            let what = "a merge (<<) is not read".to_owned();
+            return entries.refuse(line, what, "write the keys and values themselves");
+        }
+        if !KEYS.contains(&key.as_str()) {
+            continue;
+        }
+        if let Some(first) = entries.get(&key) {
+            let what = format!("{key} is given twice, before at line {}", first.line);
+            return entries.refuse(line, what, "keep one of them");
+        }
+        entries.found.push((key, Entry { line: value_line, value }));
+    }
+}
+
+const SHAPE: &str = "each key stands at the top, followed by a colon, a space and its value";
+
+struct Events<'a> {
+    parser: Parser<'a, StrInput<'a>>,
+    path: &'a Path,
+    last_line: usize,
+}
+
+impl<'a> Events<'a> {
+    /// The next event with its line.
+    fn next(&mut self) -> Result<(usize, Event<'a>), TerrainError> {
+        match self.parser.next_event() {
+            Some(Ok((event, span))) => Ok((span.start.line(), event)),
+            Some(Err(error)) => {
+                let what = format!("this is not YAML: {}", error.info());
+                let line = error.marker().line().min(self.last_line);
+                Err(format_error(self.path, Place::Line(line), what, SHAPE))
+            }
+            None => Ok((1, Event::StreamEnd)),
+        }
+    }
+
+    /// The value that begins with an event.
+    fn value(&mut self, line: usize, event: Event<'a>) -> Result<Value, TerrainError> {
+        let is_list = match event {
+            Event::Scalar(text, ..) => return Ok(Value::Text(text.into_owned())),
+            Event::Alias(_) => return Ok(Value::Alias),
+            Event::SequenceStart(..) => true,
+            _ => false,
+        };
+        let (mut depth, mut items) = (1, Some(Vec::new()));
+        while depth > 0 {
+            match self.next()? {
+                (line, Event::Scalar(text, ..)) => {
+                    items.iter_mut().for_each(|items| items.push((line, text.clone().into_owned())));
+                }
+                (_, Event::SequenceStart(..) | Event::MappingStart(..)) => (depth, items) = (depth + 1, None),
+                (_, Event::SequenceEnd | Event::MappingEnd) => depth -= 1,
+                (_, Event::StreamEnd) => {
+                    let what = "the file ends inside this value".to_owned();
+                    return Err(format_error(self.path, Place::Line(line), what, SHAPE));
+                }
+                _ => items = None,
+            }
+        }
+        Ok(if is_list { Value::List(items) } else { Value::Table })
+    }
 }
 
 #[cfg(test)]
@@ -256,11 +312,40 @@ mod tests {
 
     #[test]
     fn dash_lists_foreign_keys_and_document_marks_are_accepted() {
-        let text = FILE.replace("[-1, 2.5, 0.0]", "\n- -1\n  - 2.5\n- 0.0");
-        let text = format!("---\r\n{text}mode: scale\nother:\n  deep: 1\n  - x\nimpassability_classes: 12\n...\n");
+        let text = FILE.replace("[-1, 2.5, 0.0]", "\n  - -1\n  - 2.5\n  - 0.0");
+        let text = format!("---\r\n{text}mode: scale\nother:\n  deep: 1\n  x: [1]\nimpassability_classes: 12\n...\n");
         let meta = meta(&text).unwrap();
         assert_eq!(meta.origin_m, [-1.0, 2.5]);
         assert_eq!((meta.mode, meta.classes), (Mode::Scale, Some(12)));
+    }
+
+    #[test]
+    fn all_ways_to_write_the_same_table_are_read_alike() {
+        let expected = meta(FILE).unwrap();
+        let flow = "{negate: 0, image: 'my #1 map.pgm', resolution: 1.0e-1,\n origin: [-1,\n 2.5, 0],\n \
+                    occupied_thresh: 0.65, free_thresh: 0.196}";
+        let indented: String = FILE.lines().map(|line| format!("  {line}\n")).collect();
+        let ways = [
+            flow.to_owned(),
+            format!("---\n{flow}\n...\n"),
+            format!("%YAML 1.1\n---\n{FILE}"),
+            format!("%YAML 1.2\n# ROS\n---\n{FILE}...\n"),
+            indented,
+            FILE.replace('\n', "\r\n"),
+            format!("\u{feff}{FILE}"),
+            FILE.replace("[-1, 2.5, 0.0]", "[\n  -1,\n  2.5, # north\n  0.0]"),
+            FILE.replace("[-1, 2.5, 0.0]", "[\n  -1,\n  2.5,\n  0.0,\n]"),
+            FILE.replace("[-1, 2.5, 0.0]", "\n- -1\n- 2.5\n- 0.0"),
+            FILE.replace("resolution: 0.1", "\"resolution\": \"0.1\""),
+            FILE.replace("resolution: 0.1", "resolution:\n  0.1"),
+            FILE.replace("resolution: 0.1", "resolution: !!float 0.1"),
+            FILE.replace("negate: 0", "negate: false"),
+            FILE.replace("\"my #1 map.pgm\" # named", ">-\n  my #1\n  map.pgm"),
+            format!("{FILE}---\nimage: other.pgm\n"),
+        ];
+        for text in ways {
+            assert_eq!(meta(&text).unwrap_or_else(|error| panic!("{text}\n{error}")), expected, "{text}");
+        }
     }
 
     #[test]
@@ -271,12 +356,31 @@ mod tests {
             (FILE.replace("0.1\n", "0\n"), "m.yaml:3: resolution is 0; give metres per pixel"),
             (FILE.replace("0.1\n", ".nan\n"), "m.yaml:3: resolution is \".nan\"; give a finite number"),
             (FILE.replace("2.5, 0.0", "2.5, 1.57"), "m.yaml:4: the origin is turned by 1.57 radians; rotated maps"),
-            (FILE.replace("2.5, 0.0", "2.5"), "m.yaml:4: origin is missing or has no three numbers"),
+            (FILE.replace("2.5, 0.0", "2.5"), "m.yaml:4: origin has 2 of three numbers; give origin"),
             (FILE.replace("0.196", "0.9"), "m.yaml:5: occupied_thresh 0.65 is less than free_thresh 0.9"),
             (format!("{FILE}mode: raw"), "m.yaml:8: mode is \"raw\"; give trinary or scale"),
-            (format!("{FILE}negate: 1"), "m.yaml:8: negate is given twice"),
+            (format!("{FILE}negate: 1"), "m.yaml:8: negate is given twice, before at line 7"),
             (format!("{FILE}impassability_classes: 256"), "m.yaml:8: impassability_classes is \"256\""),
-            (format!("{FILE}what is this"), "m.yaml:8: \"what is this\"; each line"),
+            (format!("{FILE}what is this"), "m.yaml:8: this is not YAML: "),
+            (
+                FILE.replace("0.65", "65").replace("0.196", "19.6"),
+                "m.yaml:5: occupied_thresh is 65; give a probability",
+            ),
+            (FILE.replace("0.196", "19.6"), "m.yaml:6: free_thresh is 19.6; give a probability from 0 to 1"),
+            (FILE.replace("0.65", "1.01"), "m.yaml:5: occupied_thresh is 1.01"),
+            (FILE.replace("0.196", "-0.1"), "m.yaml:6: free_thresh is -0.1"),
+            (FILE.replace("resolution: 0.1", "resolution:"), "m.yaml:3: resolution is empty; give its value"),
+            (FILE.replace("0.1\n", "[0.1]\n"), "m.yaml:3: resolution is a list; give one value"),
+            (FILE.replace("[-1, 2.5, 0.0]", "-1 2.5 0"), "m.yaml:4: origin is \"-1 2.5 0\"; give origin: [x, y"),
+            (FILE.replace("[-1, 2.5, 0.0]", "[[-1, 2.5, 0.0]]"), "m.yaml:4: origin is not a list of numbers"),
+            (FILE.replace("[-1, 2.5, 0.0]", "[-1, 2.5, 0.0"), "m.yaml:"),
+            (FILE.replace("2.5", "2,5"), "m.yaml:4: origin has 4 of three numbers"),
+            (format!("a: &a 0.1\n{}", FILE.replace("0.1\n", "*a\n")), "m.yaml:4: resolution is an alias"),
+            (format!("{FILE}<<: {{x: 1}}"), "m.yaml:8: a merge (<<) is not read"),
+            (format!("map:\n  {}", FILE.replace('\n', "\n  ")), "m.yaml: image is missing"),
+            (FILE.replace("resolution: 0.1", "resolution:\t0.1\n\tmode: scale"), "m.yaml:"),
+            ("- image\n".to_owned(), "m.yaml:1: the file is not a table"),
+            ("just words".to_owned(), "m.yaml:1: the file is not a table"),
             (String::new(), "m.yaml: image is missing"),
         ];
         for (text, expected) in cases {
@@ -297,6 +401,12 @@ mod tests {
         ) {
             let _ = meta(&lines);
             let _ = meta(&format!("{FILE}{lines}"));
+        }
+
+        #[test]
+        fn any_punctuation_is_a_file_or_an_error(text in "[a:,?!&*<>|%@`{}\\[\\]\"'# \t\n.-]{0,40}") {
+            let _ = meta(&text);
+            let _ = meta(&format!("{FILE}{text}"));
         }
     }
 }
