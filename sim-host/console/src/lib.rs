@@ -58,6 +58,7 @@ pub const VERSION: &str = env!("STAYA_VERSION");
 /// Every program calls itself `staya`, because `staya` passes its command line on unchanged.
 #[derive(Debug, Parser)]
 #[command(name = "staya", bin_name = "staya", version = VERSION, propagate_version = true)]
+#[command(about = "Simulate swarms of robots, and run their controllers on hardware", long_about = None)]
 pub struct Line<C: Subcommand> {
     /// Options of every command.
     #[command(flatten)]

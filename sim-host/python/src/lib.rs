@@ -5,6 +5,7 @@
 
 pub mod behaviors;
 pub mod bodies;
+mod pool;
 pub mod simulation;
 mod trace;
 
@@ -24,4 +25,10 @@ mod _staya {
     use super::bodies::GridBodies;
     #[pymodule_export]
     use super::simulation::{Run, ScenarioError};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }

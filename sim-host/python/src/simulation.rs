@@ -1,13 +1,14 @@
 //! A scenario in progress: [`Run`].
 
+use crate::pool;
 use crate::trace::Trace;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::create_exception;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt as _;
-use pyo3::types::PyDict;
-use serde::Deserialize;
+use pyo3::types::{PyBytes, PyDict};
+use serde::{Deserialize, Serialize};
 use staya_controller::agent::Wish;
 use staya_controller::geom::Vec3;
 use staya_controller::time::Duration as Valid;
@@ -43,6 +44,8 @@ pub struct Run {
 
 struct Inner {
     scenario: Scenario,
+    /// File of the scenario, to which its names of files are relative.
+    path: PathBuf,
     text: String,
     engine: Engine,
     tick: u32,
@@ -104,6 +107,21 @@ impl Inner {
     }
 }
 
+/// A run as bytes, for pickling.
+#[derive(Serialize, Deserialize)]
+struct State {
+    path: String,
+    text: String,
+    seed: u64,
+    ticks: u32,
+    tick: u32,
+    /// JSON, since postcard cannot read tables with a kind.
+    done: String,
+    wishes: Vec<Option<[f32; 3]>>,
+    wall_seconds: f64,
+    engine: Vec<u8>,
+}
+
 #[derive(Deserialize)]
 struct Said {
     order: Intervention,
@@ -129,7 +147,7 @@ impl Run {
     ) -> PyResult<Self> {
         let settings: Result<Vec<Setting>, _> = settings.iter().map(|setting| setting.parse()).collect();
         let settings = settings.map_err(ScenarioError::new_err)?;
-        py.detach(|| {
+        pool::detached(py, || {
             let overrides = Overrides { seed, ticks };
             let scenario = Scenario::parse_with(text, &path, &overrides, &settings).map_err(|e| scenario_error(&e))?;
             let text = match settings.is_empty() {
@@ -144,6 +162,7 @@ impl Run {
             let recorder = recorder.transpose().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
             let mut inner = Inner {
                 scenario,
+                path,
                 text,
                 engine,
                 tick: 0,
@@ -155,7 +174,59 @@ impl Run {
             };
             inner.record()?;
             Ok(Self { inner: Mutex::new(inner) })
-        })
+        })?
+    }
+
+    /// The state, with which [`Run::restored`] makes a copy.
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let inner = self.lock(py);
+        if inner.recorder.is_some() {
+            let what = "a simulation that records a page cannot be copied; leave record out, or save its page";
+            return Err(PyTypeError::new_err(what));
+        }
+        let mut engine = Vec::new();
+        inner.engine.save(&mut engine).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        let Inner { scenario, text, tick, done, wishes, wall_seconds, .. } = &*inner;
+        let path = inner.path.to_str().ok_or_else(|| PyValueError::new_err("its path is not UTF-8; rename it"))?;
+        let wishes = wishes.iter().map(|wish| wish.map(|wish| [wish.x, wish.y, wish.z])).collect();
+        let state = State {
+            path: path.to_owned(),
+            text: text.clone(),
+            seed: scenario.seed,
+            ticks: scenario.ticks,
+            tick: *tick,
+            done: serde_json::to_string(done).map_err(|error| PyRuntimeError::new_err(error.to_string()))?,
+            wishes,
+            wall_seconds: *wall_seconds,
+            engine,
+        };
+        let bytes = postcard::to_stdvec(&state).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// A run from the bytes of [`Run::state`], also of another process with this version.
+    #[staticmethod]
+    fn restored(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let unfit = |error: &dyn std::fmt::Display| {
+            PyValueError::new_err(format!("this is not a simulation of this version: {error}; run it again"))
+        };
+        let State { path, text, seed, ticks, tick, done, wishes, wall_seconds, engine: state } =
+            postcard::from_bytes(bytes).map_err(|error| unfit(&error))?;
+        pool::detached(py, || {
+            let (path, overrides) = (PathBuf::from(path), Overrides { seed: Some(seed), ticks: Some(ticks) });
+            let scenario = Scenario::parse(&text, &path, &overrides).map_err(|error| scenario_error(&error))?;
+            let mut engine = operated(&scenario).map_err(|error| unfit(&error))?;
+            engine.restore(&state).map_err(|error| unfit(&error))?;
+            let done = serde_json::from_str(&done).map_err(|error| unfit(&error))?;
+            let wishes = wishes.into_iter().map(|wish| wish.map(|[x, y, z]| Vec3::new(x, y, z))).collect();
+            let (recorder, trace) = (None, None);
+            let inner = Inner { scenario, path, text, engine, tick, done, wishes, recorder, trace, wall_seconds };
+            Ok(Self { inner: Mutex::new(inner) })
+        })?
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        Ok((py.get_type::<Self>().getattr("restored")?, (self.state(py)?,)))
     }
 
     fn step(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
@@ -366,7 +437,7 @@ impl Run {
     /// Without the interpreter lock, until `act` returns false. Signals are checked regularly.
     fn in_slices(&self, py: Python<'_>, mut act: impl FnMut(&mut Inner) -> PyResult<bool> + Send) -> PyResult<()> {
         loop {
-            let is_running = py.detach(|| {
+            let is_running = pool::detached(py, || {
                 let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
                 let end = Instant::now() + SLICE;
                 while act(&mut inner)? {
@@ -375,7 +446,7 @@ impl Run {
                     }
                 }
                 Ok(false)
-            })?;
+            })??;
             py.check_signals()?;
             if !is_running {
                 return Ok(());

@@ -2,13 +2,13 @@
 
 mod groups;
 
-use crate::engine::Outcome;
+use crate::engine::{End, Outcome};
 use crate::metrics::free_formation_s;
 use crate::metrics::waits::WaitCount;
 use crate::record::PacketCounts;
 use crate::scenario::Scenario;
 use crate::shown::Shown as _;
-use crate::world::plane::Solid;
+use crate::world::plane::{Barrier, Solid};
 use groups::GroupFigures;
 use serde::Serialize;
 use staya_controller::agent::Wait;
@@ -152,28 +152,42 @@ impl Display for Waited {
 /// Robots of one reason that the table names.
 const SHOWN: usize = 6;
 
+/// Whether another robot or an intruder may be in the way of robot `index`.
+fn has_company(scenario: &Scenario, ends: &[End], index: usize) -> bool {
+    let Some(own) = ends[index].body else { return true };
+    let mut others = ends.iter().enumerate().filter(|(other, _)| *other != index);
+    scenario.plane().is_some_and(|setup| !setup.intruders.is_empty())
+        || others.any(|(_, end)| end.body.is_some_and(|other| own.is_near(&other)))
+}
+
 /// Why a robot has not arrived, from its state at the end.
-const fn reason(mode: Mode, wait: Option<Wait>) -> &'static str {
-    match (wait, mode) {
-        (Some(Wait::Team), _) => "waits for its formation",
-        (Some(Wait::Stopped), _) => "stopped on request",
-        (Some(Wait::Route), _) => "no open way to its goal",
-        (Some(Wait::Radio), _) => "no contact with other robots",
-        (Some(Wait::Turn), _) => "waits for its turn at a door",
-        (Some(Wait::Robots), _) => "other robots in its way",
-        (Some(Wait::GoalTaken), _) => "its goal is taken",
-        (None, Mode::Idle) => "it has no goal",
-        (None, Mode::Fault) => "down, or off the map",
-        (None, Mode::Passive) => "not steered by its agent",
-        (None, Mode::Forming | Mode::Cruise | Mode::Hold | Mode::Arrived) => "still on its way",
+fn reason(scenario: &Scenario, ends: &[End], index: usize) -> &'static str {
+    let end = &ends[index];
+    match (end.wait, end.mode) {
+        (None, Mode::Idle) => return "it has no goal",
+        (None, Mode::Fault) => return "down, or off the map",
+        (None, Mode::Passive) => return "not steered by its agent",
+        _ => {}
+    }
+    match (end.barrier, end.wait) {
+        (Some(Barrier::GoalTaken), _) => "its goal is in an obstacle",
+        (Some(Barrier::Enclosed), _) => "obstacles enclose it or its goal",
+        (None, Some(Wait::Team)) => "waits for its formation",
+        (None, Some(Wait::Stopped)) => "stopped on request",
+        (None, Some(Wait::Radio)) => "no contact with other robots",
+        (None, Some(Wait::Turn)) => "waits for its turn at a door",
+        (None, Some(Wait::Robots)) if has_company(scenario, ends, index) => "other robots in its way",
+        (None, Some(Wait::Route | Wait::Robots)) => "no way to its goal in sight",
+        (None, Some(Wait::GoalTaken)) => "its goal is taken",
+        (None, None) => "still on its way",
     }
 }
 
 fn absent(scenario: &Scenario, outcome: &Outcome) -> Vec<(&'static str, Vec<u32>)> {
     let mut absent = Vec::<(&str, Vec<u32>)>::new();
-    let ends = outcome.arrival_times.iter().zip(&outcome.ends);
-    for (robot, (_, &(mode, wait))) in scenario.robots.iter().zip(ends).filter(|(_, (time, _))| time.is_none()) {
-        let reason = reason(mode, wait);
+    let times = scenario.robots.iter().zip(&outcome.arrival_times).enumerate();
+    for (index, (robot, _)) in times.filter(|(_, (_, time))| time.is_none()) {
+        let reason = reason(scenario, &outcome.ends, index);
         match absent.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, robots)) => robots.push(robot.id.0),
             None => absent.push((reason, vec![robot.id.0])),
@@ -213,11 +227,12 @@ impl Summary {
                 scenario
                     .robots
                     .iter()
-                    .zip(outcome.arrival_times.iter().zip(&outcome.ends))
-                    .map(|(robot, (units, &(mode, wait)))| Arrival {
+                    .zip(&outcome.arrival_times)
+                    .enumerate()
+                    .map(|(index, (robot, units))| Arrival {
                         robot: robot.id.0,
                         seconds: units.map(|units| seconds(units as f64)),
-                        reason: units.is_none().then(|| reason(mode, wait)),
+                        reason: units.is_none().then(|| reason(scenario, &outcome.ends, index)),
                     })
                     .collect(),
             ),

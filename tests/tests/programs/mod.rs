@@ -7,6 +7,7 @@ mod figures;
 mod names;
 mod orca;
 mod recordings;
+mod reported;
 mod run;
 mod shell;
 mod sweep;

@@ -436,3 +436,26 @@ fn studies_print_tables_and_json_and_write_pictures() {
     let boids = "experiment boids --restart --axis search=cells,tree --set boids=20 --set study.steps=3";
     assert_eq!(json(boids)["points"][1]["figures"]["equal"]["min"], 1.0);
 }
+
+/// The first line that a command prints.
+fn first_line(arguments: &[&str]) -> String {
+    let Output { status, stdout, stderr } = staya(arguments).output().expect("staya starts");
+    assert!(status.success(), "{arguments:?}: {}", text(&stderr));
+    text(&stdout).lines().next().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn the_first_line_of_each_help_says_what_the_command_does() {
+    let top = text(&staya(&["--help"]).output().expect("staya starts").stdout);
+    assert_eq!(first_line(&["--help"]), "Simulate swarms of robots, and run their controllers on hardware");
+    assert_eq!(first_line(&["-h"]), first_line(&["--help"]));
+    let commands = top.split_once("Commands:\n").and_then(|(_, rest)| rest.split_once("\n\n")).expect("commands").0;
+    let commands: Vec<_> = commands.lines().filter_map(|line| line.trim().split_once("  ")).collect();
+    assert!(commands.len() >= 13, "{commands:?}");
+    for (name, about) in commands.into_iter().filter(|(name, _)| *name != "help") {
+        let line = first_line(&[name, "--help"]);
+        assert_eq!(line, about.trim(), "{name}");
+        assert_eq!(first_line(&["help", name]), line, "{name}");
+        assert!(line.len() <= 100 && line.starts_with(|c: char| c.is_uppercase()), "{name}: {line}");
+    }
+}

@@ -1,5 +1,7 @@
 //! Record of a run: a line of CSV, identical on every machine. The last cell is the CRC-32 of the
 //! cells before it, so that a damaged row is not merged.
+//!
+//! Hashes begin with `h`: spreadsheets and pandas read some digits, such as `606634e5`, as numbers.
 
 use crate::sweep::plan::Plan;
 use crate::sweep::value::Figure;
@@ -7,6 +9,9 @@ use staya_console::VERSION;
 
 /// Name of the column of checksums.
 const CHECKSUM: &str = "crc32";
+
+/// What hashes begin with.
+const HASH: char = 'h';
 
 /// A completed run.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +80,7 @@ impl Row {
         let mut cells = beginning(plan, self.run);
         cells.push(self.outcome.name().to_owned());
         cells.extend(self.figures.iter().map(ToString::to_string));
-        cells.extend([self.trace_hash.clone(), plan.fingerprint(), VERSION.to_owned()]);
+        cells.extend([hash_cell(&self.trace_hash), hash_cell(&plan.fingerprint()), VERSION.to_owned()]);
         checked(&cells.join(","))
     }
 
@@ -89,7 +94,8 @@ impl Row {
         let [start @ .., hash, fingerprint, version] = &cells[..] else {
             return Err(damaged("it is not a row"));
         };
-        if *fingerprint != plan.fingerprint() {
+        if *fingerprint != hash_cell(&plan.fingerprint()) {
+            let fingerprint = fingerprint.trim_start_matches(HASH);
             let what = format!("it is of another plan ({fingerprint}, this one is {})", plan.fingerprint());
             return Err((what, elsewhere()));
         }
@@ -112,13 +118,18 @@ impl Row {
         }
         let figures = figures.iter().map(|cell| Figure::read(cell)).collect::<Option<Vec<_>>>();
         let figures = figures.ok_or_else(|| damaged("a figure is not a number"))?;
-        Ok(Self { run, outcome, figures, trace_hash: (*hash).to_owned() })
+        Ok(Self { run, outcome, figures, trace_hash: hash.trim_start_matches(HASH).to_owned() })
     }
 }
 
 /// Appends the checksum of the cells as the last cell.
 pub(super) fn checked(cells: &str) -> String {
-    format!("{cells},{:08x}", crc32fast::hash(cells.as_bytes()))
+    format!("{cells},{}", hash_cell(&format!("{:08x}", crc32fast::hash(cells.as_bytes()))))
+}
+
+/// A cell with a hash; the empty one remains empty.
+fn hash_cell(digits: &str) -> String {
+    if digits.is_empty() { String::new() } else { format!("{HASH}{digits}") }
 }
 
 fn beginning(plan: &Plan, run: u64) -> Vec<String> {

@@ -13,10 +13,10 @@ pub fn schema(plan: &Plan) -> String {
     let figures = plan.measures();
     columns.extend(figures.iter().map(|name| column(name, "number", unit(name), plan.meaning(name))));
     for (name, meaning) in [
-        ("trace_hash", "fingerprint of all bytes and movements of the run; empty: there are none"),
-        ("plan", "fingerprint of the plan: rows of one plan go together"),
+        ("trace_hash", "h and the trace hash of the run, of all bytes and movements; empty: there are none"),
+        ("plan", "h and the fingerprint of the plan: rows of one plan go together"),
         ("version", "version of the program, and its git commit where that is known"),
-        ("crc32", "CRC-32 (ISO-HDLC) of the line before the last comma, 8 hex digits"),
+        ("crc32", "h and the CRC-32 (ISO-HDLC) of the line before the last comma, 8 hex digits"),
     ] {
         columns.push(column(name, "string", "", meaning));
     }

@@ -6,21 +6,20 @@ use super::ground::{part, part_mut};
 use super::outcome::{Part, Row, Sums, nothing};
 use super::region::Region;
 use super::wire::Wire;
-use staya_controller::agent::Wait;
 use staya_controller::grid::Cell;
-use staya_controller::robot::{Mode, RobotId};
+use staya_controller::robot::RobotId;
 use staya_controller::wire::Ring;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::hash;
-use staya_sim::engine::{Agents, AnyGround, Engine, Moment, Outcome, Saves, Watch};
+use staya_sim::engine::{Agents, AnyGround, End, Engine, Moment, Outcome, Saves, Watch};
 use staya_sim::metrics::{FormationQuality, Member};
 use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
 use staya_sim::scenario::{AttackKind, Intervention, Movement, Scenario};
 use std::time::Instant;
 
-/// A robot at the end: its number, arrival time, mode and cause of waiting.
-type End = (u32, Option<u64>, (Mode, Option<Wait>));
+/// A robot at the end: its number, arrival time and state.
+type Arrival = (u32, Option<u64>, End);
 
 /// How ranks share their work. No setting changes a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -386,14 +385,14 @@ impl<'a> Rank<'a> {
 
     fn end(mut self) -> Result<Ended, RankError> {
         let engine = &self.engine;
-        let ends = engine.statuses.iter().map(|status| (status.mode, status.wait));
+        let ends = engine.ends();
         let times = engine.here.iter().copied().zip(engine.arrivals.times().iter().copied()).zip(ends);
-        let times: Vec<End> = times.map(|((number, time), end)| (number, time, end)).collect();
+        let times: Vec<Arrival> = times.map(|((number, time), end)| (number, time, end)).collect();
         let (part, traffic) = (Part::of(engine), self.wire.traffic);
         let heard = self.wire.gather_first(encode(&times))?;
-        let mut times = Vec::<End>::new();
+        let mut times = Vec::<Arrival>::new();
         for (rank, bytes) in heard.iter().enumerate() {
-            times.extend(decode::<Vec<End>>(rank, "arrivals", bytes)?);
+            times.extend(decode::<Vec<Arrival>>(rank, "arrivals", bytes)?);
         }
         times.sort_unstable_by_key(|&(number, ..)| number);
         let engine = &self.engine;

@@ -7,9 +7,9 @@ and metres per second; x is east, y north, z up.
 """
 
 from . import flock
-from ._staya import ScenarioError
+from ._staya import ScenarioError, __version__
 from .behaviors import Negotiation, Orca, Routes, orca, route
 from .result import Page, Result
 from .simulation import Mode, Simulation
 
-__all__ = ["Mode", "Negotiation", "Orca", "Page", "Result", "Routes", "ScenarioError", "Simulation", "flock", "orca", "route"]
+__all__ = ["Mode", "Negotiation", "Orca", "Page", "Result", "Routes", "ScenarioError", "Simulation", "__version__", "flock", "orca", "route"]

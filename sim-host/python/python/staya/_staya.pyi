@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
 
-__all__ = ["Avoiders", "GridBodies", "Negotiators", "Run", "ScenarioError", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
+__all__ = ["Avoiders", "GridBodies", "Negotiators", "Run", "ScenarioError", "__version__", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
+
+__version__: str
 
 class ScenarioError(ValueError):
     """An unreadable or invalid scenario, with file, line, field and remedy."""
@@ -26,6 +28,9 @@ class Run:
         settings: list[str],
         record: int | None,
     ) -> Run: ...
+    def state(self) -> bytes: ...
+    @staticmethod
+    def restored(bytes: bytes) -> Run: ...
     @property
     def tick(self) -> int: ...
     @property

@@ -66,6 +66,15 @@ class Result:
             self.trace[name] = np.append(words, "")[np.minimum(codes, len(words))]
         self._page = page
 
+    def __getstate__(self) -> dict[str, Any]:
+        text = None if self._page is None else self._page()
+        return {"summary": self.summary, "trace": self.trace, "series": self.series, "page": text}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.summary, self.trace, self.series = state["summary"], state["trace"], state["series"]
+        text: str | None = state["page"]
+        self._page = None if text is None else lambda: text
+
     @property
     def trace_hash(self) -> str:
         """Trace hash of the run, 16 hex digits."""

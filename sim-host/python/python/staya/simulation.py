@@ -37,7 +37,8 @@ class Simulation:
     Keyword arguments override scenario fields, with `__` for each dot; other names fit into
     `overrides={"plane.group[0].count": 40}`. With `record=N` every N-th tick is kept for `page`.
     Without commands the run equals that of `staya run`, bit for bit. Raises `ScenarioError` with
-    file, line, field and remedy.
+    file, line, field and remedy. A pickled copy continues at the same tick, with the same trace
+    hash.
     """
 
     def __init__(
@@ -81,12 +82,21 @@ class Simulation:
         ticks = None if ticks is None else _check.whole("ticks", ticks, 1)
         record = None if record is None else _check.whole("record", record, 1)
         settings = [f"{name}={_check.toml(name, value)}" for name, value in fields.items()]
-        self._run = Run(text, path, seed, ticks, settings, record)
+        self._hold(Run(text, path, seed, ticks, settings, record))
+
+    def _hold(self, run: Run) -> None:
+        self._run = run
         self._ids = self._run.ids()
         self._ids.flags.writeable = False
         bodies = self._run.bodies()
         self._bodies = np.full((len(self._ids), 2), np.nan) if bodies is None else bodies
         self._bodies.flags.writeable = False
+
+    def __getstate__(self) -> Run:
+        return self._run
+
+    def __setstate__(self, run: Run) -> None:
+        self._hold(run)
 
     def __repr__(self) -> str:
         return f"<Simulation {self.name!r}: {len(self)} robots, tick {self.tick} of {self.ticks}>"

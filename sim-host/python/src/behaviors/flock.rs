@@ -1,6 +1,7 @@
 //! Flocking laws, one step of all robots at once.
 
 use super::{Neighborhood, Obstacles, Robots, array, rows, vector};
+use crate::pool;
 use crate::simulation;
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -59,7 +60,7 @@ pub fn lattice_acceleration<'py>(
     }
     let (positions_m, velocities_mps) = (rows::<3>(&positions_m)?, rows::<3>(&velocities_mps)?);
     let obstacles = Obstacles { walls_m: rows(&walls_m)?, discs_m: rows(&discs_m)? };
-    let answers = py.detach(|| {
+    let answers = pool::detached(py, || {
         let radii_m = &vec![0.0; positions_m.len()];
         let robots = Robots { positions_m, velocities_mps, radii_m };
         let neighborhood = Neighborhood::new(robots, f64::from(params.range_m()), None);
@@ -76,7 +77,7 @@ pub fn lattice_acceleration<'py>(
             array(acceleration(&params, &body, &nearby, &seen, reference.as_ref()))
         });
         answers.collect::<Vec<_>>()
-    });
+    })?;
     Ok(simulation::rows(py, answers.into_iter()))
 }
 
@@ -106,7 +107,7 @@ pub fn goal_wish<'py>(
         ));
     }
     let (positions_m, goals_m) = (rows::<3>(&positions_m)?, rows::<3>(&goals_m)?);
-    let wishes = py.detach(|| {
+    let wishes = pool::detached(py, || {
         let still_mps = &vec![[0.0; 3]; positions_m.len()];
         let radii_m = &vec![0.0; positions_m.len()];
         let robots = Robots { positions_m, velocities_mps: still_mps, radii_m };
@@ -120,7 +121,7 @@ pub fn goal_wish<'py>(
             array(wish(&params, &body, place(positions_m[index]), goal, &nearby))
         });
         wishes.collect::<Vec<_>>()
-    });
+    })?;
     Ok(simulation::rows(py, wishes.into_iter()))
 }
 
@@ -141,7 +142,7 @@ pub fn boids_steer<'py>(
     let [crowded_m, closest_m, turn, turn_away] = values;
     let params = BoidsParams::new(crowded_m, closest_m, turn, turn_away);
     let (positions_m, headings, radii_m) = (rows::<3>(&positions_m)?, rows::<3>(&headings)?, radii_m.as_slice()?);
-    let next = py.detach(|| {
+    let next = pool::detached(py, || {
         // One common speed makes headings sufficient.
         let robots = Robots { positions_m, velocities_mps: headings, radii_m };
         let neighborhood = Neighborhood::new(robots, f64::from(closest_m), torus_m);
@@ -153,6 +154,6 @@ pub fn boids_steer<'py>(
             [next.x, next.y].map(f64::from)
         });
         next.collect::<Vec<_>>()
-    });
+    })?;
     Ok(simulation::rows(py, next.into_iter()))
 }

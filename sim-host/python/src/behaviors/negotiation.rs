@@ -1,5 +1,6 @@
 //! Negotiation of robots on a grid, all at once.
 
+use crate::pool;
 use numpy::{PyArray2, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt as _;
@@ -54,7 +55,7 @@ impl Negotiators {
         let (sights, beacons, reports) = (sights.as_slice()?, beacons.as_slice()?, reports.as_slice()?);
         let mut all = self.all.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         let all: &mut [Negotiator<MEMBERS, GOALS>] = &mut all;
-        let moves = py.detach(|| {
+        let moves = pool::detached(py, || {
             let said: Vec<Said> = begin(all, &at, &goals, sights);
             self.each(all, beacons, |robot, id, from| robot.hear(id, &said[from]));
             let told: Vec<Report> = all.iter().map(Negotiator::report).collect();
@@ -62,7 +63,7 @@ impl Negotiators {
             let robots = all.par_iter_mut().zip(&at).with_min_len(BATCH);
             let moves = robots.map(|(robot, &own)| self.decide(robot, own, &at, sensing).offset());
             moves.map(|Cell { x, y }| vec![x, y]).collect::<Vec<_>>()
-        });
+        })?;
         Ok(PyArray2::from_vec2(py, &moves)?)
     }
 }

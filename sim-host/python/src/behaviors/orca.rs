@@ -1,6 +1,7 @@
 //! ORCA (J. van den Berg and others 2011) of all robots at once.
 
 use super::{Neighborhood, Obstacles, Robots, array, rows, vector};
+use crate::pool;
 use crate::simulation;
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -84,7 +85,7 @@ impl Avoiders {
         let obstacles = Obstacles { walls_m: rows(&walls_m)?, discs_m: rows(&discs_m)? };
         let mut all = self.all.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         let all = all.as_mut_slice();
-        let best = py.detach(|| {
+        let best = pool::detached(py, || {
             let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
             // Robots farther away cannot be met within the horizon.
             let reach_m = 2.0 * largest(speeds_mps) * (self.horizon_s + step_s) + 2.0 * largest(radii_m);
@@ -109,7 +110,7 @@ impl Avoiders {
                 })
             });
             best.collect::<Vec<[f64; 3]>>()
-        });
+        })?;
         Ok(simulation::rows(py, best.into_iter()))
     }
 }

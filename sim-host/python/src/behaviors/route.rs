@@ -1,5 +1,6 @@
 //! Windowed routing (A. V. Kuznetsov 2017) of many robots on one map, without interaction.
 
+use crate::pool;
 use numpy::{IntoPyArray as _, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -53,7 +54,7 @@ pub fn route<'py>(
         Ok(array.as_slice()?.as_chunks::<2>().0.iter().map(|&[x, y]| Cell::new(x, y)).collect())
     };
     let (starts, goals) = (cells(&starts)?, cells(&goals)?);
-    let walks = py.detach(|| {
+    let walks = pool::detached(py, || {
         let pairs = starts.par_iter().zip(&goals).with_max_len(16);
         let walks = pairs.map_init(Walker::<WIDE, VISITS, LEARNED>::default, |walker, (&from, &to)| {
             let task = Task { land: &land, parked: &[], from, to };
@@ -61,7 +62,7 @@ pub fn route<'py>(
             (walk, walker.path().iter().flat_map(|cell| [cell.x, cell.y]).collect::<Vec<i16>>())
         });
         walks.collect::<Vec<(Walk, Vec<i16>)>>()
-    });
+    })?;
     let ticks: Vec<f64> = walks.iter().map(|(walk, _)| walk.cost as f64 / f64::from(UNIT)).collect();
     let arrived: Vec<bool> = walks.iter().map(|(walk, _)| walk.arrived).collect();
     let paths = walks.into_iter().map(|(_, path)| {

@@ -7,7 +7,7 @@ use super::hash::grid_words;
 use super::state::{Reader, StateError, write};
 use crate::record::Motion;
 use crate::scenario::{Intervention, Robot, Scenario};
-use crate::world::plane::CommandAge;
+use crate::world::plane::{Barrier, CommandAge};
 use crate::world::scouts::{Memory, Scouts};
 use crate::world::{Body, Misplaced, MoveRules, Refusal, World};
 use serde::{Deserialize, Serialize};
@@ -198,6 +198,10 @@ impl Ground for Grid {
     fn goal_m(&self, number: usize) -> Option<[f64; 3]> {
         let [x, y] = self.world.terrain().center_m(self.robots[number].goal);
         Some([x, y, 0.0])
+    }
+
+    fn barriers(&self, _: u32, _: &[usize]) -> Vec<(usize, Barrier)> {
+        Vec::new()
     }
 
     fn set_goal(&mut self, number: usize, _: u32, [x, y, _]: [f64; 3]) {

@@ -5,7 +5,7 @@ use super::{Grid, PlaneGround, Status};
 use crate::record::Motion;
 use crate::scenario::{Intervention, Movement, Scenario};
 use crate::terrain::Terrain;
-use crate::world::plane::{Clearance, CommandAge, Disc, Solid};
+use crate::world::plane::{Barrier, Clearance, CommandAge, Disc, Solid};
 use crate::world::{Misplaced, Refusal};
 use staya_controller::agent::{AgentConfig, AnyInputs, Command, Task, WAYPOINTS};
 use staya_controller::grid::Cell;
@@ -75,6 +75,9 @@ pub trait Ground: Send + Sync {
 
     /// Goal of a robot, metres; `None`: it has no fixed goal.
     fn goal_m(&self, number: usize) -> Option<[f64; 3]>;
+
+    /// Those of the bodies `of` whose goal no motion leads to, with the reason.
+    fn barriers(&self, tick: u32, of: &[usize]) -> Vec<(usize, Barrier)>;
 
     /// Sets the goal of a robot from `tick` on.
     fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]);

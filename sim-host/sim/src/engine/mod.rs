@@ -49,7 +49,7 @@ pub use operator::{Observation, operated};
 pub use plane::PlaneGround;
 pub use simulate::{Moment, Outcome, StartError, Watch, simulate, simulate_from, simulate_own, simulate_with};
 pub use state::{Reader, Saves, StateError};
-pub use status::Status;
+pub use status::{End, EndBody, Status};
 
 use crate::metrics::waits::Waits;
 use crate::metrics::{Arrivals, FormationMeters, FormationQuality, Member, in_cells};

@@ -1,5 +1,6 @@
 //! Bodies in the plane or in space, and the sensors of their robots.
 
+mod barriers;
 mod company;
 mod ground;
 mod orders;

@@ -1,8 +1,12 @@
 //! Reports of a running simulation: record rows, moments for watchers, and results.
 
-use super::{Engine, Moment, Outcome, Saves, hash};
+use super::{End, EndBody, Engine, Moment, Outcome, Saves, Status, hash};
 use crate::metrics::{FormationMeters, FormationQuality};
 use crate::record::{PacketCounts, RobotRow, TickRow};
+use crate::world::plane::Disc;
+
+/// A body that a robot cannot reach within this time, seconds, is not in its way.
+const REACH_S: f64 = 3.0;
 
 impl Engine {
     pub(super) fn first_row(&mut self) -> TickRow {
@@ -80,6 +84,31 @@ impl Engine {
         self.interventions.is_empty() && self.arrivals.is_complete()
     }
 
+    /// States of the robots, with the barriers of those that have not arrived. O(obstacles^2 +
+    /// robots x obstacles).
+    #[must_use]
+    pub fn ends(&self) -> Vec<End> {
+        let times = self.arrivals.times();
+        let absent: Vec<usize> = (0..times.len()).filter(|&index| times[index].is_none()).collect();
+        let discs = self.ground.view(self.tick).discs;
+        let body = |disc: &Disc| EndBody {
+            position_m: disc.position_m,
+            radius_m: disc.radius_m,
+            reach_m: disc.radius_m + REACH_S * disc.abilities.max_speed_mps,
+        };
+        let end = |(index, status): (usize, &Status)| End {
+            mode: status.mode,
+            wait: status.wait,
+            barrier: None,
+            body: discs.get(index).map(body),
+        };
+        let mut ends: Vec<End> = self.statuses.iter().enumerate().map(end).collect();
+        for (index, barrier) in self.ground.barriers(self.tick, &absent) {
+            ends[index].barrier = Some(barrier);
+        }
+        ends
+    }
+
     /// Results of the run so far.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
@@ -89,7 +118,7 @@ impl Engine {
             seconds: self.seconds(),
             arrived: self.arrivals.count(),
             arrival_times: self.arrivals.times().to_vec(),
-            ends: self.statuses.iter().map(|status| (status.mode, status.wait)).collect(),
+            ends: self.ends(),
             collisions: self.collisions,
             packets: self.packets,
             throttled: self.throttled,

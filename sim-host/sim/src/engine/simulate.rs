@@ -2,7 +2,7 @@
 
 use super::laws::{WrongWorld, agents, own_agents};
 use super::state::{Saves, StateError};
-use super::{Engine, ExternalController};
+use super::{End, Engine, ExternalController};
 use crate::metrics::waits::WaitCount;
 use crate::metrics::{FormationKept, FormationQuality, PlaceError};
 use crate::own_law::OwnLaw;
@@ -11,8 +11,7 @@ use crate::scenario::Scenario;
 use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
-use staya_controller::agent::{WAYPOINTS, Wait};
-use staya_controller::robot::Mode;
+use staya_controller::agent::WAYPOINTS;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -56,8 +55,8 @@ pub struct Outcome {
     /// End of each robot's last move, [`UNIT`](staya_controller::grid::UNIT)ths of a tick after the
     /// start; `None`: not at its goal.
     pub arrival_times: Vec<Option<u64>>,
-    /// Mode of each robot at the end, and why it waits.
-    pub ends: Vec<(Mode, Option<Wait>)>,
+    /// State of each robot at the end.
+    pub ends: Vec<End>,
     /// Robots in a wall or in another robot's cell, summed over ticks. Must be 0.
     pub collisions: u64,
     /// Packets of the whole run.

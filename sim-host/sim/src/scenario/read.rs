@@ -197,9 +197,17 @@ impl Display for Limits {
     }
 }
 
+/// A whole number, which may be written with a decimal point or an exponent.
 fn integer(node: &Node<'_>) -> Option<i128> {
-    let DeValue::Integer(value) = node.get_ref() else { return None };
-    i128::from_str_radix(value.as_str(), value.radix()).ok()
+    match node.get_ref() {
+        DeValue::Integer(value) => i128::from_str_radix(value.as_str(), value.radix()).ok(),
+        DeValue::Float(value) => {
+            let value = value.as_str().parse::<f64>().ok()?;
+            // Up to this size each whole number is a double of its own.
+            (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i128)
+        }
+        _ => None,
+    }
 }
 
 fn number(node: &Node<'_>) -> Option<f64> {

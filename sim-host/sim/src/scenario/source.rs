@@ -89,13 +89,16 @@ impl<'a> Source<'a> {
                 let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
                 Ok(Self { path, text, root, files: vec![path.to_owned()].into() })
             }
-            Err(error) => Err(ScenarioError::Field {
-                path: path.to_owned(),
-                place: Location::of(text, error.span().map_or(0, |span| span.start)),
-                field: String::new(),
-                what: first_line(error.message()),
-                remedy: "this is not TOML; strings need quotes, tables [brackets]".to_owned(),
-            }),
+            Err(error) => {
+                let span = error.span().unwrap_or_default();
+                let twice = if error.message().starts_with("duplicate key") { twice(text, &span) } else { None };
+                let [what, remedy] = twice.unwrap_or_else(|| {
+                    let remedy = "this is not TOML; strings need quotes, tables [brackets]";
+                    [first_line(error.message()), remedy.to_owned()]
+                });
+                let place = Location::of(text, span.start);
+                Err(ScenarioError::Field { path: path.to_owned(), place, field: String::new(), what, remedy })
+            }
         }
     }
 
@@ -304,6 +307,51 @@ impl Section<'_> {
     /// Like [`limit`](Self::limit), for a range that depends on other fields.
     pub fn within(&self, name: &str, value: f64, range: RangeInclusive<f64>, unit: &'static str) -> Checked {
         self.limit(name, value, &Limits::new(range, unit))
+    }
+}
+
+/// Cause and remedy for a key or table at `span` that the text has before, too.
+fn twice(text: &str, span: &Range<usize>) -> Option<[String; 2]> {
+    /// A key that stands where the second one does.
+    const HERE: &str = "staya-looks-here";
+    let (before, name) = (text.get(..span.start)?, text.get(span.clone())?);
+    let (above, line) = before.rsplit_once('\n').unwrap_or(("", before));
+    let first = if line.trim_start().starts_with('[') {
+        let header = text.get(before.len() - line.len()..)?.lines().next()?;
+        let path = header.trim().trim_start_matches('[').split(']').next()?;
+        let root = Spanned::new(0..0, DeValue::Table(DeTable::parse(above).ok()?.into_inner()));
+        let (tables, last) = path.rsplit_once('.').unwrap_or(("", path));
+        let table = tables.split('.').filter(|step| !step.is_empty()).try_fold(&root, |node, step| {
+            let next = node.get_ref().as_table()?.get(step.trim())?;
+            next.get_ref().as_array().map_or(Some(next), |list| list.iter().next_back())
+        })?;
+        table.get_ref().as_table()?.get_key_value(last.trim()).map(|(key, _)| key.span())
+    } else {
+        // Only inline tables are open at that place.
+        ["", "}", "}]", "}}", "}]}", "}}}"].into_iter().find_map(|end| {
+            let begun = format!("{before}{HERE} = 0{end}");
+            let root = DeTable::parse(&begun).ok()?.into_inner();
+            beside(&root, HERE, name.trim_matches(['"', '\'']))
+        })
+    }?;
+    let [first, second] = [first.start, span.start].map(|byte| Location::of(text, byte).line);
+    let lines = if first == second { format!("in line {first}") } else { format!("in lines {first} and {second}") };
+    Some([format!("`{name}` is given twice, {lines}"), "keep one of them".to_owned()])
+}
+
+/// Place of the key `name` in the table that has the key `here`.
+fn beside(table: &DeTable<'_>, here: &str, name: &str) -> Option<Range<usize>> {
+    if table.contains_key(here) {
+        return table.get_key_value(name).map(|(key, _)| key.span());
+    }
+    table.values().find_map(|value| inside(value, here, name))
+}
+
+fn inside(value: &Node<'_>, here: &str, name: &str) -> Option<Range<usize>> {
+    match value.get_ref() {
+        DeValue::Table(table) => beside(table, here, name),
+        DeValue::Array(list) => list.iter().find_map(|value| inside(value, here, name)),
+        _ => None,
     }
 }
 

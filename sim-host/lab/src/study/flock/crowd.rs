@@ -122,7 +122,7 @@ impl<'a> Crowd<'a> {
             seconds: f64::from(tick) * self.step_s,
             arrived: 0,
             arrival_times: vec![None; robots],
-            ends: vec![(Mode::Cruise, None); robots],
+            ends: vec![engine::End { mode: Mode::Cruise, wait: None, barrier: None, body: None }; robots],
             collisions: clearance.overlaps,
             packets: PacketCounts::default(),
             throttled: 0,

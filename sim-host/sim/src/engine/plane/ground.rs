@@ -8,14 +8,14 @@ use crate::engine::state::{Reader, StateError, write};
 use crate::record::Motion;
 use crate::scenario::{Intervention, Order, Target, goals};
 use crate::world::Refusal;
-use crate::world::plane::{Clearance, CommandAge, Disc, Solid};
+use crate::world::plane::{Barrier, Clearance, CommandAge, Disc, Solid};
 use crate::world::scouts::Memory;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{AgentConfig, AnyInputs, Command, GuidanceKind, Task};
 use staya_controller::grid::{Cell, UNIT};
 use staya_controller::neighbor::Sighting;
 use staya_controller::robot::Mode;
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 
 /// Includes the task that its robot gets at a restart.
 #[derive(Debug, Serialize, Deserialize)]
@@ -219,6 +219,15 @@ impl Ground for PlaneGround {
 
     fn goal_m(&self, number: usize) -> Option<[f64; 3]> {
         self.setup.starts[number].places.first().map(|target| target.position_m)
+    }
+
+    fn barriers(&self, tick: u32, of: &[usize]) -> Vec<(usize, Barrier)> {
+        let mut known = HashMap::new();
+        let barrier = |&index: &usize| {
+            let goal_m = self.last_goal_m(self.number(index), tick)?;
+            Some((index, self.barrier(index, goal_m, &mut known)?))
+        };
+        of.iter().filter_map(barrier).collect()
     }
 
     fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]) {

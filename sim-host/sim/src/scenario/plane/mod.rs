@@ -3,6 +3,7 @@
 mod body;
 mod checks;
 mod flocks;
+mod grounds;
 mod group;
 mod inherit;
 mod place;
@@ -179,7 +180,7 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
     let mut placing = starts::Placing {
         draft,
         general_m: general.radius_m,
-        solids: &solids,
+        surroundings: grounds::Surroundings::new(draft, terrain, &solids),
         groups: Vec::new(),
         starts: terrain.map_or_else(Vec::new, |land| starts::on_land(&cells, land, phase)),
     };

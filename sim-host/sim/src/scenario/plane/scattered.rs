@@ -3,9 +3,10 @@
 use super::super::Draft;
 use super::super::source::Checked;
 use super::body::Group;
+use super::grounds::Surroundings;
 use super::place::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
-use crate::world::plane::{Solid, Solids};
+use crate::world::plane::Solid;
 use staya_controller::agent::GuidanceKind;
 use staya_controller::rand::Rng;
 use std::collections::HashMap;
@@ -73,12 +74,12 @@ impl Taken {
     }
 }
 
-/// Places are two radii or more from solids; starts are also clear of `others` (place, radius).
+/// Places are two radii or more from obstacles, blocked cells and the sides of the map; starts are also clear of `others` (place, radius).
 pub(super) fn starts(
     group: &Group<'_>,
     entry: &ScatteredDiscs,
     others: &[([f64; 3], f64)],
-    solids: &[Solid],
+    surroundings: &Surroundings<'_>,
 ) -> Checked<Vec<Start>> {
     let (body, at) = (&group.body, group.at.at("robots.scattered"));
     if !matches!(body.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
@@ -88,8 +89,6 @@ pub(super) fn starts(
     let (least_m, spacing_m) = (2.0 * body.radius_m, entry.spacing_m.unwrap_or(3.0 * body.radius_m));
     at.within("spacing_m", spacing_m, least_m..=1e6, "metres")?;
     let [low, high] = corners(entry.from_m, entry.to_m);
-    let solids = Solids::new(solids.to_vec(), least_m);
-    let is_outside = |place| solids.near(place, least_m).all(|solid| solid.distance_m(place) >= least_m);
     let downwash = body.orca.as_ref().and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
     let (mut taken, mut aims) = (Taken::new(spacing_m, downwash), Taken::new(spacing_m, downwash));
     let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
@@ -97,12 +96,18 @@ pub(super) fn starts(
         let mut rng = Rng::keyed(group.draft.file.seed, SCATTERED, first + index, 0);
         let mut draw = |low, high, taken: &mut Taken, is_start: bool| {
             let mut places = (0..TRIES).map(|_| between(&mut rng, Place(low), Place(high)));
-            let place = places
-                .find(|&at| taken.is_free(at) && is_outside(at) && (!is_start || is_clear(at, body.radius_m, others)));
+            let place = places.find(|&at| {
+                taken.is_free(at)
+                    && surroundings.is_clear(at, least_m)
+                    && (!is_start || is_clear(at, body.radius_m, others))
+            });
             place.inspect(|&place| taken.take(place)).ok_or_else(|| {
                 let what =
                     format!("robot {} finds no free {}", first + index + 1, if is_start { "start" } else { "goal" });
-                at.unfit(what, "give fewer robots, less spacing_m, more travel_m or corners farther apart")
+                at.unfit(
+                    what,
+                    "give fewer robots, less spacing_m, more travel_m, or corners farther apart on open land",
+                )
             })
         };
         let position_m = draw(low, high, &mut taken, true)?;

@@ -130,3 +130,30 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         assert!(refusal.contains("; "), "no remedy: {refusal}");
     }
 }
+
+#[test]
+fn a_key_or_table_that_is_given_twice_is_named_with_both_lines() {
+    let cases = [
+        (
+            "name = \"t\"\nticks = 5\nticks = 6\n",
+            "s.toml:3:1: `ticks` is given twice, in lines 2 and 3; keep one of them",
+        ),
+        ("a = 1\n[plane]\na = 1\nx = 2\na = 3\n", "s.toml:5:1: `a` is given twice, in lines 3 and 5"),
+        ("[[plane.wall]]\na = 1\n[[plane.wall]]\na = 1\n\na = 1\n", "s.toml:6:1: `a` is given twice, in lines 4 and 6"),
+        ("radio = { loss = 1, loss = 2 }\n", "s.toml:1:21: `loss` is given twice, in line 1"),
+        ("list = [{ id = 1 },\n  { id = 1, id = 2 }]\n", "s.toml:2:13: `id` is given twice, in line 2"),
+        ("radio.loss = 1\nradio.loss = 2\n", "s.toml:2:7: `loss` is given twice, in lines 1 and 2"),
+        ("[plane]\nx = 1\n[radio]\n[plane]\ny = 1\n", "s.toml:4:2: `plane` is given twice, in lines 1 and 4"),
+        (
+            "[plane.orca]\nx = 1\n[plane]\nradius_m = 1\n[plane.orca]\n",
+            "s.toml:5:8: `orca` is given twice, in lines 1 and 5",
+        ),
+        ("a = 1\n[a]\n", "s.toml:2:2: `a` is given twice, in lines 1 and 2"),
+        ("\"a\" = 1\na = 2\n", "s.toml:2:1: `a` is given twice, in lines 1 and 2"),
+        ("a = \"1\nb = 2\n", "s.toml:1:"),
+    ];
+    for (text, expected) in cases {
+        let message = Scenario::parse(text, Path::new("s.toml"), &Overrides::default()).unwrap_err().to_string();
+        assert!(message.starts_with(expected), "{text}: {message}");
+    }
+}

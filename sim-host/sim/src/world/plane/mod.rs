@@ -4,6 +4,7 @@
 //! This is not a physics engine: bodies pass through each other and through obstacles, and each
 //! overlap is counted, so that a controller cannot rely on the world for safety.
 
+mod barrier;
 mod border;
 mod motion;
 mod sensing;
@@ -11,6 +12,7 @@ mod shape;
 mod solid;
 mod solids;
 
+pub use barrier::{Barrier, Barriers};
 #[doc(hidden)]
 pub use border::Beside;
 pub use motion::CommandAge;

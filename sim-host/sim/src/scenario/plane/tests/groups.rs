@@ -27,11 +27,11 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, 1] }, { start_m = [19, 1], goal_m = [9, 1] }"),
-            "s.toml:11:1: plane.group[0].robots: robot 2 of the group goes from cell to cell and starts in no free cell",
+            "s.toml:11:67: plane.group[0].robots.list[1].start_m: [19, 1] is not on the map; the map has x from 0 to 18 m",
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, -0.1] }"),
-            "s.toml:11:1: plane.group[0].robots: robot 1 of the group goes from cell to cell and has its goal in no free",
+            "s.toml:11:45: plane.group[0].robots.list[0].goal_m: [9, -0.1] is not on the map",
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, 1] }").replace("\"route\"", "\"formation\""),

@@ -188,7 +188,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             after("[[plane.ball]]\ncenter_m = [3.5, 0, 1]\nradius_m = 0.31\n"),
-            "s.toml:6:1: plane.robots: robot 2 starts in an obstacle",
+            "s.toml:7:60: plane.robots.list[1].start_m: robot 2 starts in an obstacle; keep its start 0.2 m away",
+        ),
+        (
+            after("[[plane.ball]]\ncenter_m = [5, 0]\nradius_m = 0.31\n"),
+            "s.toml:7:38: plane.robots.list[0].goal_m: an obstacle is nearer to the goal than the body's radius; keep the",
         ),
         (
             after("[plane.orca]\nhorizon_s = 0\n"),
@@ -257,4 +261,102 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
     ];
     refused(&cases);
+}
+
+#[test]
+fn starts_and_goals_off_the_map_or_in_blocked_cells_name_line_and_cell() {
+    // Ten cells of 2 m; the south-west corner is the origin.
+    let map = "type octile\nheight 2\nwidth 5\nmap\n.....\n..@..\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("m.map"), map).unwrap();
+    let path = folder.path().join("s.toml");
+    let message = |robots: &str, rest: &str| {
+        let land = "[terrain]\nfile = \"m.map\"\ncell_m = 2\n";
+        let text = format!("{HEAD}{land}{PLANE}[plane.robots]\n{robots}\n{rest}");
+        match Scenario::parse(&text, &path, &Overrides::default()) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string().split_once("s.toml:").unwrap().1.to_owned(),
+        }
+    };
+    let list = |entry: &str| format!("list = [{{ {entry} }}]");
+    let opens = "[[terrain.change]]\nat_s = 1\nclass = 1\ncells = [[2, 0]]\n";
+    let cases = [
+        (
+            list("start_m = [-0.1, 1]"),
+            "",
+            "10:21: plane.robots.list[0].start_m: [-0.1, 1] is not on the map; the map has x from 0 to 10 m and y from 0 to 4 m",
+        ),
+        (
+            list("start_m = [1, 1], goal_m = [1, 4.5]"),
+            "",
+            "10:38: plane.robots.list[0].goal_m: [1, 4.5] is not on the map",
+        ),
+        (
+            list("start_m = [4.5, 1.5]"),
+            "",
+            "10:21: plane.robots.list[0].start_m: [4.5, 1.5] is in the cell [2, 0], which is closed; give a place in an open cell",
+        ),
+        (
+            list("start_m = [1, 1], goal_m = [5, 1]"),
+            "",
+            "10:38: plane.robots.list[0].goal_m: [5, 1] is in the cell [2, 0], which is closed",
+        ),
+        (
+            list("start_m = [1, 1], via_m = [[1, 3], [5, 1]], goal_m = [9, 1]"),
+            "",
+            "10:46: plane.robots.list[0].via_m[1]: [5, 1] is in the cell",
+        ),
+        (list("start_m = [1, 1], goal_m = [5, 1]"), opens, ""),
+        (list("start_m = [5, 1], goal_m = [1, 1]"), opens, "10:21: plane.robots.list[0].start_m: [5, 1] is in"),
+        ("circle = { count = 2, radius_m = 1 }".to_owned(), "", "10:34: plane.robots.circle.radius_m: [-1, "),
+        (
+            "cloud = { count = 2, from_m = [4.1, 0.1], to_m = [5.9, 1.9] }".to_owned(),
+            "",
+            "10:9: plane.robots.cloud: the robots find no room",
+        ),
+        (
+            "scattered = { count = 1, from_m = [4, 0], to_m = [6, 2] }".to_owned(),
+            "",
+            "10:13: plane.robots.scattered: robot 1 finds no free start",
+        ),
+    ];
+    for (robots, rest, expected) in cases {
+        let message = message(&robots, rest);
+        assert!(
+            if expected.is_empty() { message.is_empty() } else { message.starts_with(expected) },
+            "{robots}: {message}"
+        );
+    }
+}
+
+#[test]
+fn random_places_keep_two_radii_from_blocked_cells_and_from_the_sides() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("m.map"),
+        "type octile\nheight 4\nwidth 6\nmap\n......\n.@..@.\n..@@..\n......\n",
+    )
+    .unwrap();
+    let path = folder.path().join("s.toml");
+    for kind in ["scattered", "cloud"] {
+        for seed in 0..30 {
+            let text = format!(
+                "seed = {seed}\n{HEAD}[terrain]\nfile = \"m.map\"\n{PLANE}[plane.robots.{kind}]\ncount = 6\nfrom_m = [0, 0]\nto_m = [6, 4]\n"
+            );
+            let scenario =
+                Scenario::parse(&text, &path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+            let places = scenario
+                .plane()
+                .unwrap()
+                .starts
+                .iter()
+                .flat_map(|start| start.places.iter().map(|goal| goal.position_m).chain([start.position_m]));
+            let mut count = 0;
+            for [x, y, _] in places {
+                assert!(scenario.land.terrain.is_clear([x, y], 0.4), "{kind}, seed {seed}: [{x}, {y}]");
+                count += 1;
+            }
+            assert_eq!(count, if kind == "cloud" { 6 } else { 12 });
+        }
+    }
 }
