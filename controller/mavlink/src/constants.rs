@@ -24,6 +24,9 @@ pub const MAV_LANDED_STATE_IN_AIR: u8 = 2;
 pub const MAV_LANDED_STATE_TAKEOFF: u8 = 3;
 pub const MAV_LANDED_STATE_LANDING: u8 = 4;
 
+pub const MAV_SYS_STATUS_SENSOR_3D_GYRO: u32 = 1;
+pub const MAV_SYS_STATUS_SENSOR_3D_ACCEL: u32 = 1 << 1;
+pub const MAV_SYS_STATUS_SENSOR_3D_MAG: u32 = 1 << 2;
 pub const MAV_SYS_STATUS_SENSOR_GPS: u32 = 1 << 5;
 pub const MAV_SYS_STATUS_GEOFENCE: u32 = 1 << 20;
 pub const MAV_SYS_STATUS_AHRS: u32 = 1 << 21;
@@ -34,8 +37,13 @@ pub const GPS_FIX_TYPE_3D_FIX: u8 = 3;
 
 pub const ESTIMATOR_ATTITUDE: u16 = 1;
 pub const ESTIMATOR_VELOCITY_HORIZ: u16 = 1 << 1;
+pub const ESTIMATOR_VELOCITY_VERT: u16 = 1 << 2;
+pub const ESTIMATOR_POS_HORIZ_REL: u16 = 1 << 3;
 pub const ESTIMATOR_POS_HORIZ_ABS: u16 = 1 << 4;
+pub const ESTIMATOR_POS_VERT_ABS: u16 = 1 << 5;
 pub const ESTIMATOR_CONST_POS_MODE: u16 = 1 << 7;
+pub const ESTIMATOR_PRED_POS_HORIZ_REL: u16 = 1 << 8;
+pub const ESTIMATOR_PRED_POS_HORIZ_ABS: u16 = 1 << 9;
 pub const ESTIMATOR_GPS_GLITCH: u16 = 1 << 10;
 pub const ESTIMATOR_ACCEL_ERROR: u16 = 1 << 11;
 pub const EKF_UNINITIALIZED: u16 = 1 << 10;
@@ -66,6 +74,7 @@ pub const MAV_RESULT_COMMAND_INT_ONLY: u8 = 8;
 pub const MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME: u8 = 9;
 
 pub const MAV_CMD_NAV_WAYPOINT: u16 = 16;
+pub const MAV_CMD_NAV_LOITER_UNLIM: u16 = 17;
 pub const MAV_CMD_NAV_RETURN_TO_LAUNCH: u16 = 20;
 pub const MAV_CMD_NAV_LAND: u16 = 21;
 pub const MAV_CMD_NAV_TAKEOFF: u16 = 22;
@@ -101,6 +110,9 @@ pub const MAV_MISSION_INVALID_SEQUENCE: u8 = 13;
 pub const MAV_MISSION_DENIED: u8 = 14;
 pub const MAV_MISSION_OPERATION_CANCELLED: u8 = 15;
 pub const MAV_MISSION_TYPE_MISSION: u8 = 0;
+pub const MAV_MISSION_TYPE_FENCE: u8 = 1;
+pub const MAV_MISSION_TYPE_RALLY: u8 = 2;
+pub const MAV_MISSION_TYPE_ALL: u8 = 255;
 
 pub const MAV_SEVERITY_ERROR: u8 = 3;
 pub const MAV_SEVERITY_WARNING: u8 = 4;

@@ -69,6 +69,16 @@ messages! {
         time_boot_ms: u32, lat: i32, lon: i32, alt: i32, relative_alt: i32, vx: i16, vy: i16,
         vz: i16, hdg: u16,
     }
+    37 MISSION_REQUEST_PARTIAL_LIST(MISSION_REQUEST_PARTIAL_LIST_DATA) {
+        start_index: i16, end_index: i16, target_system: u8, target_component: u8,
+    } + {
+        mission_type: u8,
+    }
+    38 MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA) {
+        start_index: i16, end_index: i16, target_system: u8, target_component: u8,
+    } + {
+        mission_type: u8,
+    }
     39 MISSION_ITEM(MISSION_ITEM_DATA) {
         param1: f32, param2: f32, param3: f32, param4: f32, x: f32, y: f32, z: f32, seq: u16,
         command: u16, target_system: u8, target_component: u8, frame: u8, current: u8,
@@ -137,6 +147,13 @@ messages! {
         buttons2: u16, enabled_extensions: u8, s: i16, t: i16, aux1: i16, aux2: i16, aux3: i16,
         aux4: i16, aux5: i16, aux6: i16,
     }
+    70 RC_CHANNELS_OVERRIDE(RC_CHANNELS_OVERRIDE_DATA) {
+        chan1_raw: u16, chan2_raw: u16, chan3_raw: u16, chan4_raw: u16, chan5_raw: u16,
+        chan6_raw: u16, chan7_raw: u16, chan8_raw: u16, target_system: u8, target_component: u8,
+    } + {
+        chan9_raw: u16, chan10_raw: u16, chan11_raw: u16, chan12_raw: u16, chan13_raw: u16,
+        chan14_raw: u16, chan15_raw: u16, chan16_raw: u16, chan17_raw: u16, chan18_raw: u16,
+    }
     73 MISSION_ITEM_INT(MISSION_ITEM_INT_DATA) {
         param1: f32, param2: f32, param3: f32, param4: f32, x: i32, y: i32, z: f32, seq: u16,
         command: u16, target_system: u8, target_component: u8, frame: u8, current: u8,
@@ -159,6 +176,10 @@ messages! {
         command: u16, result: u8,
     } + {
         progress: u8, result_param2: i32, target_system: u8, target_component: u8,
+    }
+    82 SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA) {
+        time_boot_ms: u32, q: [f32; 4], body_roll_rate: f32, body_pitch_rate: f32,
+        body_yaw_rate: f32, thrust: f32, target_system: u8, target_component: u8, type_mask: u8,
     }
     84 SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA) {
         time_boot_ms: u32, x: f32, y: f32, z: f32, vx: f32, vy: f32, vz: f32, afx: f32, afy: f32,
@@ -184,11 +205,17 @@ messages! {
     111 TIMESYNC(TIMESYNC_DATA) {
         tc1: i64, ts1: i64,
     }
+    117 LOG_REQUEST_LIST(LOG_REQUEST_LIST_DATA) {
+        start: u16, end: u16, target_system: u8, target_component: u8,
+    }
     124 GPS2_RAW(GPS2_RAW_DATA) {
         time_usec: u64, lat: i32, lon: i32, alt: i32, dgps_age: u32, eph: u16, epv: u16, vel: u16,
         cog: u16, fix_type: u8, satellites_visible: u8, dgps_numch: u8,
     } + {
         yaw: u16, alt_ellipsoid: i32, h_acc: u32, v_acc: u32, vel_acc: u32, hdg_acc: u32,
+    }
+    139 SET_ACTUATOR_CONTROL_TARGET(SET_ACTUATOR_CONTROL_TARGET_DATA) {
+        time_usec: u64, controls: [f32; 8], group_mlx: u8, target_system: u8, target_component: u8,
     }
     147 BATTERY_STATUS(BATTERY_STATUS_DATA) {
         current_consumed: i32, energy_consumed: i32, temperature: i16, voltages: [u16; 10],
@@ -205,6 +232,19 @@ messages! {
     } + {
         uid2: [u8; 18],
     }
+    160 FENCE_POINT(FENCE_POINT_DATA) {
+        lat: f32, lng: f32, target_system: u8, target_component: u8, idx: u8, count: u8,
+    }
+    161 FENCE_FETCH_POINT(FENCE_FETCH_POINT_DATA) {
+        target_system: u8, target_component: u8, idx: u8,
+    }
+    175 RALLY_POINT(RALLY_POINT_DATA) {
+        lat: i32, lng: i32, alt: i16, break_alt: i16, land_dir: u16, target_system: u8,
+        target_component: u8, idx: u8, count: u8, flags: u8,
+    }
+    176 RALLY_FETCH_POINT(RALLY_FETCH_POINT_DATA) {
+        target_system: u8, target_component: u8, idx: u8,
+    }
     193 EKF_STATUS_REPORT(EKF_STATUS_REPORT_DATA) {
         velocity_variance: f32, pos_horiz_variance: f32, pos_vert_variance: f32,
         compass_variance: f32, terrain_alt_variance: f32, flags: u16,
@@ -219,6 +259,12 @@ messages! {
     242 HOME_POSITION(HOME_POSITION_DATA) {
         latitude: i32, longitude: i32, altitude: i32, x: f32, y: f32, z: f32, q: [f32; 4],
         approach_x: f32, approach_y: f32, approach_z: f32,
+    } + {
+        time_usec: u64,
+    }
+    243 SET_HOME_POSITION(SET_HOME_POSITION_DATA) {
+        latitude: i32, longitude: i32, altitude: i32, x: f32, y: f32, z: f32, q: [f32; 4],
+        approach_x: f32, approach_y: f32, approach_z: f32, target_system: u8,
     } + {
         time_usec: u64,
     }

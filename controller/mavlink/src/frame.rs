@@ -79,7 +79,7 @@ enum Fault {
 /// (a datagram); without it more of the stream may follow.
 ///
 /// The checksum of a message outside the dialect cannot be verified. Such a message counts as a
-/// frame if the bytes end behind it or another frame could begin there.
+/// frame if another frame could begin behind it, or complete bytes end there.
 ///
 /// Bounded work: O(n), and one checksum of at most 280 bytes per byte that could begin a header.
 #[must_use]
@@ -87,7 +87,7 @@ enum Fault {
 pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
     let mut junk = 0;
     while let Some(rest) = bytes.get(junk..).filter(|rest| !rest.is_empty()) {
-        match parse(rest) {
+        match parse(rest, is_whole) {
             Ok(frame) => return Scan::Frame { junk, frame },
             Err(Fault::Short) if !is_whole => break,
             Err(_) => junk += 1,
@@ -112,7 +112,7 @@ pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<RawFrame<'a>> {
     }
 }
 
-fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
+fn parse(bytes: &[u8], is_whole: bool) -> Result<RawFrame<'_>, Fault> {
     let (frame, checked, payload, checksum) = match bytes {
         [START_V1, rest @ ..] => {
             let &[len, sequence, system, component, id] = rest.first_chunk().ok_or(Fault::Short)?;
@@ -155,6 +155,7 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
     let Some(extra) = extra_crc(frame.message_id) else {
         let follows = bytes.get(frame.bytes.len());
         return match follows {
+            None if !is_whole => Err(Fault::Short),
             None | Some(&(START_V1 | START_V2)) => Ok(RawFrame { is_known: false, ..frame }),
             Some(_) => Err(Fault::Bad),
         };
@@ -194,7 +195,7 @@ impl<'a> RawFrame<'a> {
     /// The frame in `bytes`, if they are exactly one frame.
     #[must_use]
     pub fn new(bytes: &'a [u8]) -> Option<Self> {
-        parse(bytes).ok().filter(|frame| frame.bytes.len() == bytes.len())
+        parse(bytes, true).ok().filter(|frame| frame.bytes.len() == bytes.len())
     }
 
     /// All bytes of the frame.

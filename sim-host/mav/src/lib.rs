@@ -17,6 +17,7 @@ mod framed;
 pub mod geo;
 mod inbox;
 mod lines;
+mod reassembly;
 mod stream;
 mod terminal;
 mod tlog;

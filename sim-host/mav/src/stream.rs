@@ -1,4 +1,5 @@
 use super::inbox::Peer;
+use super::reassembly::Reassembly;
 use super::traffic::{GLANCE, Opened, Outgoing, Shared, start};
 use staya_serial::SerialPort;
 use std::collections::HashMap;
@@ -207,19 +208,16 @@ fn converse(
     thread::scope(|scope| {
         let writer = thread::Builder::new().name(String::from("write"));
         if let Ok(writer) = writer.spawn_scoped(scope, move || write_all(write, &frames, shared)) {
-            let (mut buffer, mut chunk) = (Vec::new(), [0; 4096]);
+            let (mut stream, mut chunk) = (Reassembly::default(), [0; 4096]);
             while !shared.is_closed() && !writer.is_finished() {
                 match read.read(&mut chunk) {
                     Ok(0) => break,
-                    Ok(len) => {
-                        buffer.extend_from_slice(&chunk[..len]);
-                        let used = shared.take(peer, &buffer, false, true);
-                        buffer.drain(..used);
-                    }
-                    Err(error) if is_nothing(&error) => {}
+                    Ok(len) => shared.take(peer, &mut stream, &chunk[..len], false, true),
+                    Err(error) if is_nothing(&error) => shared.take(peer, &mut stream, &[], false, true),
                     Err(_) => break,
                 }
             }
+            shared.waste(stream.waiting());
         }
         peers.with(|peers| peers.remove(&peer));
     });

@@ -1,11 +1,11 @@
 use super::inbox::{Inbox, Peer, Received};
-use staya_mavlink::frame::{Scan, scan};
+use super::reassembly::Reassembly;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 pub(super) const GLANCE: Duration = Duration::from_millis(50);
 
@@ -75,23 +75,22 @@ impl Shared {
         self.closed.load(Ordering::Relaxed)
     }
 
-    /// Queues the frames at the start of `bytes`, and returns the number of bytes used.
-    pub(super) fn take(&self, peer: Peer, bytes: &[u8], is_whole: bool, is_known: bool) -> usize {
-        let mut used = 0;
-        loop {
-            let (junk, frame) = match scan(&bytes[used..], is_whole) {
-                Scan::Frame { junk, frame } => (junk, Some(frame.bytes())),
-                Scan::Nothing { junk } => (junk, None),
-            };
-            used += junk + frame.map_or(0, <[u8]>::len);
+    /// Queues the frames that `bytes` complete. Empty bytes only give up overdue ones.
+    pub(super) fn take(&self, peer: Peer, stream: &mut Reassembly, bytes: &[u8], is_datagram: bool, is_known: bool) {
+        let mut put = |frame: &[u8]| {
+            let received = Received { line: self.line, peer, frame: frame.to_vec() };
             let counts = &mut self.tally.lock().0;
-            counts.junk_bytes += junk as u64;
-            let Some(frame) = frame else { return used };
             counts.frames_in += 1;
             counts.bytes_in += frame.len() as u64;
-            let received = Received { line: self.line, peer, frame: frame.to_vec() };
             counts.lost_in += u64::from(!self.inbox.put(received, is_known));
-        }
+        };
+        let junk = stream.push(bytes, is_datagram, Instant::now(), &mut put);
+        self.waste(junk);
+    }
+
+    /// Counts bytes that belong to no frame.
+    pub(super) fn waste(&self, junk: u64) {
+        self.tally.lock().0.junk_bytes += junk;
     }
 }
 

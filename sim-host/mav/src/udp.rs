@@ -1,4 +1,5 @@
 use super::inbox::Peer;
+use super::reassembly::Reassembly;
 use super::traffic::{GLANCE, Opened, Outgoing, Shared, start};
 use socket2::SockRef;
 use std::collections::HashMap;
@@ -12,6 +13,8 @@ use std::time::{Duration, Instant};
 const FORGET: Duration = Duration::from_secs(20);
 pub(super) const PEERS: usize = 16;
 const YIELD: Duration = Duration::from_secs(5);
+/// Senders with an incomplete frame; of more, the oldest one is dropped.
+const INCOMPLETE: usize = 256;
 /// The system may give less.
 const KEPT: usize = 4 << 20;
 
@@ -91,16 +94,53 @@ fn read(
     let _ = SockRef::from(&socket).set_recv_buffer_size(KEPT);
     let shared = shared.clone();
     start("udp", move || {
-        let mut buffer = vec![0; 65_536];
+        let (mut buffer, mut streams, mut next_look) = (vec![0; 65_536], Streams::default(), Instant::now());
         while !shared.is_closed() {
             // Errors report a timeout or an earlier datagram that was rejected; both are harmless.
             if let Ok((len, from)) = socket.recv_from(&mut buffer)
                 && let Some(is_known) = knows(from)
             {
-                shared.take(Peer::Address(from), &buffer[..len], true, is_known);
+                streams.take(from, &buffer[..len], is_known, &shared);
+            }
+            let now = Instant::now();
+            if now >= next_look {
+                next_look = now + GLANCE;
+                streams.expire(&knows, &shared);
             }
         }
+        streams.end(&shared);
     })
+}
+
+/// The incomplete frames of senders.
+#[derive(Default)]
+struct Streams(HashMap<SocketAddr, Reassembly>);
+
+impl Streams {
+    fn take(&mut self, from: SocketAddr, bytes: &[u8], is_known: bool, shared: &Shared) {
+        let mut stream = self.0.remove(&from).unwrap_or_default();
+        shared.take(Peer::Address(from), &mut stream, bytes, true, is_known);
+        if stream.waiting() == 0 {
+            return;
+        }
+        if self.0.len() >= INCOMPLETE {
+            let oldest = self.0.iter().min_by_key(|(_, stream)| stream.since()).map(|(from, _)| *from);
+            let dropped = oldest.and_then(|oldest| self.0.remove(&oldest));
+            shared.waste(dropped.map_or(0, |stream| stream.waiting()));
+        }
+        self.0.insert(from, stream);
+    }
+
+    fn expire(&mut self, knows: &impl Fn(SocketAddr) -> Option<bool>, shared: &Shared) {
+        for (from, stream) in &mut self.0 {
+            shared.take(Peer::Address(*from), stream, &[], true, knows(*from).unwrap_or(false));
+        }
+        self.0.retain(|_, stream| stream.waiting() > 0);
+    }
+
+    fn end(self, shared: &Shared) {
+        shared.waste(self.0.values().map(Reassembly::waiting).sum());
+    }
 }
 
 impl Udp {

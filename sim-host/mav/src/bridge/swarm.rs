@@ -231,7 +231,8 @@ impl Swarm {
         let mut is_heard = false;
         for index in 0..self.vehicles.len() {
             let vehicle = &mut self.vehicles[index];
-            let is_own = from.system == vehicle.sender.system;
+            let own = vehicle.sender;
+            let is_own = (from.system, from.component) == (own.system, own.component);
             if is_for_some && !is_own && (system == 0 || system == vehicle.sender.system) {
                 vehicle.receive(from, &message, now_us);
                 is_heard = true;

@@ -13,6 +13,7 @@ mod report;
 mod roll;
 mod run;
 mod seal;
+mod twins;
 
 pub use config::Config;
 pub(crate) use run::Vehicle;

@@ -15,6 +15,7 @@ use super::offboard::{Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
+use super::twins::{LISTEN, Twins};
 use crate::boot::fresh_boot;
 use crate::framed::framed;
 use crate::geo::ned;
@@ -188,6 +189,10 @@ impl<'a> Companions<'a> {
                 seal.map_or_else(|| HostWire::new(format), |seal| seal.wire(format)),
             ),
             peer: None,
+            twins: Twins::default(),
+            first_heard: None,
+            has_mavlink_2: false,
+            is_version_told: false,
             is_signing_told: false,
             sender: Sender { system: setup.system, component: COMPONENT, sequence: 0 },
             shown: None,
@@ -235,9 +240,13 @@ impl<'a> Companions<'a> {
     fn no_autopilot(&self) -> Option<anyhow::Error> {
         let wait = Some(self.options.wait).filter(|&wait| wait > 0.0 && self.now().as_secs_f64() >= wait)?;
         let is_silent = self.vehicles.iter().all(|vehicle| vehicle.offboard.tally().heartbeats == 0);
-        let links = self.links.iter().zip(&self.config.lines).map(|(link, endpoint)| match &link.trouble {
-            Some(why) => format!("{endpoint} ({why})"),
-            None => endpoint.to_string(),
+        let links = self.links.iter().zip(&self.config.lines).enumerate().map(|(line, (link, endpoint))| {
+            let junk = self.machine.lines().map_or(0, |lines| lines.counts(line).junk_bytes);
+            match &link.trouble {
+                Some(why) => format!("{endpoint} ({why})"),
+                None if junk > 0 => format!("{endpoint} ({junk} bytes that are not MAVLink: check the baud rate)"),
+                None => endpoint.to_string(),
+            }
         });
         is_silent.then(|| {
             anyhow!(
@@ -360,9 +369,20 @@ impl<'a> Companions<'a> {
             .vehicles
             .iter_mut()
             .find(|vehicle| (vehicle.setup.line, vehicle.setup.system) == (received.line, sender.system));
-        if let Some(vehicle) = found.filter(|_| sender.component == MAV_COMP_ID_AUTOPILOT1) {
-            vehicle.peer = Some(received.peer);
+        let Some(vehicle) = found.filter(|_| sender.component == MAV_COMP_ID_AUTOPILOT1) else { return };
+        if vehicle.first_heard.is_none() && self.machine.lines().is_some() {
+            vehicle.offboard.listen_until(now + LISTEN);
+        }
+        vehicle.first_heard.get_or_insert(now);
+        vehicle.has_mavlink_2 |= frame.version() == 2;
+        vehicle.peer = Some(received.peer);
+        let (robot, evidence) = (vehicle.setup.robot, vehicle.twins.hear(received.peer, &message, now));
+        vehicle.offboard.set_ambiguous(vehicle.twins.are_two(), now);
+        if !vehicle.twins.are_two() {
             vehicle.offboard.hear(&message, now);
+        }
+        if let Some(evidence) = evidence {
+            self.tell_of_twins(robot, received.line, evidence);
         }
     }
 

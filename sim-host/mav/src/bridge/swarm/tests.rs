@@ -54,7 +54,10 @@ impl Client {
     }
 
     fn framed(&mut self, message: &MavMessage) -> Vec<u8> {
-        let mut sender = Sender { system: 255, component: 190, sequence: 0 };
+        self.framed_as(Sender { system: 255, component: 190, sequence: 0 }, message)
+    }
+
+    fn framed_as(&mut self, mut sender: Sender, message: &MavMessage) -> Vec<u8> {
         let frame = framed(&mut sender, message, self.signing.as_mut()).expect("a timestamp");
         frame.to_vec()
     }
@@ -76,7 +79,7 @@ impl Client {
         false
     }
 
-    fn hears(&self, is_it: impl Fn(&MavMessage) -> bool) -> bool {
+    fn hears(&self, mut is_it: impl FnMut(&MavMessage) -> bool) -> bool {
         let mut buffer = [0; 512];
         let frames = std::iter::from_fn(|| self.socket.recv(&mut buffer).ok().map(|len| buffer[..len].to_vec()));
         let messages = frames.filter_map(|bytes| RawFrame::new(&bytes)?.message());
@@ -216,6 +219,63 @@ fn every_frame_is_accounted_for() {
     assert_eq!(report.frames_heard, 1 + client.said - 8);
     let lines = report.lines.iter().map(|line| line.counts.frames_in - line.counts.lost_in).sum::<u64>();
     assert_eq!(lines, report.frames_heard + report.frames_ignored + report.frames_refused + report.frames_waiting);
+}
+
+/// Companion computers and MAVROS have the system id of their vehicle by convention.
+#[test]
+fn all_senders_but_the_vehicle_itself_are_answered() {
+    let (swarm, address) = ten(None);
+    let mut client = Client::new(address, None);
+    let report = beside(swarm, || {
+        assert!(client.is_obeyed());
+        for (system, component) in [(255, 190), (2, 1), (3, 191), (3, 240), (3, 0), (3, 255), (250, 1)] {
+            let frame = client.framed_as(Sender { system, component, sequence: 0 }, &arm(3));
+            client.socket.send_to(&frame, address).expect("sent");
+            let is_mine = |ack: &staya_mavlink::dialect::COMMAND_ACK_DATA| {
+                (ack.target_system, ack.target_component) == (system, component)
+            };
+            let answered = (0..50)
+                .any(|_| client.hears(|message| matches!(message, MavMessage::COMMAND_ACK(ack) if is_mine(ack))));
+            assert!(answered, "{system}:{component}");
+        }
+        let echo = client.framed_as(Sender { system: 3, component: 1, sequence: 0 }, &arm(3));
+        client.socket.send_to(&echo, address).expect("sent");
+        assert!(!client.hears(|message| matches!(message, MavMessage::COMMAND_ACK(_))), "its own frame");
+    });
+    assert_eq!(report.frames_ignored, 1);
+}
+
+#[test]
+fn frames_cut_at_datagrams_are_answered_and_junk_is_counted() {
+    use staya_mavlink::dialect::PING_DATA;
+    let (swarm, address) = ten(None);
+    let mut client = Client::new(address, None);
+    let report = beside(swarm, || {
+        assert!(client.is_obeyed());
+        let ping = |seq| MavMessage::PING(PING_DATA { time_usec: 1 << 40, seq, ..PING_DATA::DEFAULT });
+        for (round, cuts) in [(0, vec![37, 53, 36]), (10, vec![1, 20, 105]), (20, vec![60, 0, 66])] {
+            let mut bytes: Vec<u8> = (1..=6).flat_map(|seq| client.framed(&ping(round + seq))).collect();
+            for len in cuts {
+                let piece: Vec<u8> = bytes.drain(..len.min(bytes.len())).collect();
+                client.socket.send_to(&piece, address).expect("sent");
+            }
+            client.socket.send_to(&bytes, address).expect("sent");
+            let mut missing: Vec<u32> = (1..=6).map(|seq| round + seq).collect();
+            let began = Instant::now();
+            while !missing.is_empty() && began.elapsed() < PATIENCE {
+                let _ = client.hears(|message| {
+                    if let MavMessage::PING(ping) = message {
+                        missing.retain(|seq| *seq != ping.seq);
+                    }
+                    false
+                });
+            }
+            assert!(missing.is_empty(), "no answer to {missing:?}");
+        }
+        client.socket.send_to(b"$GPGGA,", address).expect("sent");
+        assert!(client.is_obeyed());
+    });
+    assert_eq!(report.lines[0].counts.junk_bytes, 7);
 }
 
 #[test]

@@ -37,6 +37,7 @@ impl State {
     pub const fn words(self) -> &'static str {
         match self {
             Self::Silent => "no heartbeat: sends no setpoints",
+            Self::Ambiguous => "two vehicles have this system id",
             Self::Pilot => "pilot has control",
             Self::Restarted => "restarted: select the mode again",
             Self::Entering => "requests control",
@@ -56,7 +57,7 @@ impl State {
 
     /// Whether the operator should act.
     pub const fn is_worrying(self) -> bool {
-        matches!(self, Self::Silent | Self::Restarted | Self::Stopped | Self::Distrusted)
+        matches!(self, Self::Silent | Self::Ambiguous | Self::Restarted | Self::Stopped | Self::Distrusted)
     }
 }
 

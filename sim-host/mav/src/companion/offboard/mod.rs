@@ -81,6 +81,8 @@ pub struct Rules {
 pub enum State {
     /// No heartbeat; no setpoints.
     Silent,
+    /// Two vehicles send with this system id; no setpoints.
+    Ambiguous,
     /// The vehicle is in another mode: the pilot has control.
     Pilot,
     /// The autopilot restarted in the external control mode, which is not a permission.
@@ -214,6 +216,9 @@ pub struct OffboardStateMachine {
     entering: Option<Entering>,
     quiet_until: Duration,
     streaming_since: Option<Duration>,
+    /// No control before this time.
+    listens_until: Duration,
+    is_ambiguous: bool,
     command: Option<(Duration, [f64; 3])>,
     next_heartbeat: Duration,
     next_setpoint: Duration,
@@ -236,6 +241,8 @@ impl OffboardStateMachine {
             entering: (rules.entry == Entry::Once).then(Entering::default),
             quiet_until: Duration::ZERO,
             streaming_since: None,
+            listens_until: Duration::ZERO,
+            is_ambiguous: false,
             command: None,
             next_heartbeat: Duration::ZERO,
             next_setpoint: Duration::ZERO,
@@ -274,6 +281,18 @@ impl OffboardStateMachine {
     /// Sets the velocity that the agent commands, north, east, down, m/s.
     pub fn steer(&mut self, velocity_ned_mps: [f64; 3], now: Duration) {
         self.command = Some((now, velocity_ned_mps));
+    }
+
+    /// Sends no setpoints and requests no control before this time, so that another vehicle with
+    /// the same system id is heard first.
+    pub const fn listen_until(&mut self, time: Duration) {
+        self.listens_until = time;
+    }
+
+    /// Sets whether two vehicles send with this system id.
+    pub fn set_ambiguous(&mut self, is_ambiguous: bool, now: Duration) {
+        self.is_ambiguous = is_ambiguous;
+        self.settle(now);
     }
 
     /// Handles a message of the autopilot.
@@ -430,9 +449,12 @@ impl OffboardStateMachine {
 
     /// The state at `now`: the first rule that applies.
     fn next_state(&self, now: Duration) -> State {
+        if self.is_ambiguous {
+            return State::Ambiguous;
+        }
         let heard = self.beat.filter(|beat| now.saturating_sub(beat.at) <= self.rules.link_lost);
         let Some(beat) = heard else { return State::Silent };
-        let fix = self.fresh_fix(now);
+        let fix = self.fresh_fix(now).filter(|_| now >= self.listens_until);
         if self.rules.rehearses {
             return if fix.is_some() { State::Steering } else { State::NoPosition };
         }

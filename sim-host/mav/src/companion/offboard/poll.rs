@@ -23,7 +23,7 @@ impl OffboardStateMachine {
             self.next_heartbeat = now + HEARTBEAT;
             out.push(out::heartbeat());
         }
-        if self.state == State::Silent {
+        if matches!(self.state, State::Silent | State::Ambiguous) {
             return;
         }
         self.look(now, out);
@@ -63,7 +63,9 @@ impl OffboardStateMachine {
             State::Entering if self.kind.is_px4() => Some(self.at_altitude(STAND)),
             // PX4 accepts the mode only while setpoints arrive. It ignores them in other modes.
             State::Pilot | State::Disarmed | State::Grounded
-                if self.kind.is_px4() && now >= self.quiet_until && self.fresh_fix(now).is_some() =>
+                if self.kind.is_px4()
+                    && now >= self.quiet_until.max(self.listens_until)
+                    && self.fresh_fix(now).is_some() =>
             {
                 Some(STAND)
             }

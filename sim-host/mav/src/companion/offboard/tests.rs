@@ -366,9 +366,33 @@ fn only_a_controlled_vehicle_is_stopped_at_the_end() {
 }
 
 #[test]
+fn an_ambiguous_or_new_vehicle_gets_no_setpoint_and_no_request() {
+    for (kind, rules, mode) in [
+        (Kind::ArduRover, Rules { arm: true, ..ONCE }, MANUAL),
+        (Kind::ArduRover, RULES, GUIDED),
+        (Kind::Px4Copter, RULES, POSITION_CONTROL),
+    ] {
+        let mut bench = Bench::new(kind, rules, mode, ARMED);
+        bench.offboard.listen_until(Duration::from_secs(3));
+        let early = bench.run(2.9);
+        assert!(setpoints(&early).is_empty() && commands(&early, MAV_CMD_DO_SET_MODE) == 0, "{kind:?}: {early:?}");
+        let later = bench.run(2.0);
+        assert!(!setpoints(&later).is_empty() || commands(&later, MAV_CMD_DO_SET_MODE) > 0, "{kind:?}");
+        bench.offboard.set_ambiguous(true, bench.now);
+        assert_eq!(bench.state(), State::Ambiguous);
+        let two = bench.run(3.0);
+        assert!(two.iter().all(|message| matches!(message, MavMessage::HEARTBEAT(_))), "{kind:?}: {two:?}");
+        assert!(bench.offboard.farewell(bench.now).is_none());
+        bench.offboard.set_ambiguous(false, bench.now);
+        assert_ne!(bench.state(), State::Ambiguous);
+    }
+}
+
+#[test]
 fn texts_of_states_fit_into_a_status_text() {
     for state in [
         State::Silent,
+        State::Ambiguous,
         State::Pilot,
         State::Restarted,
         State::Entering,

@@ -1,14 +1,18 @@
 use super::{Companions, FEW_TIMESTAMPS, LOOK, Link, Vehicle, shown, status_text};
+use crate::Peer;
 use crate::companion::offboard::State;
 use crate::companion::report::{CompanionReport, LineReport, VehicleReport};
+use crate::companion::twins::Evidence;
 use staya_controller::agent::Event as AgentEvent;
-use staya_controller::robot::Mode;
+use staya_controller::robot::{Mode, RobotId};
 use staya_mavlink::constants::MAV_COMP_ID_AUTOPILOT1;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::Sender;
 use std::time::Duration;
 
 const SHOWN: Duration = Duration::from_secs(1);
+/// Time without MAVLink 2, although messages of MAVLink 2 are sent to the vehicle.
+const OLD: Duration = Duration::from_secs(5);
 
 impl Companions<'_> {
     pub(super) fn tell(&mut self, index: usize, what: &str) {
@@ -46,6 +50,7 @@ impl Companions<'_> {
             return;
         }
         self.next_look = now + LOOK;
+        self.look_at_vehicles(now);
         for index in 0..self.links.len() {
             let trouble = self.trouble(index);
             let link = &mut self.links[index];
@@ -59,6 +64,41 @@ impl Companions<'_> {
                 self.say(&line);
             }
         }
+    }
+
+    /// Names the causes for which a vehicle never obeys.
+    pub(super) fn look_at_vehicles(&mut self, now: Duration) {
+        for index in 0..self.vehicles.len() {
+            let vehicle = &mut self.vehicles[index];
+            if vehicle.twins.become_one(now) {
+                vehicle.offboard.set_ambiguous(false, now);
+            }
+            let is_old = vehicle.first_heard.is_some_and(|first| now.saturating_sub(first) >= OLD);
+            if is_old && !vehicle.has_mavlink_2 && !std::mem::replace(&mut vehicle.is_version_told, true) {
+                self.tell(
+                    index,
+                    "its port sends MAVLink 1 only and ignores requests; set SERIALn_PROTOCOL 2 (ArduPilot) or \
+                     MAV_PROTO_VER 2 (PX4)",
+                );
+            }
+        }
+    }
+
+    pub(super) fn tell_of_twins(&mut self, robot: RobotId, line: usize, evidence: Evidence) {
+        let Some(index) = self.vehicles.iter().position(|vehicle| vehicle.setup.robot == robot) else { return };
+        let by = match evidence {
+            Evidence::Peers(Peer::Address(one), Peer::Address(other)) => format!("from {one} and {other}"),
+            Evidence::Peers(..) => String::from("from two peers"),
+            Evidence::Clocks => String::from("with different times since boot"),
+            Evidence::Places(off_m) => format!("{off_m:.1} m apart"),
+        };
+        let system = self.vehicles[index].setup.system;
+        let text = format!(
+            "two vehicles send as system {system} on {}, {by}: no setpoints; give one another number (SYSID_THISMAV, \
+             MAV_SYS_ID)",
+            self.config.lines[line]
+        );
+        self.tell(index, &text);
     }
 
     pub(super) fn look_at_timestamps(&mut self) {

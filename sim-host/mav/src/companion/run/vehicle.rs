@@ -2,6 +2,7 @@ use crate::Peer;
 use crate::companion::config::{Config, VehicleSetup};
 use crate::companion::controller::{Body, Controller};
 use crate::companion::offboard::OffboardStateMachine;
+use crate::companion::twins::Twins;
 use crate::geo::enu;
 use staya_mavlink::frame::Sender;
 use staya_sim::radio::HostWire;
@@ -15,6 +16,11 @@ pub struct Vehicle {
     pub offboard: OffboardStateMachine,
     pub controller: Controller<HostWire>,
     pub peer: Option<Peer>,
+    pub twins: Twins,
+    /// Time of its first message, and whether one of its messages was MAVLink 2.
+    pub first_heard: Option<Duration>,
+    pub has_mavlink_2: bool,
+    pub is_version_told: bool,
     pub is_signing_told: bool,
     pub sender: Sender,
     pub shown: Option<Duration>,
