@@ -14,11 +14,11 @@ PROXY = Path(sys.executable).with_name("mavproxy.py")
 class Console:
     """MAVProxy without a terminal: commands on its standard input, output in a file."""
 
-    def __init__(self, folder, port):
+    def __init__(self, folder, port, system=2):
         self.log = folder / "mavproxy.log"
         self.out = open(self.log, "wb")
         arguments = [
-            sys.executable, str(PROXY), f"--master=udpin:127.0.0.1:{port}", "--dialect=ardupilotmega", "--target-system=2",
+            sys.executable, str(PROXY), f"--master=udpin:127.0.0.1:{port}", "--dialect=ardupilotmega", f"--target-system={system}",
             "--default-modules=param,cmdlong,mode,arm,wp,fence,console", "--nowait", "--state-basedir", str(folder),
         ]
         environment = {**os.environ, "MAVLINK_DIALECT": "ardupilotmega", "HOME": str(folder), "PYTHONUNBUFFERED": "1", "TERM": "dumb"}

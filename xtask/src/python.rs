@@ -192,11 +192,11 @@ pub fn client_environment(repo: &Repo) -> Result<PathBuf> {
     Ok(python)
 }
 
-/// The same with MAVProxy and tshark. Without tshark one test is skipped.
+/// The same with MAVProxy, DroneKit and tshark. Without tshark one test is skipped.
 pub fn client_tools(repo: &Repo) -> Result<PathBuf> {
     let python = client_environment(repo)?;
     TSHARK.prepare(repo).unwrap_or_else(|reason| println!("{reason}"));
-    pip(repo, &python, "--no-deps --requirement tests/python/mavproxy.txt", &[])?;
+    pip(repo, &python, "--no-deps --requirement tests/python/without-dependencies.txt", &[])?;
     Ok(python)
 }
 

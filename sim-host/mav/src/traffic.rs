@@ -77,15 +77,16 @@ impl Shared {
 
     /// Queues the frames that `bytes` complete. Empty bytes only give up overdue ones.
     pub(super) fn take(&self, peer: Peer, stream: &mut Reassembly, bytes: &[u8], is_datagram: bool, is_known: bool) {
-        let mut put = |frame: &[u8]| {
-            let received = Received { line: self.line, peer, frame: frame.to_vec() };
+        let mut frames = Vec::new();
+        let junk = stream.push(bytes, is_datagram, Instant::now(), &mut |frame: &[u8]| frames.push(frame.to_vec()));
+        self.waste(junk);
+        for frame in frames {
             let counts = &mut self.tally.lock().0;
             counts.frames_in += 1;
             counts.bytes_in += frame.len() as u64;
+            let received = Received { line: self.line, peer, frame };
             counts.lost_in += u64::from(!self.inbox.put(received, is_known));
-        };
-        let junk = stream.push(bytes, is_datagram, Instant::now(), &mut put);
-        self.waste(junk);
+        }
     }
 
     /// Counts bytes that belong to no frame.

@@ -48,6 +48,12 @@ impl Vehicle {
         let ack = COMMAND_ACK_DATA { command: command.command, result, ..COMMAND_ACK_DATA::DEFAULT };
         let ack = COMMAND_ACK_DATA { target_system, target_component, ..ack };
         self.out.messages.insert(at, MavMessage::COMMAND_ACK(ack));
+        // Clients try out by themselves which messages there are.
+        let is_trial = matches!(command.command, MAV_CMD_REQUEST_MESSAGE | MAV_CMD_SET_MESSAGE_INTERVAL);
+        if result == MAV_RESULT_UNSUPPORTED && !is_trial {
+            let text = format!("command {} is unsupported", command.command);
+            self.text(Kind::Unsupported, MAV_SEVERITY_WARNING, &text);
+        }
     }
 
     fn execute(&mut self, command: &COMMAND_INT_DATA, is_int: bool) -> Result<(), Refusal> {
@@ -71,6 +77,10 @@ impl Vehicle {
             MAV_CMD_NAV_LAND if self.model.flies => {
                 self.needs_arms()?;
                 self.enter(FlightMode::LAND);
+                Ok(())
+            }
+            MAV_CMD_NAV_LOITER_UNLIM => {
+                self.enter(FlightMode::Hold);
                 Ok(())
             }
             MAV_CMD_NAV_RETURN_TO_LAUNCH => {
@@ -131,6 +141,8 @@ impl Vehicle {
         let [vx, vy, vz] = self.seen.motion.velocity_mps;
         let moves = vx * vx + vy * vy + vz * vz > STANDING_MPS * STANDING_MPS;
         if !arms && !forced && (moves || self.is_in_air()) {
+            let text = if self.is_in_air() { "disarm refused: in the air" } else { "disarm refused: still moving" };
+            self.text(Kind::Setpoint, MAV_SEVERITY_WARNING, text);
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
         }
         if arms == self.is_armed {
@@ -147,10 +159,14 @@ impl Vehicle {
     }
 
     pub(super) fn set_mode(&mut self, base: u8, number: u32) -> Result<(), Refusal> {
-        let mode = FlightMode::from_number(number, self.model.flies);
-        let mode = mode.filter(|_| base & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED != 0).ok_or(MAV_RESULT_DENIED)?;
+        let Some(mode) = FlightMode::from_number(number, self.model.flies) else {
+            return self.refuse_mode(&format!("mode {number} is unsupported"));
+        };
+        if base & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED == 0 {
+            return self.refuse_mode("mode: the flag of custom modes is missing");
+        }
         if mode == FlightMode::Return && self.model.in_formation {
-            return Err(MAV_RESULT_DENIED);
+            return self.refuse_mode("RTL: not in a formation");
         }
         // AUTO flies the mission if there is one, as ArduPilot does.
         if mode == FlightMode::Auto && self.is_armed && !self.mission.is_empty() {
@@ -158,6 +174,11 @@ impl Vehicle {
         }
         self.enter(mode);
         Ok(())
+    }
+
+    fn refuse_mode(&mut self, text: &str) -> Result<(), Refusal> {
+        self.text(Kind::News, MAV_SEVERITY_WARNING, text);
+        Err(MAV_RESULT_DENIED)
     }
 
     fn take_off(&mut self, height_m: f32) -> Result<(), Refusal> {
@@ -199,21 +220,23 @@ impl Vehicle {
         Ok(())
     }
 
-    pub(super) fn guided_item(&mut self, from: Sender, item: &Item) -> MavMessage {
+    pub(super) fn guided_item(&mut self, from: Sender, item: &Item) {
         let is_goto = item.current == 2 && item.command == MAV_CMD_NAV_WAYPOINT;
-        let result = match self.item_place(item) {
-            Some(_) if !is_goto || self.model.in_formation => MAV_MISSION_UNSUPPORTED,
-            Some(_) if !self.is_armed || self.mode != FlightMode::Guided => MAV_MISSION_ERROR,
-            Some(place) => match self.goal(place) {
+        let (result, text) = match self.item_place(item) {
+            _ if self.model.in_formation => (MAV_MISSION_UNSUPPORTED, "guided item: in formation; use STAYA_GOAL"),
+            _ if !is_goto => (MAV_MISSION_UNSUPPORTED, "guided item: only WAYPOINT with current 2"),
+            _ if !self.is_armed || self.mode != FlightMode::Guided => {
+                (MAV_MISSION_ERROR, "guided item: arm and select GUIDED first")
+            }
+            place => match place.and_then(|place| self.goal(place)) {
                 Some(wish) => {
                     self.wish(wish);
-                    MAV_MISSION_ACCEPTED
+                    return self.out.messages.push(ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_ACCEPTED));
                 }
-                None => MAV_MISSION_INVALID_PARAM5_X,
+                None => (MAV_MISSION_INVALID_PARAM5_X, "guided item: obstacle or out of range"),
             },
-            None => MAV_MISSION_INVALID_PARAM5_X,
         };
-        ack(from, MAV_MISSION_TYPE_MISSION, result)
+        self.refuse_mission(from, MAV_MISSION_TYPE_MISSION, (result, text));
     }
 
     pub(super) fn change_speed(&mut self, speed_mps: f32) -> Result<(), Refusal> {
@@ -252,6 +275,12 @@ impl Vehicle {
         if frame == MAV_FRAME_LOCAL_NED {
             let [north, east] = [x, y].map(|x| f64::from(x) / 1e4);
             let up = if self.model.flies { -f64::from(z) } else { 0.0 };
+            return (0.0..=f64::from(HIGHEST_M)).contains(&up).then_some([east, north, up]);
+        }
+        if item.command == MAV_CMD_NAV_TAKEOFF && (x, y) == (0, 0) {
+            // A takeoff without a place is where the vehicle stands, as in ArduPilot.
+            let up = f64::from(z) + self.datum_m(frame)? - self.model.origin.place().altitude_m;
+            let [east, north, _] = self.seen.motion.position_m;
             return (0.0..=f64::from(HIGHEST_M)).contains(&up).then_some([east, north, up]);
         }
         self.global_place(frame, x, y, z).ok()

@@ -129,7 +129,7 @@ impl Vehicle {
 
     pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage) {
         let Some(Frame { header, message, .. }) = order(from, message) else {
-            return;
+            return self.refuse_unsupported(message);
         };
         self.confirm(header, &message);
         self.out.actions.push(Action::Tell(header, message));

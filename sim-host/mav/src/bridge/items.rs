@@ -115,10 +115,11 @@ impl Vehicle {
         }
     }
 
-    pub(super) fn take_item(&mut self, from: Sender, item: Item) -> MavMessage {
+    pub(super) fn take_item(&mut self, from: Sender, item: Item) {
         if item.current >= 2 {
             return self.guided_item(from, &item);
         }
+        let before = self.mission.item(self.mission.current).cloned();
         let mut mission = core::mem::take(&mut self.mission);
         let now_us = self.now_us;
         let mut fault = MAV_MISSION_ACCEPTED;
@@ -127,12 +128,17 @@ impl Vehicle {
             fault
         });
         self.mission = mission;
+        self.out.messages.extend(answer);
+        if let FlightMode::Mission { .. } = self.mode
+            && self.mission.item(self.mission.current) != before.as_ref()
+        {
+            self.begin_item();
+        }
         if fault != MAV_MISSION_ACCEPTED {
             // MISSION_ACK cannot say which item was invalid.
             let text = format!("mission item {}: {}", item.seq, self.fault_in_words(&item, fault));
             self.text(Kind::News, MAV_SEVERITY_WARNING, &text);
         }
-        answer
     }
 
     /// The text fits into a STATUSTEXT with the item number in front.

@@ -14,6 +14,8 @@ pub struct VehicleModel {
     pub grid: Option<Terrain>,
     /// Whether the vehicles form a team on the grid and so have no goals of their own.
     pub in_formation: bool,
+    /// Whether the swarm has one vehicle, so that messages to system 0 are for it.
+    pub is_alone: bool,
     /// Highest speed of the fastest vehicle, m/s; 0 on a grid.
     pub max_speed_mps: f32,
     /// Radius of the largest body, metres; 0 on a grid.
@@ -37,6 +39,7 @@ impl VehicleModel {
             flies: plane.is_some_and(|plane| plane.kinds().any(|group| group.safety.kind() == SafetyKind::Fly)),
             grid: on_grid.then(|| scenario.land.terrain.clone()),
             in_formation: on_grid && !scenario.formations.is_empty(),
+            is_alone: scenario.robots.len() == 1,
             max_speed_mps: largest(|group| group.abilities.max_speed_mps),
             radius_m: largest(|group| group.radius_m),
             solids: plane.map_or_else(Vec::new, |plane| plane.solids.clone()),
@@ -71,6 +74,8 @@ pub enum FlightMode {
     Guided,
     /// No goal: the vehicle stays where it is.
     Hold,
+    /// The same, in the mode that flying vehicles have for a stop.
+    Brake,
     /// Home; a flying vehicle lands there.
     Return,
     /// Lands here, then disarms.
@@ -81,7 +86,7 @@ pub enum FlightMode {
 }
 
 impl FlightMode {
-    const ALL: [Self; 5] = [Self::Auto, Self::Guided, Self::Hold, Self::Return, Self::LAND];
+    const ALL: [Self; 6] = [Self::Auto, Self::Guided, Self::Hold, Self::Brake, Self::Return, Self::LAND];
     /// A landing on command.
     pub const LAND: Self = Self::Land { is_item: false };
 
@@ -91,6 +96,7 @@ impl FlightMode {
             Self::Auto | Self::Mission { .. } => [(10, "AUTO"), (3, "AUTO")],
             Self::Guided => [(15, "GUIDED"), (4, "GUIDED")],
             Self::Hold => [(4, "HOLD"), (5, "LOITER")],
+            Self::Brake => [(17, "BRAKE"), (17, "BRAKE")],
             Self::Return => [(11, "RTL"), (6, "RTL")],
             Self::Land { .. } => [(9, "LAND"), (9, "LAND")],
         }
@@ -109,7 +115,7 @@ impl FlightMode {
     /// The mode with this number; `None` if these vehicles do not have it.
     pub fn from_number(number: u32, flies: bool) -> Option<Self> {
         let mut modes = Self::ALL.into_iter();
-        modes.find(|mode| mode.number(flies) == number && (flies || *mode != Self::LAND))
+        modes.find(|mode| mode.number(flies) == number && (flies || !matches!(*mode, Self::LAND | Self::Brake)))
     }
 }
 
@@ -118,11 +124,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn mode_numbers_round_trip_and_rovers_have_no_land_mode() {
+    fn mode_numbers_round_trip_and_rovers_neither_land_nor_brake() {
         for flies in [false, true] {
             for mode in FlightMode::ALL {
                 let found = FlightMode::from_number(mode.number(flies), flies);
-                let has = flies || mode != FlightMode::LAND;
+                let has = flies || !matches!(mode, FlightMode::LAND | FlightMode::Brake);
                 assert_eq!(found, has.then_some(mode));
             }
             for number in [1, 2, 99, u32::MAX] {

@@ -32,6 +32,7 @@ impl Streams {
             (LOCAL_POSITION_NED_DATA::ID, every(position_hz)),
             (GLOBAL_POSITION_INT_DATA::ID, every(position_hz)),
             (MISSION_CURRENT_DATA::ID, second),
+            (EKF_STATUS_REPORT_DATA::ID, second),
             (GPS_GLOBAL_ORIGIN_DATA::ID, 0),
             (VFR_HUD_DATA::ID, every(position_hz / 5.0)),
             (BATTERY_STATUS_DATA::ID, 2 * second),
@@ -96,8 +97,9 @@ impl Streams {
         true
     }
 
-    /// Applies REQUEST_DATA_STREAM to all messages of a group; 0 turns them off.
-    pub fn set_group(&mut self, group: u8, rate_hz: u16, now_us: u64) {
+    /// Applies REQUEST_DATA_STREAM to all messages of a group; 0 turns them off. Returns whether the
+    /// group has messages.
+    pub fn set_group(&mut self, group: u8, rate_hz: u16, now_us: u64) -> bool {
         let ids: &[u32] = match group {
             // Group 0 is "all": motion and status, but not messages that rarely change.
             0 => &[
@@ -107,17 +109,19 @@ impl Streams {
                 LOCAL_POSITION_NED_DATA::ID,
                 GLOBAL_POSITION_INT_DATA::ID,
                 VFR_HUD_DATA::ID,
+                EKF_STATUS_REPORT_DATA::ID,
             ],
             2 => &[SYS_STATUS_DATA::ID, GPS_RAW_INT_DATA::ID, MISSION_CURRENT_DATA::ID],
             6 => &[LOCAL_POSITION_NED_DATA::ID, GLOBAL_POSITION_INT_DATA::ID],
             10 => &[ATTITUDE_DATA::ID],
             11 => &[VFR_HUD_DATA::ID],
-            12 => &[SYSTEM_TIME_DATA::ID, BATTERY_STATUS_DATA::ID],
+            12 => &[SYSTEM_TIME_DATA::ID, BATTERY_STATUS_DATA::ID, EKF_STATUS_REPORT_DATA::ID],
             _ => &[],
         };
         let every_us = every(f64::from(rate_hz.min(1000)));
         for stream in self.0.iter_mut().filter(|stream| ids.contains(&stream.id)) {
             (stream.every_us, stream.due_us) = (every_us, now_us + every_us);
         }
+        !ids.is_empty()
     }
 }

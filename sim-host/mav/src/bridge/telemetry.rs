@@ -7,6 +7,15 @@ use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
 
 const UNKNOWN: u16 = u16::MAX;
+/// A robot's own state is exact, as that of an estimator which has all measurements.
+const ESTIMATED: u16 = ESTIMATOR_ATTITUDE
+    | ESTIMATOR_VELOCITY_HORIZ
+    | ESTIMATOR_VELOCITY_VERT
+    | ESTIMATOR_POS_HORIZ_REL
+    | ESTIMATOR_POS_HORIZ_ABS
+    | ESTIMATOR_POS_VERT_ABS
+    | ESTIMATOR_PRED_POS_HORIZ_REL
+    | ESTIMATOR_PRED_POS_HORIZ_ABS;
 
 impl Vehicle {
     pub(super) fn telemetry(&self, id: u32) -> Option<MavMessage> {
@@ -109,6 +118,10 @@ impl Vehicle {
                 battery_remaining: -1,
                 ..BATTERY_STATUS_DATA::DEFAULT
             }),
+            EKF_STATUS_REPORT_DATA::ID => MavMessage::EKF_STATUS_REPORT(EKF_STATUS_REPORT_DATA {
+                flags: ESTIMATED,
+                ..EKF_STATUS_REPORT_DATA::DEFAULT
+            }),
             AUTOPILOT_VERSION_DATA::ID => MavMessage::AUTOPILOT_VERSION(self.version()),
             HOME_POSITION_DATA::ID => {
                 let [latitude, longitude, altitude] = place(self.home_m)?;
@@ -140,6 +153,21 @@ impl Vehicle {
         })
     }
 
+    /// Item 0 of the mission list.
+    pub(super) fn home_item(&self) -> MISSION_ITEM_INT_DATA {
+        let home = self.model.origin.to_global(self.home_m).map(|home| (home.to_e7(), home.altitude_m));
+        let ([x, y, _], altitude_m) = home.unwrap_or_default();
+        MISSION_ITEM_INT_DATA {
+            x,
+            y,
+            z: altitude_m as f32,
+            command: MAV_CMD_NAV_WAYPOINT,
+            frame: MAV_FRAME_GLOBAL,
+            autocontinue: 1,
+            ..MISSION_ITEM_INT_DATA::DEFAULT
+        }
+    }
+
     fn heartbeat(&self) -> MavMessage {
         let flies = self.model.flies;
         let armed = if self.is_armed { MAV_MODE_FLAG_SAFETY_ARMED } else { 0 };
@@ -163,7 +191,11 @@ impl Vehicle {
     }
 
     fn sys_status(&self) -> MavMessage {
-        let present = MAV_SYS_STATUS_SENSOR_GPS
+        let present = MAV_SYS_STATUS_SENSOR_3D_GYRO
+            | MAV_SYS_STATUS_SENSOR_3D_ACCEL
+            | MAV_SYS_STATUS_SENSOR_3D_MAG
+            | MAV_SYS_STATUS_SENSOR_GPS
+            | MAV_SYS_STATUS_AHRS
             | MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
             | MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
             | MAV_SYS_STATUS_PREARM_CHECK;

@@ -26,6 +26,7 @@ pub(super) fn model() -> VehicleModel {
         flies: false,
         grid: None,
         in_formation: false,
+        is_alone: false,
         max_speed_mps: 2.0,
         radius_m: 0.25,
         origin: origin(),

@@ -4,7 +4,7 @@
 //! answered, setpoints never, as the protocol demands; a STATUSTEXT says why one was refused.
 
 use super::files;
-use super::mission::{Mission, from_float};
+use super::mission::{Mission, Refused, ack, from_float};
 use super::model::{FlightMode, VehicleModel};
 use super::ordered::Ordered;
 use super::params::Parameters;
@@ -79,10 +79,11 @@ pub(super) enum Kind {
     Setpoint,
     Neighbor,
     Route,
+    Unsupported,
 }
 
 impl Kind {
-    const COUNT: usize = 5;
+    const COUNT: usize = 6;
 }
 
 impl Vehicle {
@@ -215,15 +216,14 @@ impl Vehicle {
         if !self.seen.is_up || !self.is_for_me(message) {
             return;
         }
+        if is_private(message) && !self.is_named(message) {
+            return self.refuse_ambiguous(from, message);
+        }
         match message {
             MavMessage::COMMAND_LONG(command) => self.command_long(from, command),
             MavMessage::COMMAND_INT(command) => self.command(from, command, true),
-            // The protocol defines no answer to this older message.
-            MavMessage::SET_MODE(wanted) => {
-                if self.set_mode(wanted.base_mode, wanted.custom_mode).is_err() {
-                    self.text(Kind::News, MAV_SEVERITY_WARNING, "unknown mode");
-                }
-            }
+            // The protocol defines no answer to this older message; a text tells why it failed.
+            MavMessage::SET_MODE(wanted) => drop(self.set_mode(wanted.base_mode, wanted.custom_mode)),
             MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => self.follow(self.local_setpoint(target)),
             MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target) => self.follow(self.global_setpoint(target)),
             MavMessage::PARAM_REQUEST_LIST(_) => self.parameters.list(),
@@ -240,7 +240,10 @@ impl Vehicle {
             MavMessage::PARAM_SET(wanted) => self.set_parameter(wanted),
             MavMessage::REQUEST_DATA_STREAM(wanted) => {
                 let rate = if wanted.start_stop == 0 { 0 } else { wanted.req_message_rate };
-                self.streams.set_group(wanted.req_stream_id, rate, now_us);
+                if !self.streams.set_group(wanted.req_stream_id, rate, now_us) {
+                    let text = format!("data stream {} has no messages", wanted.req_stream_id);
+                    self.text(Kind::Unsupported, MAV_SEVERITY_INFO, &text);
+                }
             }
             MavMessage::PING(ping) if ping.target_system == 0 => {
                 self.out.messages.push(MavMessage::PING(PING_DATA {
@@ -263,22 +266,34 @@ impl Vehicle {
 
     fn receive_goals(&mut self, from: Sender, message: &MavMessage) {
         let now_us = self.now_us;
-        let answer = match message {
+        let (mission_type, answer) = match message {
             MavMessage::MISSION_COUNT(told) => {
                 // An upload would replace the items of the active mission.
                 if told.mission_type == MAV_MISSION_TYPE_MISSION {
                     self.stop_mission();
                 }
-                self.mission.count(from, told, now_us)
+                (told.mission_type, self.mission.count(from, told, now_us))
             }
-            MavMessage::MISSION_ITEM_INT(item) => self.take_item(from, item.clone()),
-            MavMessage::MISSION_ITEM(item) => self.take_item(from, from_float(item)),
-            MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
-            MavMessage::MISSION_REQUEST_INT(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, true),
-            MavMessage::MISSION_REQUEST(wanted) => self.mission.tell(from, wanted.seq, wanted.mission_type, false),
+            MavMessage::MISSION_WRITE_PARTIAL_LIST(told) => {
+                (told.mission_type, self.mission.replace(from, told, now_us))
+            }
+            MavMessage::MISSION_REQUEST_PARTIAL_LIST(told) => {
+                (told.mission_type, Err((MAV_MISSION_UNSUPPORTED, "mission: partial download is unsupported")))
+            }
+            MavMessage::MISSION_ITEM_INT(item) => return self.take_item(from, item.clone()),
+            MavMessage::MISSION_ITEM(item) => return self.take_item(from, from_float(item)),
+            MavMessage::MISSION_REQUEST_LIST(wanted) => {
+                (wanted.mission_type, Ok(self.mission.list(from, wanted.mission_type)))
+            }
+            MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA { seq, mission_type, .. }) => {
+                (*mission_type, self.mission.tell(from, self.home_item(), *seq, *mission_type, true))
+            }
+            MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA { seq, mission_type, .. }) => {
+                (*mission_type, self.mission.tell(from, self.home_item(), *seq, *mission_type, false))
+            }
             MavMessage::MISSION_CLEAR_ALL(wanted) => {
                 self.stop_mission();
-                self.mission.clear(from, wanted.mission_type)
+                (wanted.mission_type, Ok(self.mission.clear(from, wanted.mission_type)))
             }
             MavMessage::MISSION_SET_CURRENT(wanted) => {
                 if self.set_current_item(wanted.seq).is_err() {
@@ -288,25 +303,60 @@ impl Vehicle {
             }
             _ => return self.receive_orders(from, message),
         };
-        self.out.messages.push(answer);
+        match answer {
+            Ok(answer) => self.out.messages.push(answer),
+            Err(refused) => self.refuse_mission(from, mission_type, refused),
+        }
+    }
+
+    pub(super) fn refuse_mission(&mut self, from: Sender, mission_type: u8, (result, text): Refused) {
+        self.out.messages.push(ack(from, mission_type, result));
+        self.text(Kind::Unsupported, MAV_SEVERITY_WARNING, text);
+    }
+
+    /// Messages that would configure all vehicles alike or send them to one place need the number
+    /// of a vehicle if there are several.
+    fn refuse_ambiguous(&mut self, from: Sender, message: &MavMessage) {
+        if !matches!(message, MavMessage::PARAM_SET(_)) {
+            self.out.messages.push(ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_DENIED));
+        }
+        let text = format!("{} to system 0: name one", message.message_name());
+        self.text(Kind::Unsupported, MAV_SEVERITY_WARNING, &text);
+    }
+
+    /// A message that these vehicles have no use for.
+    pub(super) fn refuse_unsupported(&mut self, message: &MavMessage) {
+        let is_request = matches!(
+            message,
+            MavMessage::SET_GPS_GLOBAL_ORIGIN(_)
+                | MavMessage::MANUAL_CONTROL(_)
+                | MavMessage::RC_CHANNELS_OVERRIDE(_)
+                | MavMessage::SET_ATTITUDE_TARGET(_)
+                | MavMessage::LOG_REQUEST_LIST(_)
+                | MavMessage::SET_ACTUATOR_CONTROL_TARGET(_)
+                | MavMessage::FENCE_POINT(_)
+                | MavMessage::FENCE_FETCH_POINT(_)
+                | MavMessage::RALLY_POINT(_)
+                | MavMessage::RALLY_FETCH_POINT(_)
+                | MavMessage::SET_HOME_POSITION(_)
+                | MavMessage::SETUP_SIGNING(_)
+        );
+        if is_request {
+            let text = format!("{} is unsupported", message.message_name());
+            self.text(Kind::Unsupported, MAV_SEVERITY_WARNING, &text);
+        }
     }
 
     fn is_for_me(&self, message: &MavMessage) -> bool {
         let (system, component) = (message.target_system_id(), message.target_component_id());
         let is_mine = system.is_none_or(|system| system == 0 || system == self.sender.system);
-        // Broadcasts must not configure all vehicles alike.
-        let is_private = matches!(
-            message,
-            MavMessage::PARAM_SET(_)
-                | MavMessage::MISSION_COUNT(_)
-                | MavMessage::MISSION_ITEM(_)
-                | MavMessage::MISSION_ITEM_INT(_)
-                | MavMessage::FILE_TRANSFER_PROTOCOL(_)
-        );
-        let is_addressed = !is_private || system == Some(self.sender.system);
         // 0 addresses all components; this vehicle has one.
         let is_here = component.is_none_or(|to| to == 0 || to == MAV_COMP_ID_AUTOPILOT1);
-        is_mine && is_addressed && is_here
+        is_mine && is_here
+    }
+
+    fn is_named(&self, message: &MavMessage) -> bool {
+        self.model.is_alone || message.target_system_id() == Some(self.sender.system)
     }
 
     pub(super) const fn uptime_us(&self) -> u64 {
@@ -338,7 +388,7 @@ impl Vehicle {
             _ if !self.is_armed => Wish::Off,
             FlightMode::Mission { .. } => return self.begin_item(),
             FlightMode::Auto => Wish::Own,
-            FlightMode::Guided | FlightMode::Hold => Wish::Hold,
+            FlightMode::Guided | FlightMode::Hold | FlightMode::Brake => Wish::Hold,
             FlightMode::Return => {
                 let [home_x, home_y, _] = self.home_m;
                 self.goal([home_x, home_y, z]).unwrap_or(Wish::Hold)
@@ -396,6 +446,18 @@ impl Vehicle {
             _ => {}
         }
     }
+}
+
+/// Whether the message must not be for all vehicles at once.
+const fn is_private(message: &MavMessage) -> bool {
+    matches!(
+        message,
+        MavMessage::PARAM_SET(_)
+            | MavMessage::MISSION_COUNT(_)
+            | MavMessage::MISSION_WRITE_PARTIAL_LIST(_)
+            | MavMessage::MISSION_ITEM(_)
+            | MavMessage::MISSION_ITEM_INT(_)
+    )
 }
 
 #[cfg(test)]

@@ -97,8 +97,12 @@ fn load(bench: &mut Bench, items: &[MISSION_ITEM_INT_DATA]) -> u8 {
     }));
     for item in items {
         bench.give(MavMessage::MISSION_ITEM_INT(item.clone()));
-        if let Some(MavMessage::MISSION_ACK(ack)) = bench.vehicle.out.messages.last() {
-            return ack.mavtype;
+        let ended = bench.vehicle.out.messages.iter().find_map(|message| match message {
+            MavMessage::MISSION_ACK(ack) => Some(ack.mavtype),
+            _ => None,
+        });
+        if let Some(result) = ended {
+            return result;
         }
     }
     panic!("no end of the transfer");

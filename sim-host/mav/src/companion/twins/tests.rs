@@ -56,7 +56,7 @@ fn one_vehicle_is_not_two() {
     let silent = [
         (
             "parked, with drift",
-            judged(2000, |step| (peer(1), position(step * 50, 0.3 * (step as f64 * 0.1).sin(), 0.0))),
+            judged(2000, |step| (peer(1), position(step * 50, 0.3 * libm::sin(step as f64 * 0.1), 0.0))),
         ),
         ("moving", judged(2000, |step| (peer(1), position(step * 50, step as f64 * 0.75, 15.0)))),
         (

@@ -46,7 +46,49 @@ fn unknown_modes_are_denied_and_unknown_commands_unsupported() {
     bench.give(MavMessage::SET_MODE(SET_MODE_DATA { custom_mode: 4, target_system: 7, base_mode: 1 }));
     assert_eq!((bench.vehicle.mode, bench.wish()), (FlightMode::Hold, Some(Wish::Hold)));
     bench.give(MavMessage::SET_MODE(SET_MODE_DATA { custom_mode: 77, target_system: 7, base_mode: 1 }));
-    assert_eq!(bench.texts(), ["unknown mode"]);
+    assert_eq!(bench.texts(), ["mode 77 is unsupported"]);
+}
+
+#[test]
+fn copters_brake_and_loiter_by_command() {
+    let mut bench = guided(flying());
+    assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 17.0)), MAV_RESULT_ACCEPTED);
+    assert_eq!((bench.vehicle.mode, bench.wish()), (FlightMode::Brake, Some(Wish::Hold)));
+    let Some(MavMessage::HEARTBEAT(beat)) = bench.vehicle.telemetry(0) else { panic!("a heartbeat") };
+    assert_eq!(beat.custom_mode, 17);
+    assert_eq!(bench.command(MAV_CMD_NAV_LOITER_UNLIM, NONE), MAV_RESULT_ACCEPTED);
+    assert_eq!((bench.vehicle.mode, bench.wish()), (FlightMode::Hold, Some(Wish::Hold)));
+    let mut rover = Bench::new(model());
+    assert_eq!(rover.command(MAV_CMD_DO_SET_MODE, two(1.0, 17.0)), MAV_RESULT_DENIED);
+    assert_eq!(rover.texts(), ["mode 17 is unsupported"]);
+}
+
+#[test]
+fn requests_that_are_not_modelled_are_refused_with_a_text() {
+    let mut named = 0;
+    for (name, id) in MavMessage::all_messages() {
+        let mut message = MavMessage::default_message_from_id(*id).expect("a message");
+        let Some(system) = message.target_system_id_mut() else { continue };
+        *system = 7;
+        let mut bench = Bench::new(model());
+        bench.give(message);
+        let texts = bench.texts();
+        let is_unsupported = texts.iter().any(|text| *text == format!("{name} is unsupported"));
+        // Orders and answers of others have no answer.
+        let is_silent = bench.vehicle.out.messages.is_empty() && bench.vehicle.out.actions.is_empty();
+        let has_none = name.starts_with("STAYA_")
+            || ["COMMAND_ACK", "MISSION_ACK", "TUNNEL", "PING", "PARAM_REQUEST_LIST", "REQUEST_DATA_STREAM"]
+                .contains(name);
+        assert_eq!(is_silent, has_none && is_silent, "{name} is ignored");
+        assert!(texts.iter().all(|text| text.len() <= 50), "{texts:?}");
+        named += usize::from(is_unsupported);
+    }
+    assert_eq!(named, 12);
+    let mut bench = Bench::new(model());
+    bench.command(183, NONE);
+    assert_eq!(bench.texts(), ["command 183 is unsupported"]);
+    bench.command(MAV_CMD_REQUEST_MESSAGE, first(300.0));
+    assert!(bench.texts().is_empty(), "clients try out messages");
 }
 
 #[test]
@@ -113,7 +155,9 @@ fn messages_for_other_systems_are_ignored() {
         target_system: 0,
         ..PARAM_SET_DATA::DEFAULT
     });
-    assert!(bench.give(set).messages.is_empty());
+    bench.give(set);
+    assert_eq!(bench.texts(), ["PARAM_SET to system 0: name one"]);
+    assert!(bench.vehicle.out.actions.is_empty());
 }
 
 fn param_set(name: &str, value: f32) -> MavMessage {

@@ -93,6 +93,22 @@ fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     }
 }
 
+/// DroneKit's examples begin a mission so.
+#[test]
+fn a_takeoff_without_a_place_is_where_the_vehicle_stands() {
+    let mut bench = Bench::new(flying());
+    let takeoff = |z| MISSION_ITEM_INT_DATA { command: MAV_CMD_NAV_TAKEOFF, x: 0, y: 0, z, ..item(1, 0.0, 0.0) };
+    for bad in [-1.0, 1001.0, NAN] {
+        assert_ne!(load(&mut bench, &[item(0, 0.0, 0.0), takeoff(bad)]), MAV_MISSION_ACCEPTED, "{bad}");
+    }
+    let items = [item(0, 0.0, 0.0), takeoff(10.0), item(2, 10.0, 0.0)];
+    assert_eq!(load(&mut bench, &items), MAV_MISSION_ACCEPTED);
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_ACCEPTED);
+    assert_eq!(place_mm(bench.wish()), [3000, 5000, 10_000]);
+    assert!(reached(bench.tick(|_| {})).is_empty());
+    assert_eq!(reached(bench.tick(|sample| sample.motion.position_m[2] = 10.0)), [1]);
+}
+
 #[test]
 fn a_landing_at_the_end_of_a_mission_is_reached_on_the_ground() {
     let mut bench = Bench::new(flying());
@@ -151,9 +167,92 @@ fn an_item_outside_an_upload_moves_the_vehicle() {
     let [_, north, _] = place_mm(bench.wish());
     assert!((north - 11_120).abs() < 500, "{north}");
     let higher = MISSION_ITEM_DATA { current: 3, ..there.clone() };
-    assert_eq!(ended(bench.give(MavMessage::MISSION_ITEM(higher))), MAV_MISSION_UNSUPPORTED);
+    assert_eq!(refused(&mut bench, MavMessage::MISSION_ITEM(higher)), MAV_MISSION_UNSUPPORTED);
     bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 4.0));
-    assert_eq!(ended(bench.give(MavMessage::MISSION_ITEM(there))), MAV_MISSION_ERROR);
+    bench.vehicle.now_us += 3_000_000;
+    assert_eq!(refused(&mut bench, MavMessage::MISSION_ITEM(there)), MAV_MISSION_ERROR);
+}
+
+/// The result of a MISSION_ACK with a text.
+fn refused(bench: &mut Bench, message: MavMessage) -> u8 {
+    match &bench.give(message).messages[..] {
+        [MavMessage::MISSION_ACK(ack), MavMessage::STATUSTEXT(_)] => ack.mavtype,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_item_for_system_0_moves_one_vehicle_and_is_refused_by_several() {
+    let there = MISSION_ITEM_INT_DATA { target_system: 0, target_component: 0, current: 2, ..item(0, 10.0, 0.0) };
+    let float = crate::bridge::mission::to_float(there.clone());
+    for message in [MavMessage::MISSION_ITEM_INT(there), MavMessage::MISSION_ITEM(float)] {
+        let mut alone = guided(VehicleModel { is_alone: true, ..model() });
+        let answers = &alone.give(message.clone()).messages;
+        assert!(matches!(&answers[..], [MavMessage::MISSION_ACK(ack)] if ack.mavtype == 0), "{answers:?}");
+        assert!((place_mm(alone.wish())[0] - 10_000).abs() < 500);
+        let mut several = guided(model());
+        let name = message.message_name();
+        assert_eq!(refused(&mut several, message), MAV_MISSION_DENIED);
+        assert_eq!((several.wish(), several.texts()), (None, vec![format!("{name} to system 0: name one")]));
+    }
+    let mut several = Bench::new(model());
+    let count = MISSION_COUNT_DATA { count: 2, ..MISSION_COUNT_DATA::DEFAULT };
+    assert_eq!(refused(&mut several, MavMessage::MISSION_COUNT(count.clone())), MAV_MISSION_DENIED);
+    let mut alone = Bench::new(VehicleModel { is_alone: true, ..model() });
+    let asked = &alone.give(MavMessage::MISSION_COUNT(count)).messages;
+    assert!(matches!(&asked[..], [MavMessage::MISSION_REQUEST_INT(_)]), "{asked:?}");
+}
+
+#[test]
+fn lists_other_than_missions_are_refused_with_their_name() {
+    for (mission_type, text) in [
+        (MAV_MISSION_TYPE_FENCE, "geofences are unsupported: no fence is stored"),
+        (MAV_MISSION_TYPE_RALLY, "rally points are unsupported"),
+        (9, "mission: unsupported kind of list"),
+    ] {
+        let mut bench = Bench::new(model());
+        let count = MISSION_COUNT_DATA { count: 4, target_system: 7, mission_type, ..MISSION_COUNT_DATA::DEFAULT };
+        assert_eq!(refused(&mut bench, MavMessage::MISSION_COUNT(count)), MAV_MISSION_UNSUPPORTED);
+        assert_eq!(bench.texts(), [text]);
+    }
+}
+
+#[test]
+fn the_list_of_a_fresh_vehicle_has_its_home() {
+    let mut bench = Bench::new(model());
+    let request = MISSION_REQUEST_LIST_DATA { target_system: 7, ..MISSION_REQUEST_LIST_DATA::DEFAULT };
+    let answer = &bench.give(MavMessage::MISSION_REQUEST_LIST(request)).messages;
+    assert!(matches!(&answer[..], [MavMessage::MISSION_COUNT(count)] if count.count == 1), "{answer:?}");
+    let request = MISSION_REQUEST_INT_DATA { target_system: 7, ..MISSION_REQUEST_INT_DATA::DEFAULT };
+    let answer = &bench.give(MavMessage::MISSION_REQUEST_INT(request)).messages;
+    let [MavMessage::MISSION_ITEM_INT(home)] = &answer[..] else { panic!("{answer:?}") };
+    let expected = origin().to_global([3.0, 5.0, 0.0]).expect("near").to_e7();
+    assert_eq!(([home.x, home.y], home.command, home.seq), ([expected[0], expected[1]], 16, 0));
+    assert!((home.z - 100.0).abs() < 0.01, "above sea level: {}", home.z);
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_DENIED, "there is no mission");
+}
+
+#[test]
+fn a_replaced_item_takes_effect_during_the_mission() {
+    let mut bench = Bench::new(model());
+    let items = [item(0, 0.0, 0.0), item(1, 10.0, 0.0), item(2, 10.0, 10.0)];
+    assert_eq!(load(&mut bench, &items), MAV_MISSION_ACCEPTED);
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_ACCEPTED);
+    for (seq, east, is_current) in [(2, 30.0, false), (1, 20.0, true)] {
+        let part = MISSION_WRITE_PARTIAL_LIST_DATA {
+            start_index: seq,
+            end_index: seq,
+            target_system: 7,
+            ..MISSION_WRITE_PARTIAL_LIST_DATA::DEFAULT
+        };
+        let asked = &bench.give(MavMessage::MISSION_WRITE_PARTIAL_LIST(part)).messages;
+        assert!(matches!(&asked[..], [MavMessage::MISSION_REQUEST_INT(asked)] if asked.seq == seq as u16), "{asked:?}");
+        bench.give(MavMessage::MISSION_ITEM_INT(item(seq as u16, east, 0.0)));
+        assert!(is_on_mission(&bench));
+        let goes = bench.wish().map(|wish| place_mm(Some(wish))[0]);
+        assert_eq!(goes.is_some_and(|x| (x - 20_000).abs() < 10), is_current, "{goes:?}");
+    }
+    assert_eq!(bench.vehicle.mission.len(), 3);
 }
 
 /// The header, the addressee, the number and the order that the controller is told.

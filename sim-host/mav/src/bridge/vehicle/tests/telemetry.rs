@@ -59,7 +59,7 @@ fn streams_have_the_requested_rates() {
 fn every_streamed_message_can_be_requested_once() {
     let mut bench = Bench::new(model());
     let request = MAV_CMD_REQUEST_MESSAGE;
-    for id in [0, 1, 2, 24, 30, 32, 33, 42, 49, 74, 147, 148, 242, 245_u32] {
+    for id in [0, 1, 2, 24, 30, 32, 33, 42, 49, 74, 147, 148, 193, 242, 245_u32] {
         assert_eq!(bench.command(request, first(id as f32)), MAV_RESULT_ACCEPTED, "{id}");
         assert_eq!(bench.vehicle.out.messages.len(), 2, "{id}");
     }
@@ -106,6 +106,29 @@ fn heartbeats_report_mode_and_arming() {
     bench.command(MAV_CMD_COMPONENT_ARM_DISARM, NONE);
     let beat = heartbeat(&bench);
     assert_eq!((beat.base_mode & 0x80, beat.system_status), (0, MAV_STATE_STANDBY));
+}
+
+/// DroneKit's `is_armable` and MAVSDK's `health_all_ok` wait for these bits.
+#[test]
+fn estimator_and_sensors_are_healthy_in_the_words_of_ardupilot() {
+    let mut bench = Bench::new(flying());
+    let Some(MavMessage::EKF_STATUS_REPORT(ekf)) = bench.vehicle.telemetry(193) else { panic!("a status") };
+    let (predicted, absolute, constant) = (512, 16, 128);
+    assert_eq!(ekf.flags & (predicted | absolute | constant), predicted | absolute);
+    let status = |bench: &Bench| match bench.vehicle.telemetry(1) {
+        Some(MavMessage::SYS_STATUS(status)) => [
+            status.onboard_control_sensors_present,
+            status.onboard_control_sensors_enabled,
+            status.onboard_control_sensors_health,
+        ],
+        other => panic!("{other:?}"),
+    };
+    // Gyro, accelerometer, compass, GPS, AHRS, and the checks before arming.
+    let needed = 0b10_0111 | 1 << 21 | 1 << 28;
+    assert_eq!(status(&bench).map(|bits| bits & needed), [needed; 3]);
+    bench.tick(|sample| sample.status.mode = Mode::Fault);
+    let [present, _, health] = status(&bench);
+    assert_eq!(present & !health, 1 << 14, "position control has failed");
 }
 
 #[test]
