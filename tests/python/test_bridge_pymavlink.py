@@ -245,7 +245,10 @@ def test_missions_are_uploaded_downloaded_and_flown(bridge):
     assert upload(ten, 5, items) == 0
     ten.sink.mission_request_list_send(5, 1)
     assert ten.next("MISSION_COUNT", 5).count == 3
-    for item in items:
+    ten.sink.mission_request_int_send(5, 1, 0)
+    home = ten.next("MISSION_ITEM_INT", 5)
+    assert (home.seq, home.frame, home.command) == (0, 0, 16) and abs(home.x / 1e7 - LAT) < 1e-6
+    for item in items[1:]:
         ten.sink.mission_request_int_send(5, 1, item["seq"])
         told = ten.next("MISSION_ITEM_INT", 5)
         assert (told.seq, told.x, told.y, told.frame) == (item["seq"], item["x"], item["y"], 1)

@@ -37,7 +37,8 @@ def test_a_vehicle_reaches_its_goal_in_the_pilots_mode(one, kind):
     with fleet:
         process = start()
         process.wait_for("pilot has control")
-        time.sleep(1.5)
+        # At first it listens for another vehicle with this system id.
+        time.sleep(4.0)
         # PX4 needs zero setpoints, or it would refuse the mode.
         assert all(setpoint[1:] == STAND for setpoint in vehicle.setpoints)
         assert (kind == "px4") == bool(vehicle.setpoints)
@@ -305,7 +306,7 @@ def test_waiting_needs_little_processor_time(one):
 def test_dry_run_shows_and_sends_nothing(one):
     vehicle, fleet, start = one(rules='entry = "once"\narm = true', armed=True)
     with fleet:
-        process = start("--dry-run", "--seconds", "3")
+        process = start("--dry-run", "--seconds", "5.5")
         assert process.wait() == 0
         time.sleep(0.2)
         assert vehicle.heard == []
@@ -314,7 +315,7 @@ def test_dry_run_shows_and_sends_nothing(one):
     assert "COMMAND_LONG DO_SET_MODE 15" in output and "COMPONENT_ARM_DISARM: arm" in output
     assert 'STATUSTEXT "staya: companion has control"' in output
     speeds = [float(east) for east in re.findall(r"m/s north, (\S+) m/s east", output)]
-    assert 2 <= len(speeds) <= 4 and max(speeds) > 0.1, output
+    assert 2 <= len(speeds) <= 5 and max(speeds) > 0.1, output
     assert "nothing was sent" in process.output()
 
 
@@ -324,7 +325,7 @@ def test_log_is_read_by_pymavlink(one, tmp_path, dialect):
     vehicle, fleet, start = one(mode=GUIDED, armed=True)
     log = tmp_path / "flight.tlog"
     with fleet:
-        assert start("--seconds", "3", "--tlog", log).wait() == 0
+        assert start("--seconds", "5.5", "--tlog", log).wait() == 0
     link = mavutil.mavlink_connection(str(log))
     counts = {}
     while (message := link.recv_match()) is not None:
