@@ -67,6 +67,8 @@ pub struct Vehicle {
     starts_armed: bool,
     pub(super) ordered: Ordered,
     texts: [Option<u64>; Kind::COUNT],
+    /// The last text of [`Kind::Unsupported`].
+    refused: String,
     pub(super) now_us: u64,
     /// The output of the calls since it was last taken.
     pub(super) out: Out,
@@ -113,6 +115,7 @@ impl Vehicle {
             starts_armed,
             ordered: Ordered::default(),
             texts: [None; Kind::COUNT],
+            refused: String::new(),
             now_us: 0,
             out: Out { actions, ..Out::default() },
             model,
@@ -181,15 +184,19 @@ impl Vehicle {
         self.out.actions.push(Action::Wish(wish));
     }
 
-    /// All kinds but `News` are limited in rate.
+    /// All kinds but `News` are limited in rate, of `Unsupported` each text by itself.
     pub(super) fn text(&mut self, kind: Kind, severity: u8, text: &str) {
         if !matches!(kind, Kind::News) {
             let last = &mut self.texts[kind as usize];
             let is_early = |last: u64| self.now_us.saturating_sub(last) < TEXT_EVERY_US;
-            if last.is_some_and(is_early) {
+            let is_new = matches!(kind, Kind::Unsupported) && self.refused != text;
+            if last.is_some_and(is_early) && !is_new {
                 return;
             }
             *last = Some(self.now_us);
+            if is_new {
+                text.clone_into(&mut self.refused);
+            }
         }
         self.out.messages.push(MavMessage::STATUSTEXT(STATUSTEXT_DATA {
             severity,

@@ -85,8 +85,10 @@ fn requests_that_are_not_modelled_are_refused_with_a_text() {
     }
     assert_eq!(named, 12);
     let mut bench = Bench::new(model());
-    bench.command(183, NONE);
-    assert_eq!(bench.texts(), ["command 183 is unsupported"]);
+    for (command, texts) in [(183, 1), (183, 0), (184, 1), (183, 1), (183, 0)] {
+        bench.command(command, NONE);
+        assert_eq!(bench.texts(), vec![format!("command {command} is unsupported"); texts], "each reason at once");
+    }
     bench.command(MAV_CMD_REQUEST_MESSAGE, first(300.0));
     assert!(bench.texts().is_empty(), "clients try out messages");
 }
