@@ -1,7 +1,7 @@
 //! ORCA in the plane: the half-plane of one neighbour (ORCA section 4; Tolok et al., the functional
 //! voxel model, FVM, eqs. 6 to 13), and linear programming on one border (RVO2's `linearProgram1`).
 
-use super::deadlock::{Patience, RightOfWay, around, lean};
+use super::deadlock::{Course, Patience, RightOfWay, around, lean};
 use super::dimension::{Aim, Dimension, HalfPlane, HalfSpace, MovingBall, Situation, leave_ball};
 use super::{AvoidParams, Params};
 use crate::geom::{Vec2, Vec3};
@@ -9,8 +9,8 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 
 impl<S: Scalar> Dimension for Vec2<S> {
-    type Memory = (RightOfWay<S>, Patience<S>);
-    const FRESH: Self::Memory = (RightOfWay::NEW, Patience::NEW);
+    type Memory = (RightOfWay<S>, Patience<S>, Course<S>);
+    const FRESH: Self::Memory = (RightOfWay::NEW, Patience::NEW, Course::NEW);
     const SHARES_CONTRADICTIONS: bool = false;
 
     fn at_height(self, height: S) -> Vec3<S> {
@@ -42,11 +42,11 @@ impl<S: Scalar> Dimension for Vec2<S> {
         let Some(goal) = situation.goal else {
             return situation.wish;
         };
-        let (right_of_way, stuck) = memory;
+        let (right_of_way, stuck, course) = memory;
         let patience = params.deadlock.patience_radii;
         let at_gap = right_of_way.wish(situation, goal, patience, rng);
         let wish = at_gap.unwrap_or_else(|| {
-            let wish = around(situation, goal);
+            let wish = around(course, situation, goal);
             lean(params, &Situation { wish, ..*situation }, goal)
         });
         // A robot that waits for its turn must not back off: its turn comes.

@@ -4,12 +4,13 @@
 //! - In the open, robots pass each other on the right ([`lean`]). Without this, equal robots on a
 //!   circle stop in the middle forever; with it, they circle as in a roundabout.
 //! - In narrow places robots take turns ([`right_of_way`]).
-//! - A robot whose straight path a wall blocks heads for a corner of the walls ([`around`]).
+//! - A robot whose straight path is blocked goes around the obstacles ([`around`]).
 //! - Elsewhere a robot that makes no progress for long backs off ([`patience`]).
 //! - In space robots lean to the right and somewhat up or down ([`spread`](mod@spread)).
 //!
 //! A robot without a goal, such as a member of a flock, follows its wish.
 
+mod course;
 mod detour;
 mod gap;
 mod patience;
@@ -18,7 +19,9 @@ mod spread;
 #[cfg(test)]
 mod tests;
 
+pub(super) use course::Course;
 pub(crate) use detour::detour;
+use detour::has_round;
 pub(super) use patience::Patience;
 pub(super) use right_of_way::RightOfWay;
 pub(super) use spread::spread;
@@ -34,11 +37,21 @@ const LEAN_WITHIN: i32 = 5_333;
 /// The same for fast robots, thousandths of the path within the horizon.
 const LEAN_AHEAD: i32 = 800;
 
-/// The wish, towards the next corner on the way to `goal` if a wall is in between.
-pub(super) fn around<S: Scalar>(situation: &Situation<'_, Vec2<S>>, goal: Vec2<S>) -> Vec2<S> {
-    let Situation { wish, body, obstacles, .. } = *situation;
-    let place = (wish != Vec2::ZERO).then(|| detour(obstacles, goal, body.radius_m)).flatten();
-    place.and_then(Vec2::normalized).map_or(wish, |ahead| ahead * wish.norm())
+/// The wish, along the way around the obstacles in between.
+///
+/// Beside other robots, ends of walls alone count ([`detour`]) unless an obstacle is round: the rule
+/// for gaps takes the same corners.
+pub(super) fn around<S: Scalar>(course: &mut Course<S>, situation: &Situation<'_, Vec2<S>>, goal: Vec2<S>) -> Vec2<S> {
+    let Situation { wish, body, nearby, obstacles, .. } = *situation;
+    if wish == Vec2::ZERO {
+        return wish;
+    }
+    let ahead = if nearby.is_empty() || has_round(obstacles, body.radius_m) {
+        course.ahead(obstacles, goal, body.radius_m)
+    } else {
+        detour(obstacles, goal, body.radius_m).and_then(Vec2::normalized)
+    };
+    ahead.map_or(wish, |ahead| ahead * wish.norm())
 }
 
 /// The wish, turned to the right while a robot is ahead, near, and coming nearer. Not applied near

@@ -237,7 +237,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
     fn new(situation: &'a Situation<'a, Vec2<S>>, target: Vec2<S>) -> Option<Self> {
         let radius = situation.body.radius_m;
         let radii = |thousandths: i32| radius * S::from_milli(thousandths);
-        if situation.wish == Vec2::ZERO {
+        if situation.wish == Vec2::ZERO || situation.nearby.is_empty() {
             return None;
         }
         let wanted = Wanted {
@@ -250,7 +250,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
         };
         let gap = gap_on_way(situation.obstacles, target, &wanted)?;
         let own = gap.place(Vec2::ZERO);
-        let is_near = own.norm() <= radii(WITHIN) && !situation.nearby.is_empty();
+        let is_near = own.norm() <= radii(WITHIN);
         let is_narrow = gap.half + gap.half < wanted.narrow_m;
         let approach = Self { gap, situation, own, is_narrow };
         (is_near || is_narrow && gap.is_only_way).then_some(approach).filter(|approach| !approach.is_barred_behind())

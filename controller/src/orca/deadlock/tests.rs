@@ -44,7 +44,9 @@ fn a_robot_heads_for_the_corner_of_a_wall_at_the_speed_of_its_wish() {
     let wall = [Obstacle::Wall([V::new(2.0, -0.5), V::new(2.0, 1.0)])];
     let own = body(1, [0.0; 2]);
     let wishes = |wish: V, goal: V| {
-        around(&Situation { body: &own, wish, goal: Some(goal), nearby: &[], obstacles: &wall }, goal)
+        let nearby = [robot(2, [-3.0, 0.0], [0.0; 2])];
+        let situation = Situation { body: &own, wish, goal: Some(goal), nearby: &nearby, obstacles: &wall };
+        around(&mut Course::NEW, &situation, goal)
     };
     let corner = V::new(2.0, -0.5 - 1.1 * 0.15);
     let got = wishes(EAST * 0.5, V::new(4.0, 0.0));

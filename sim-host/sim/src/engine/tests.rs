@@ -357,6 +357,7 @@ mod operator;
 mod own;
 mod plane;
 mod restarts;
+mod round_scenes;
 mod safety_scenes;
 mod sensing;
 mod state;

@@ -258,7 +258,8 @@ fn the_rule_applies_near_doors_with_robots_and_at_narrow_ones_that_are_the_only_
     // 14 radii are 2.1 m; 4.15 radii, 0.6225 m, are narrow; 2.02 to 9 radii are a door.
     assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 0.0], 1)), [Some(true), None]);
     assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 0.0], 0)), [None, None]);
-    assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 3.0], 0)), [Some(true), Some(true)]);
+    assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 3.0], 0)), [None, None]);
+    assert_eq!([2.09, 2.11].map(|x| applies(x, 0.2, [5.0, 3.0], 1)), [Some(true), Some(true)]);
     assert_eq!([2.09, 2.11].map(|x| applies(x, 0.4, [5.0, 3.0], 0)), [None, None]);
     assert_eq!([2.0, 2.05].map(|x| applies(x, 0.4, [5.0, 3.0], 1)), [Some(false), Some(false)]);
     let narrow = [0.311, 0.312].map(|half| applies(1.0, half, [5.0, 0.0], 1));
