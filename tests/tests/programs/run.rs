@@ -454,7 +454,8 @@ fn the_first_line_of_each_help_says_what_the_command_does() {
     assert!(commands.len() >= 13, "{commands:?}");
     for (name, about) in commands.into_iter().filter(|(name, _)| *name != "help") {
         let line = first_line(&[name, "--help"]);
-        assert_eq!(line, about.trim(), "{name}");
+        // The list of commands is wrapped.
+        assert!(!about.trim().is_empty() && line.starts_with(about.trim()), "{name}: {line}");
         assert_eq!(first_line(&["help", name]), line, "{name}");
         assert!(line.len() <= 100 && line.starts_with(|c: char| c.is_uppercase()), "{name}: {line}");
     }
