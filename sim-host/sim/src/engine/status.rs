@@ -59,7 +59,7 @@ impl EndBody {
     /// Whether `other` may be in its way.
     #[must_use]
     pub fn is_near(&self, other: &Self) -> bool {
-        let squared = |axis: usize| (self.position_m[axis] - other.position_m[axis]).powi(2);
-        libm::sqrt((0..3).map(squared).sum()) < self.reach_m + other.radius_m
+        let way = [0, 1, 2].map(|axis| self.position_m[axis] - other.position_m[axis]);
+        libm::sqrt(way.iter().map(|x| x * x).sum()) < self.reach_m + other.radius_m
     }
 }

@@ -114,7 +114,7 @@ fn same_side(path: &Path, line: usize, one: f64, other: f64) -> Result<(), Terra
 ///
 /// # Errors
 /// A [`TerrainError::Format`] with the line, if the file violates the format or its cells are
-/// degrees wide ([`Heights::is_in_degrees`]).
+/// degrees wide.
 pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError> {
     let text = text(bytes, path)?;
     let mut header = Header::default();
@@ -410,7 +410,7 @@ mod tests {
     #[test]
     fn grids_in_metres_are_read_however_small_their_cells_are() {
         let floor = |x: usize, y: usize| 0.04 + 0.0004 * ((x * 5 + y * 3) % 7) as f64;
-        let walls = |x: usize, y: usize| if x % 9 == 0 || y % 11 == 0 { 2.5 } else { 0.0 };
+        let walls = |x: usize, y: usize| if x.is_multiple_of(9) || y.is_multiple_of(11) { 2.5 } else { 0.0 };
         let boxes = |x: usize, y: usize| [0.0, 12.0, 21.0][usize::from(x % 8 > 4) + usize::from(y % 9 > 5)];
         let rough = |x: usize, y: usize| walls(x, y) + floor(x, y);
         let grids = [
