@@ -23,23 +23,25 @@ const BENDS: usize = 40;
 const SHORTER: i32 = 500;
 /// How much less both limits for a change are after each change, thousandths.
 const DOUBT: i32 = 25;
+/// Two directions are nearly opposite below minus this cosine, thousandths.
+const REVERSED: i32 = 900;
 /// Obstacles whose connections are known.
 const GROUPED: usize = 128;
 
-/// The side on which the robot passes the obstacle before it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// The way that the robot takes around what is before it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Course<S> {
-    /// Whether the obstacle is on the left.
-    on_left: Option<bool>,
+    /// Its direction in the last step; zero: the straight way was free.
+    heading: Vec2<S>,
     changes: u8,
-    /// The shortest way seen since the straight one was free, metres. The side changes for a
-    /// shorter one, so that a robot that does not see all of an obstacle does not turn back and
-    /// forth before it; also for one that is far shorter than the present way.
+    /// The shortest way seen since the straight one was free, metres. The robot turns for a
+    /// shorter one, so that one that does not see all of an obstacle does not go back and forth
+    /// before it; also for one that is far shorter than the present way.
     least_m: S,
 }
 
 impl<S: Scalar> Course<S> {
-    pub(in crate::orca) const NEW: Self = Self { on_left: None, changes: 0, least_m: S::MAX };
+    pub(in crate::orca) const NEW: Self = Self { heading: Vec2::ZERO, changes: 0, least_m: S::MAX };
 
     /// The direction of the way to `goal` if the straight one is not free. O(obstacles^2).
     pub(super) fn ahead(&mut self, obstacles: &[Obstacle<S>], goal: Vec2<S>, radius_m: S) -> Option<Vec2<S>> {
@@ -50,22 +52,22 @@ impl<S: Scalar> Course<S> {
         }
         field.group();
         let [left, right] = [true, false].map(|on_left| field.best(on_left));
-        let length = |way: &Option<(S, Vec2<S>)>| way.map_or(S::MAX, |(length, _)| length);
-        let (left_m, right_m) = (length(&left), length(&right));
-        let (kept_m, other_m) = if self.on_left == Some(false) { (right_m, left_m) } else { (left_m, right_m) };
+        let like = |way: &Option<(S, Vec2<S>)>| way.map_or(-S::TWO, |(_, ahead)| ahead.dot(self.heading));
+        let (kept, other) = if like(&left) >= like(&right) { (left, right) } else { (right, left) };
+        let (kept_m, heading) = kept.or(other)?;
+        let (other_m, turned) = other.unwrap_or((S::MAX, heading));
         // The more often it changes, the less it believes a shorter way.
         let doubt = S::from_milli(i32::from(self.changes) * DOUBT);
+        let is_new = self.heading == Vec2::ZERO;
         let is_shorter =
             other_m < self.least_m * (S::ONE - doubt) || other_m < kept_m * (S::from_milli(SHORTER) - doubt);
-        let changes = other_m < kept_m && (self.on_left.is_none() || is_shorter);
-        let on_left = self.on_left.unwrap_or(true) != changes;
-        if changes {
-            self.least_m = other_m;
-            self.changes = self.changes.saturating_add(u8::from(self.on_left.is_some()));
+        if other_m < kept_m && (is_new || is_shorter) {
+            let changes = self.changes.saturating_add(u8::from(!is_new));
+            *self = Self { heading: turned, changes, least_m: other_m };
+        } else {
+            *self = Self { heading, least_m: self.least_m.min(kept_m), ..*self };
         }
-        self.on_left = Some(on_left);
-        self.least_m = self.least_m.min(if changes { other_m } else { kept_m });
-        (if on_left { left.or(right) } else { right.or(left) }).map(|(_, ahead)| ahead)
+        Some(self.heading)
     }
 }
 
@@ -267,15 +269,17 @@ impl<S: Scalar> Field<'_, S> {
         gap.is_some_and(|gap| gap < self.room * S::TWO * S::from_milli(FREE))
     }
 
-    /// The shorter string of two that pass the first obstacle on this side: one passes connected
-    /// obstacles on one side, and one only those that the robot does not fit between.
+    /// The shortest string that passes the first obstacle on this side. Connected obstacles are
+    /// passed on one side, or only those that the robot does not fit between; around the first
+    /// obstacle apart from these the string takes the side that seems shorter, or the other one.
     fn best(&self, on_left: bool) -> Option<(S, Vec2<S>)> {
-        let ways = [true, false].map(|is_whole| self.way(on_left, is_whole));
-        ways.into_iter().flatten().min_by(|(one, _), (other, _)| one.order(*other))
+        let kinds = [(true, false), (true, true), (false, false), (false, true)];
+        let ways = kinds.into_iter().filter_map(|(is_whole, is_other)| self.way(on_left, is_whole, is_other));
+        ways.min_by(|(one, _), (other, _)| one.order(*other))
     }
 
     /// The length of the string that passes the first obstacle on this side, and its direction.
-    fn way(&self, on_left: bool, is_whole: bool) -> Option<(S, Vec2<S>)> {
+    fn way(&self, on_left: bool, is_whole: bool, mut is_other: bool) -> Option<(S, Vec2<S>)> {
         let mut path = Vec::<Bend<S>, BENDS>::new();
         for end in self.ends() {
             path.push(end).ok()?;
@@ -304,7 +308,12 @@ impl<S: Scalar> Field<'_, S> {
                 None => {
                     let cost = |bend: &Bend<S>| (bend.center - leg.from).norm() + (bend.center - leg.to()).norm();
                     let both = [true, false].map(|on_left| self.bend(index, on_left, &near));
-                    both.into_iter().flatten().min_by(|one, other| cost(one).order(cost(other)))
+                    let both = both.into_iter().flatten();
+                    if core::mem::take(&mut is_other) {
+                        both.max_by(|one, other| cost(one).order(cost(other)))
+                    } else {
+                        both.min_by(|one, other| cost(one).order(cost(other)))
+                    }
                 }
             };
             if path.push(bend?).is_err() {
@@ -329,10 +338,14 @@ impl<S: Scalar> Field<'_, S> {
             };
             let leg = Leg::between(one, other)?;
             if let Some(last) = last {
-                let det = last.det(leg.unit);
+                let (det, dot) = (last.det(leg.unit), last.dot(leg.unit));
                 let det = if one.radius < S::ZERO { -det } else { det };
-                let angle = det.atan2(last.dot(leg.unit));
-                let angle = if angle < S::ZERO { angle + S::PI + S::PI } else { angle };
+                // A turn the wrong way is more than half a turn, or rounding.
+                let angle = match () {
+                    () if det >= S::ZERO => det.atan2(dot),
+                    () if dot < S::ZERO => det.atan2(dot) + S::PI * S::TWO,
+                    () => S::ZERO,
+                };
                 length += angle * one.radius.abs();
             }
             length += leg.length;
@@ -391,7 +404,8 @@ fn is_slack<S: Scalar>(before: &Bend<S>, bend: &Bend<S>, after: &Bend<S>) -> boo
     };
     let turn = one.unit.det(other.unit);
     let turn = if bend.radius < S::ZERO { -turn } else { turn };
-    turn < S::ZERO && one.unit.dot(other.unit) > S::ZERO
+    // Around the end of a wall the string may turn by somewhat more than half a turn.
+    turn < S::ZERO && one.unit.dot(other.unit) > -S::from_milli(REVERSED)
 }
 
 #[cfg(test)]

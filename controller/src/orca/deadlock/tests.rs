@@ -46,7 +46,8 @@ fn a_robot_heads_for_the_corner_of_a_wall_at_the_speed_of_its_wish() {
     let wishes = |wish: V, goal: V| {
         let nearby = [robot(2, [-3.0, 0.0], [0.0; 2])];
         let situation = Situation { body: &own, wish, goal: Some(goal), nearby: &nearby, obstacles: &wall };
-        around(&mut Course::NEW, &situation, goal)
+        let mut course = Course::NEW;
+        around(&mut course, &situation, goal)
     };
     let corner = V::new(2.0, -0.5 - 1.1 * 0.15);
     let got = wishes(EAST * 0.5, V::new(4.0, 0.0));

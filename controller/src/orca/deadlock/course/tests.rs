@@ -29,7 +29,8 @@ fn polygon(x: f64, y: f64, size: f64, count: u32) -> List<Obstacle<f64>> {
 }
 
 fn ahead(obstacles: &[Obstacle<f64>], x: f64, y: f64) -> Option<V> {
-    Course::NEW.ahead(obstacles, v(x, y), 1.0)
+    let mut course = Course::NEW;
+    course.ahead(obstacles, v(x, y), 1.0)
 }
 
 fn field(obstacles: &[Obstacle<f64>], goal: V) -> Field<'_, f64> {
@@ -140,7 +141,8 @@ fn same<S: Scalar>(obstacles: &[Obstacle<f64>], goal: V) -> Option<V> {
         Obstacle::Plane { .. } => Obstacle::Ball { center_m: Vec3::ZERO, radius_m: S::ZERO },
     };
     let obstacles: List<_> = obstacles.iter().map(cast).collect();
-    let got = Course::NEW.ahead(&obstacles, one(goal), S::ONE)?;
+    let mut course = Course::NEW;
+    let got = course.ahead(&obstacles, one(goal), S::ONE)?;
     Some(v(got.x.to_f64(), got.y.to_f64()))
 }
 
