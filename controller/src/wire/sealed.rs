@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// Default number of senders that a [`Sealed`] can track.
 pub const PEERS: usize = 64;
 
-/// 268 million numbers per start. A robot takes two for a beacon: 15 days at 100 beacons per second.
+/// 268 million numbers per start. A robot takes two for a beacon: 15 days at 100 beacons a second.
 const WRAP_BITS: u32 = 12;
 const EPOCH_LEN: usize = 4;
 /// Largest accepted lead of a sender, in starts over its latest known start: see [`Sealed`].

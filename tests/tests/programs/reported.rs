@@ -57,7 +57,7 @@ fn holds(json: &Value, condition: &str) -> bool {
     }
 }
 
-/// What is wrong with the answer to a case.
+/// The fault in the answer to a case.
 fn fault(folder: &Path, case: &Case<'_>) -> Option<String> {
     let out = tempfile::tempdir().expect("temporary folder");
     let mut command = Command::new(staya_tests::program());
@@ -112,7 +112,7 @@ fn every_file_belongs_to_a_reported_case() {
     }
 }
 
-/// The columns of hashes are not read as numbers by pandas or a spreadsheet: `606634e5`, `00012345`.
+/// Pandas and spreadsheets do not read the columns of hashes as numbers (`606634e5`, `00012345`).
 #[test]
 fn hashes_in_rows_are_not_numbers() {
     let out = tempfile::tempdir().expect("temporary folder");

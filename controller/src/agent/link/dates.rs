@@ -14,7 +14,7 @@ const DRIFT: u32 = 5;
 /// The longest silence after which a sender's numbers still say when it sent a frame.
 const LONGEST: Duration = Duration::from_millis(30 * 60 * 1000);
 
-/// What is known of the frames of one sender.
+/// The numbers and the time of the frames of one sender.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Sender {
     pub(super) id: RobotId,
@@ -36,8 +36,8 @@ impl Sender {
         Self { id, window, sent }
     }
 
-    /// Classifies and records a frame. Returns also when it was sent at the latest: `heard_at` if it
-    /// was not delayed beyond the latency.
+    /// Classifies and records a frame. Returns also when it was sent at the latest: `heard_at` if
+    /// it was not delayed beyond the latency.
     ///
     /// The newest frame was sent at the latest at `sent`, and this one as many periods later as
     /// their numbers say. A frame may come earlier than assumed, by up to the latency, so a later
@@ -180,7 +180,6 @@ mod tests {
     }
 
     proptest! {
-        /// The latency is what a frame may be early.
         #[test]
         fn frames_within_the_latency_are_not_delayed(early_ms in proptest::collection::vec(0_u32..=50, 1..60)) {
             let mut sender = Sender::first(RobotId(7), header(0), at(100));

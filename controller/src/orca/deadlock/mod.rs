@@ -39,8 +39,8 @@ const LEAN_AHEAD: i32 = 800;
 
 /// The wish, along the way around the obstacles in between.
 ///
-/// Beside other robots, ends of walls alone count ([`detour`]) unless an obstacle is round: the rule
-/// for gaps takes the same corners.
+/// Beside other robots, ends of walls alone count ([`detour`]) unless an obstacle is round: the
+/// rule for gaps takes the same corners.
 pub(super) fn around<S: Scalar>(course: &mut Course<S>, situation: &Situation<'_, Vec2<S>>, goal: Vec2<S>) -> Vec2<S> {
     let Situation { wish, body, nearby, obstacles, .. } = *situation;
     if wish == Vec2::ZERO {

@@ -10,7 +10,7 @@ use staya_console::VERSION;
 /// Name of the column of checksums.
 const CHECKSUM: &str = "crc32";
 
-/// What hashes begin with.
+/// The first letter of hashes.
 const HASH: char = 'h';
 
 /// A completed run.

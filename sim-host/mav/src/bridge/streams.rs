@@ -97,8 +97,8 @@ impl Streams {
         true
     }
 
-    /// Applies REQUEST_DATA_STREAM to all messages of a group; 0 turns them off. Returns whether the
-    /// group has messages.
+    /// Applies REQUEST_DATA_STREAM to all messages of a group; 0 turns them off. Returns whether
+    /// the group has messages.
     pub fn set_group(&mut self, group: u8, rate_hz: u16, now_us: u64) -> bool {
         let ids: &[u32] = match group {
             // Group 0 is "all": motion and status, but not messages that rarely change.

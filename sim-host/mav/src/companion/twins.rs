@@ -22,7 +22,7 @@ const DRIFT_M: f64 = 1.0;
 /// Acceleration between two messages, as a change of velocity.
 const GAIN_MPS: f64 = 2.0;
 
-/// What the two vehicles differ in.
+/// The difference between the two vehicles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evidence {
     /// Two peers.

@@ -109,8 +109,8 @@ fn same_side(path: &Path, line: usize, one: f64, other: f64) -> Result<(), Terra
 /// Reads an ESRI ASCII grid with heights and cell sizes in metres.
 ///
 /// Header lines may have any order and case, with equal `dx` and `dy` in place of `cellsize`. Line
-/// breaks between values are ignored. Numbers within a few units in the last place of `NODATA_value`
-/// (-9999 if the header has none), beyond 1e30 or not finite become NaN. O(size).
+/// breaks between values are ignored. Numbers within a few units in the last place of
+/// `NODATA_value` (-9999 if the header has none), beyond 1e30 or not finite become NaN. O(size).
 ///
 /// # Errors
 /// A [`TerrainError::Format`] with the line, if the file violates the format or its cells are
@@ -195,7 +195,7 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
     Ok(heights)
 }
 
-/// Steps to neighbours that are steeper, rise over run, are no land.
+/// Steeper steps to neighbours, rise over run, do not exist on land.
 const CLIFF: f64 = 20.0;
 /// Land is not this much higher than it is wide.
 const SPIRE: f64 = 4.0;

@@ -301,7 +301,7 @@ fn row(draw: &mut Draw, count: u32, sizes: P, gaps: P) -> Vec<Shape> {
         let (shape, gap) = (convex(draw, size), draw.within(gaps[0], gaps[1]));
         let (x, mut y, mut step) = (draw.within(-0.3, 0.3) * size, 0.0, size);
         if !row.is_empty() {
-            y = bounds(&row)[1][1] - bounds(&[shape.clone()])[0][1] + gap + 0.1;
+            y = bounds(&row)[1][1] - bounds(std::slice::from_ref(&shape))[0][1] + gap + 0.1;
             while step > 1e-4 {
                 let moved = shape.moved([x, y - step]);
                 if row.iter().all(|other| other.gap(&moved) >= gap) { y -= step } else { step /= 2.0 }
@@ -338,11 +338,11 @@ fn door(seed: u32) -> Scene {
     let r = scene.radius;
     let (half, size) = (draw.within(1.2, 6.0) * r, scaled(&mut draw, 0.5, 4.0));
     let shape = convex(&mut draw, size);
-    let [low, high] = bounds(&[shape.clone()]);
+    let [low, high] = bounds(std::slice::from_ref(&shape));
     let (gap, aside) = (draw.within(2.3, 10.0) * r, draw.within(-1.0, 1.0) * size * f64::from(draw.whole(0, 1)));
     let shape = shape.moved([if draw.whole(0, 1) == 0 { -gap - high[0] } else { gap - low[0] }, aside]);
     let depth = f64::from(draw.whole(0, 1)) * draw.within(0.2, 2.0) * r;
-    let [low, high] = bounds(&[shape.clone()]);
+    let [low, high] = bounds(std::slice::from_ref(&shape));
     let [before, behind] = [0; 2].map(|_| draw.within(2.0, 20.0) * r);
     let off = f64::from(draw.whole(0, 1));
     scene.start = [low[0].min(-depth) - before, aside + off * draw.within(-1.0, 1.0) * size];

@@ -8,7 +8,7 @@ use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 
-/// What is around the robots at the start.
+/// The terrain and the obstacles around the robots at the start.
 pub(super) struct Surroundings<'a> {
     terrain: Option<&'a Terrain>,
     solids: Solids,
@@ -44,7 +44,7 @@ impl<'a> Surroundings<'a> {
         at.require(is_free, name, what, format!("keep its start {} m away", short(radius_m)))
     }
 
-    /// Refuses a goal off the map, in a blocked cell or in an obstacle, unless something may free it.
+    /// Refuses a goal off the map, in a blocked cell or in an obstacle, unless it may become free.
     pub fn goal(&self, group: &Group<'_>, at: &Section<'_>, name: &str, place_m: [f64; 3]) -> Checked {
         if self.changes {
             return Ok(());

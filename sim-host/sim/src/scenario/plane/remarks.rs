@@ -86,7 +86,7 @@ fn long_tick(group: &RobotGroup, tick_s: f64) -> Option<String> {
     })
 }
 
-/// Warns of robots that stand beside each other, since each may be anywhere by the time it is heard.
+/// Warns of robots that stand beside each other, since each may be far away when it is heard.
 fn late_news(group: &RobotGroup, scenario: &Scenario) -> Option<String> {
     let (SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. }) = group.safety else { return None };
     let (delay_s, _) = scenario.radio.news(scenario.step_s());

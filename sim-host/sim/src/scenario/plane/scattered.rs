@@ -74,7 +74,8 @@ impl Taken {
     }
 }
 
-/// Places are two radii or more from obstacles, blocked cells and the sides of the map; starts are also clear of `others` (place, radius).
+/// Places are two radii or more from obstacles, blocked cells and the sides of the map; starts are
+/// also clear of `others` (place, radius).
 pub(super) fn starts(
     group: &Group<'_>,
     entry: &ScatteredDiscs,

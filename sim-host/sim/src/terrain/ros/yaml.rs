@@ -54,7 +54,7 @@ enum Value {
 }
 
 impl Value {
-    /// What it is, for people.
+    /// Its kind, for an error text.
     fn words(&self) -> String {
         match self {
             Self::Text(text) => quoted(text),
