@@ -160,7 +160,7 @@ impl Terrain {
         let place = |index: &u32| {
             let [column, row] = [index % u32::from(self.width), index / u32::from(self.width)];
             let [column, row] = [column.checked_sub(x.into())?, row.checked_sub(y.into())?];
-            (column < width.into() && row < height.into()).then_some(row * u32::from(width) + column)
+            (column < u32::from(width) && row < u32::from(height)).then_some(row * u32::from(width) + column)
         };
         Ok(Self {
             width,
