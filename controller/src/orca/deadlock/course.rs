@@ -17,6 +17,8 @@ use serde::{Deserialize, Serialize};
 const ROOM: i32 = 1_030;
 /// An obstacle nearer than this is in its way, thousandths of [`ROOM`]. Both give one radius.
 const FREE: i32 = 971;
+/// How much nearer than the robot or its goal a bend is, thousandths of [`ROOM`].
+const NEARER: i32 = 15;
 /// Most bends of a string.
 const BENDS: usize = 40;
 /// A way shorter than this share of the present one changes the side, thousandths.
@@ -225,8 +227,8 @@ impl<S: Scalar> Field<'_, S> {
     fn bend(&self, index: usize, on_left: bool, near: &[Bend<S>; 2]) -> Option<Bend<S>> {
         let make = |center: Vec2<S>, radius: S| {
             // Around a robot or a goal that is nearer.
-            let most = center.norm().min((center - self.goal).norm()) * S::from_milli(999);
-            let radius = radius.min(most);
+            let most = center.norm().min((center - self.goal).norm()) - self.room * S::from_milli(NEARER);
+            let radius = radius.min(most).max(S::ZERO);
             Bend { obstacle: u16::try_from(index).ok(), center, radius: if on_left { radius } else { -radius } }
         };
         let is_new = |bend: &Bend<S>| {
