@@ -433,7 +433,7 @@ fn a_lone_robot_goes_around_a_convex_shape_in_1_3_times_the_shortest_time() {
 
 #[test]
 fn nearly_all_lone_robots_go_around_two_shapes_without_a_gap_in_that_time() {
-    check("pair", 20, 1, pair);
+    check("pair", 20, 3, pair);
 }
 
 #[test]
