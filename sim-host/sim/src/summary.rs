@@ -1,20 +1,21 @@
 //! Summary of a run, as JSON and as text.
 
 mod groups;
+mod reasons;
 
-use crate::engine::{End, Outcome};
+use crate::engine::Outcome;
 use crate::metrics::free_formation_s;
 use crate::metrics::waits::WaitCount;
 use crate::record::PacketCounts;
 use crate::scenario::Scenario;
 use crate::shown::Shown as _;
-use crate::world::plane::{Barrier, Solid};
+use crate::world::plane::Solid;
 use groups::GroupFigures;
+use reasons::Reasons;
 use serde::Serialize;
 use staya_controller::agent::Wait;
 use staya_controller::grid::UNIT;
 use staya_controller::names::Named;
-use staya_controller::robot::Mode;
 use std::fmt::{Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -152,42 +153,11 @@ impl Display for Waited {
 /// Robots of one reason that the table names.
 const SHOWN: usize = 6;
 
-/// Whether another robot or an intruder may be in the way of robot `index`.
-fn has_company(scenario: &Scenario, ends: &[End], index: usize) -> bool {
-    let Some(own) = ends[index].body else { return true };
-    let mut others = ends.iter().enumerate().filter(|(other, _)| *other != index);
-    scenario.plane().is_some_and(|setup| !setup.intruders.is_empty())
-        || others.any(|(_, end)| end.body.is_some_and(|other| own.is_near(&other)))
-}
-
-/// Why a robot has not arrived, from its state at the end.
-fn reason(scenario: &Scenario, ends: &[End], index: usize) -> &'static str {
-    let end = &ends[index];
-    match (end.wait, end.mode) {
-        (None, Mode::Idle) => return "it has no goal",
-        (None, Mode::Fault) => return "down, or off the map",
-        (None, Mode::Passive) => return "not steered by its agent",
-        _ => {}
-    }
-    match (end.barrier, end.wait) {
-        (Some(Barrier::GoalTaken), _) => "its goal is in an obstacle",
-        (Some(Barrier::Enclosed), _) => "obstacles enclose it or its goal",
-        (None, Some(Wait::Team)) => "waits for its formation",
-        (None, Some(Wait::Stopped)) => "stopped on request",
-        (None, Some(Wait::Radio)) => "no contact with other robots",
-        (None, Some(Wait::Turn)) => "waits for its turn at a door",
-        (None, Some(Wait::Robots)) if has_company(scenario, ends, index) => "other robots in its way",
-        (None, Some(Wait::Route | Wait::Robots)) => "no way to its goal in sight",
-        (None, Some(Wait::GoalTaken)) => "its goal is taken",
-        (None, None) => "still on its way",
-    }
-}
-
-fn absent(scenario: &Scenario, outcome: &Outcome) -> Vec<(&'static str, Vec<u32>)> {
+fn absent(scenario: &Scenario, outcome: &Outcome, reasons: &Reasons<'_>) -> Vec<(&'static str, Vec<u32>)> {
     let mut absent = Vec::<(&str, Vec<u32>)>::new();
     let times = scenario.robots.iter().zip(&outcome.arrival_times).enumerate();
     for (index, (robot, _)) in times.filter(|(_, (_, time))| time.is_none()) {
-        let reason = reason(scenario, &outcome.ends, index);
+        let reason = reasons.of(index);
         match absent.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, robots)) => robots.push(robot.id.0),
             None => absent.push((reason, vec![robot.id.0])),
@@ -208,7 +178,7 @@ impl Summary {
         let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
         let seconds = |units: f64| units / f64::from(UNIT) * scenario.tick_s();
         let mean = units.iter().sum::<u64>() as f64 / units.len() as f64;
-        let formation = outcome.formation;
+        let (formation, reasons) = (outcome.formation, Reasons::new(scenario, outcome));
         Self {
             scenario: scenario.name.clone(),
             version: "",
@@ -219,7 +189,7 @@ impl Summary {
             wall_seconds: 0.0,
             interrupted: false,
             arrived: outcome.arrived,
-            absent: absent(scenario, outcome),
+            absent: absent(scenario, outcome, &reasons),
             arrival_mean_seconds: (!units.is_empty()).then(|| seconds(mean)),
             arrival_last_seconds: units.iter().max().map(|&last| seconds(last as f64)),
             collisions: outcome.collisions,
@@ -232,7 +202,7 @@ impl Summary {
                     .map(|(index, (robot, units))| Arrival {
                         robot: robot.id.0,
                         seconds: units.map(|units| seconds(units as f64)),
-                        reason: units.is_none().then(|| reason(scenario, &outcome.ends, index)),
+                        reason: units.is_none().then(|| reasons.of(index)),
                     })
                     .collect(),
             ),

@@ -54,12 +54,3 @@ pub struct EndBody {
     /// Radius with the way that it can soon go: bodies farther away are not in its way.
     pub reach_m: f64,
 }
-
-impl EndBody {
-    /// Whether `other` may be in its way.
-    #[must_use]
-    pub fn is_near(&self, other: &Self) -> bool {
-        let way = [0, 1, 2].map(|axis| self.position_m[axis] - other.position_m[axis]);
-        libm::sqrt(way.iter().map(|x| x * x).sum()) < self.reach_m + other.radius_m
-    }
-}

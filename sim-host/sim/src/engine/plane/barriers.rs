@@ -5,6 +5,9 @@ use crate::world::plane::{Barrier, Barriers};
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 use std::collections::HashMap;
 
+/// Robots times obstacles up to which barriers are looked for; those of later robots are not known.
+const MOST_WORK: usize = 100_000_000;
+
 /// Barriers by radius and height of a body; `None`: too many obstacles.
 pub(super) type Known = HashMap<[u64; 2], Option<Barriers>>;
 
@@ -34,7 +37,9 @@ impl PlaneGround {
                 let barriers = known.entry([disc.radius_m, height_m].map(f64::to_bits)).or_insert_with(|| {
                     Barriers::new(self.plane.solids(), self.plane.terrain(), disc.radius_m, height_m)
                 });
-                barriers.as_ref()?.between(from, to, group.tolerance_m)
+                // The same robots on any number of ranks.
+                let work = |barriers: &&Barriers| barriers.count().saturating_mul(self.number(index)) <= MOST_WORK;
+                barriers.as_ref().filter(work)?.between(from, to, group.tolerance_m)
             }
         }
     }

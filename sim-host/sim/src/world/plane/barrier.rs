@@ -199,6 +199,12 @@ impl Barriers {
         Some(Self { gaps: gaps(&shapes, 2.0 * radius_m), shapes, radius_m })
     }
 
+    /// Number of obstacles.
+    #[must_use]
+    pub const fn count(&self) -> usize {
+        self.shapes.len()
+    }
+
     /// Why no motion leads from `from` to within `tolerance_m` of `to`; `None`: one does.
     #[must_use]
     pub fn between(&self, from: [f64; 2], to: [f64; 2], tolerance_m: f64) -> Option<Barrier> {
