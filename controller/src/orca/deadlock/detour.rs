@@ -176,4 +176,4 @@ pub(super) fn nearest<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Optio
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -1,24 +1,11 @@
 //! Ways around obstacles for a robot of radius 1 m in the origin.
 
+use super::super::detour::tests::{V, ball, v, wall};
 use super::*;
 use crate::geom::Vec3;
 use crate::scalar::Q16;
 use proptest::prelude::*;
 use std::vec::Vec as List;
-
-type V = Vec2<f64>;
-
-fn v(x: f64, y: f64) -> V {
-    V::new(x, y)
-}
-
-fn wall(ax: f64, ay: f64, bx: f64, by: f64) -> Obstacle<f64> {
-    Obstacle::Wall([v(ax, ay), v(bx, by)])
-}
-
-fn ball(x: f64, y: f64, radius_m: f64) -> Obstacle<f64> {
-    Obstacle::Ball { center_m: Vec3::new(x, y, 0.0), radius_m }
-}
 
 fn polygon(x: f64, y: f64, size: f64, count: u32) -> List<Obstacle<f64>> {
     let corner = |k: u32| {

@@ -4,17 +4,17 @@ use super::*;
 use crate::geom::Vec3;
 use proptest::prelude::*;
 
-type V = Vec2<f64>;
+pub(in crate::orca::deadlock) type V = Vec2<f64>;
 
-fn v(x: f64, y: f64) -> V {
+pub(in crate::orca::deadlock) fn v(x: f64, y: f64) -> V {
     V::new(x, y)
 }
 
-fn wall(ax: f64, ay: f64, bx: f64, by: f64) -> Obstacle<f64> {
+pub(in crate::orca::deadlock) fn wall(ax: f64, ay: f64, bx: f64, by: f64) -> Obstacle<f64> {
     Obstacle::Wall([v(ax, ay), v(bx, by)])
 }
 
-fn ball(x: f64, y: f64, radius_m: f64) -> Obstacle<f64> {
+pub(in crate::orca::deadlock) fn ball(x: f64, y: f64, radius_m: f64) -> Obstacle<f64> {
     Obstacle::Ball { center_m: Vec3::new(x, y, 0.0), radius_m }
 }
 
