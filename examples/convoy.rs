@@ -86,15 +86,13 @@ const SCENARIO: &str = r#"
 name = "convoy"
 ticks = 300
 tick_s = 0.1
-law.name = "convoy"
 [radio]
 range_m = 2.5
 loss = 0.3
 [plane]
-guidance = "boids"
+law = "convoy"
 radius_m = 0.15
 max_speed_mps = 0.8
-boids = { crowded_m = 0.4, closest_m = 2 }
 robots.list = [
   { start_m = [0, 0] }, { start_m = [1.5, 0] }, { start_m = [3, 0] }, { start_m = [4.5, 0] }, { start_m = [6, 0] },
 ]

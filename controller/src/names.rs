@@ -70,6 +70,10 @@ macro_rules! named {
         }
 
         impl $name {
+            /// The names of all values.
+            #[allow(dead_code, reason = "not each enum is a choice")]
+            pub const WORDS: &'static [&'static str] = &[$($word),*];
+
             /// Returns the name, as in scenario files.
             #[must_use]
             pub const fn name(self) -> &'static str {

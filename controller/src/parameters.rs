@@ -45,6 +45,52 @@ pub struct Parameter {
     pub range: [f32; 2],
     /// A description in a few words.
     pub what: &'static str,
+    /// The words for the values 0, 1, ..., if the row is a choice; otherwise empty.
+    pub words: &'static [&'static str],
+    /// Where its value comes from if none is given.
+    pub absent: Absent,
+}
+
+/// Where the value of a row comes from if none is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absent {
+    /// The [`Default`] of the type that has the row.
+    Default,
+    /// Other values, as these words say.
+    Depends(&'static str),
+    /// The body has it, under this name, and a law has no other.
+    OfBody(&'static str),
+    /// It must be given.
+    Needed,
+}
+
+/// The words of a switch.
+pub const SWITCH: &[&str] = &["false", "true"];
+
+impl Parameter {
+    /// The row with a default that depends on other values, as `what` says.
+    #[must_use]
+    pub const fn depends(self, what: &'static str) -> Self {
+        Self { absent: Absent::Depends(what), ..self }
+    }
+
+    /// The row of a value that the body has under this name.
+    #[must_use]
+    pub const fn of_body(self, name: &'static str) -> Self {
+        Self { absent: Absent::OfBody(name), ..self }
+    }
+
+    /// The row of a value without a default.
+    #[must_use]
+    pub const fn needed(self) -> Self {
+        Self { absent: Absent::Needed, ..self }
+    }
+
+    /// Returns whether the row is true or false.
+    #[must_use]
+    pub fn is_switch(&self) -> bool {
+        self.words == SWITCH
+    }
 }
 
 /// Longest description, bytes.
@@ -66,20 +112,44 @@ pub const fn row(
     assert!(what.len() <= LONGEST_DESCRIPTION, "the description is too long");
     let [least, greatest] = range;
     assert!(least < greatest, "the range is empty");
-    Parameter { name, mavlink, unit, range, what }
+    Parameter { name, mavlink, unit, range, what, words: &[], absent: Absent::Default }
+}
+
+/// Creates a row that is one of some words; its values are their positions, from 0.
+///
+/// # Panics
+/// See [`row`]; also if there are fewer than two words.
+#[must_use]
+pub const fn choice(
+    name: &'static str,
+    mavlink: &'static str,
+    words: &'static [&'static str],
+    what: &'static str,
+) -> Parameter {
+    assert!(words.len() >= 2, "a choice has two words or more");
+    Parameter { words, ..row(name, mavlink, "", [0.0, (words.len() - 1) as f32], what) }
+}
+
+/// Creates a row that is true or false.
+///
+/// # Panics
+/// See [`row`].
+#[must_use]
+pub const fn switch(name: &'static str, mavlink: &'static str, what: &'static str) -> Parameter {
+    choice(name, mavlink, SWITCH, what)
 }
 
 /// Radius of the ball around the body.
 pub const RADIUS: Parameter =
     row("radius_m", "RADIUS_M", "m", [0.001, 65.0], "radius that others keep clear of; not less than the body's");
 /// Cruising speed; the speed limit of the body holds too.
-pub const SPEED: Parameter = row("speed_mps", "SPEED_MPS", "m/s", [0.0, 32.0], "preferred speed");
+pub const SPEED: Parameter = row("speed_mps", "SPEED_MPS", "m/s", [0.0, 32.0], "preferred speed").of_body("cruise_mps");
 /// Distance at which the robot counts as arrived.
 pub const TOLERANCE: Parameter =
     row("tolerance_m", "TOLERANCE_M", "m", [0.001, 10_000.0], "distance at which a place counts as reached");
 /// Minimum distance of push-out and of the goal flock (`R_MinDist`).
 pub const MIN_DISTANCE: Parameter =
-    row("min_distance_m", "MIN_DIST_M", "m", [0.001, 1000.0], "least distance of two robots' centres");
+    row("min_distance_m", "MIN_DIST_M", "m", [0.001, 1000.0], "least distance of two robots' centres").needed();
 
 /// A table and its current values.
 pub trait Parameters {
@@ -90,8 +160,8 @@ pub trait Parameters {
     fn get(&self, index: usize) -> Option<f32>;
 
     /// Stores a value within the range of row `index`. Returns false, without a change, if there is
-    /// no such row or the value contradicts other parameters.
-    fn store(&mut self, index: usize, value: f32) -> bool;
+    /// no such row or, with `checks`, if the value contradicts other parameters.
+    fn store(&mut self, index: usize, value: f32, checks: bool) -> bool;
 
     /// Returns whether the values go together.
     fn is_sound(&self) -> bool {
@@ -107,7 +177,7 @@ pub trait Parameters {
         if !(least..=greatest).contains(&&value) {
             return Err(Rejected::OutOfRange([*least, *greatest]));
         }
-        if self.store(index, value) { Ok(()) } else { Err(Rejected::Contradiction) }
+        if self.store(index, value, true) { Ok(()) } else { Err(Rejected::Contradiction) }
     }
 
     /// Returns the index of the row with this name. O(rows).
@@ -144,6 +214,16 @@ impl<S: Scalar> Value for S {
 
     fn nearest(number: f32) -> Self {
         cast(number)
+    }
+}
+
+impl Value for bool {
+    fn number(self) -> f32 {
+        u8::from(self).into()
+    }
+
+    fn nearest(number: f32) -> Self {
+        number >= 0.5
     }
 }
 
@@ -189,6 +269,26 @@ impl Value for Duration {
     }
 }
 
+/// Makes enums of [`named!`](crate::names) fields of a [`choice`] with their names as words.
+#[cfg(feature = "agent")]
+macro_rules! worded {
+    ($($name:ty),+ $(,)?) => { $(
+        impl $crate::parameters::Value for $name {
+            fn number(self) -> f32 {
+                let place = <Self as $crate::names::Named>::NAMES.iter().position(|(_, value)| *value == self);
+                u8::try_from(place.unwrap_or(0)).map_or(0.0, f32::from)
+            }
+
+            fn nearest(number: f32) -> Self {
+                let named = <Self as $crate::names::Named>::NAMES.get((number + 0.5) as usize);
+                named.map_or_else(Self::default, |(_, value)| *value)
+            }
+        }
+    )+ };
+}
+#[cfg(feature = "agent")]
+pub(crate) use worded;
+
 /// Implements [`Parameters`](crate::parameters::Parameters) for a type: each row is a
 /// [`Parameter`](crate::parameters::Parameter), `=>` and a field, with `/ N` if the field counts
 /// N-ths of the unit. After `where`, a method that returns whether all fields go together.
@@ -212,13 +312,13 @@ macro_rules! parameters {
                 values.get(index).copied()
             }
 
-            fn store(&mut self, index: usize, value: f32) -> bool {
+            fn store(&mut self, index: usize, value: f32, checks: bool) -> bool {
                 let mut rows = 0_usize..;
                 $(
                     if rows.next() == Some(index) {
                         let before = self.$($field).+;
                         self.$($field).+ = $crate::parameters::Value::nearest(value $(* $parts)?);
-                        if !$crate::parameters::Parameters::is_sound(self) {
+                        if checks && !$crate::parameters::Parameters::is_sound(self) {
                             self.$($field).+ = before;
                             return false;
                         }

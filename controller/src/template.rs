@@ -7,6 +7,9 @@ use crate::robot::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+/// Neighbours in a template of default capacity.
+pub const TEMPLATE: usize = 8;
+
 /// The place of one robot in the formation, and those of at most `F` neighbours (KUZ section 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

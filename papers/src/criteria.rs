@@ -31,8 +31,8 @@ impl Default for PublishedParams {
     /// The paper specifies only gain and prediction. eps is 10 cells, as in Staya's law. r0 is
     /// chosen so that all arrive on most landscapes: from a sum of 30 cells (10 per neighbour) down
     /// to 9. From 9 down to 3 the errors are the paper's, and most runs jam
-    /// (`staya experiment formation --set scenario=paper --set formation.halt_cells=9
-    /// --set formation.resume_cells=3`).
+    /// (`staya experiment formation --set scenario=paper --set grid.formation_paper.halt_cells=9
+    /// --set grid.formation_paper.resume_cells=3`).
     fn default() -> Self {
         Self {
             eps: 10,

@@ -12,8 +12,10 @@ extern crate std;
 mod course;
 pub mod criteria;
 mod formation;
+mod settings;
 #[cfg(test)]
 mod tests;
 
 pub use course::Course;
 pub use formation::PublishedFormation;
+pub use settings::{LookaheadSettings, PublishedSettings};

@@ -34,6 +34,7 @@ pub const PROGRAMS: [Program; 5] = [
         commands: &[
             ("sweep", "Run a scenario thousands of times with other values in its fields, here or on a cluster"),
             ("experiment", "Rerun experiments from papers, and benchmarks; without a name, they are listed"),
+            ("migrate", "Rewrite scenarios of earlier versions"),
         ],
     },
     Program {

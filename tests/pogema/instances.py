@@ -27,8 +27,7 @@ SCENARIO = f"""name = "pogema"
 ticks = {STEPS + 1}
 terrain.file = "random/0.map"
 robots.scen = {{ file = "random/0.scen", count = {max(COUNTS)} }}
-grid = {{ moves = 4, simultaneous = true }}
-law.name = "negotiation"
+grid = {{ moves = 4, simultaneous = true, law = "negotiation" }}
 radio.range_m = 11.4
 """
 

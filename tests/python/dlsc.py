@@ -24,7 +24,6 @@ MARGIN_M = 0.02
 SCENARIO = """name = "dlsc"
 ticks = 2400
 tick_s = 0.05
-law.name = "negotiation"
 terrain = {{ file = "maze.map", cell_m = {cell_m} }}
 radio = {{ range_m = 3, loss = {loss} }}
 robots.list = [{robots}]
@@ -33,7 +32,7 @@ radius_m = {radius_m}
 max_speed_mps = 1
 max_acceleration_mps2 = 2
 tolerance_m = 0.1
-guidance = "route"
+law = "negotiation"
 orca = {{ horizon_s = 1, wall_horizon_s = 0.3, alone_mps = 1 }}
 {walls}"""
 MISSIONS = {

@@ -141,7 +141,7 @@ delay_ms = 100
 radius_m = {RADIUS}
 max_speed_mps = {speed}
 max_acceleration_mps2 = {acceleration}
-guidance = "formation"
+law = "formation"
 [plane.orca]
 margin_m = 0.2
 """

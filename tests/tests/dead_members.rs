@@ -1,7 +1,8 @@
 //! Formations with failed robots: the others arrive, whichever robots fail.
 
+use staya_controller::agent::LawSettings;
 use staya_controller::robot::{Mode, RobotId};
-use staya_sim::scenario::{Fault, FormationSetup, Scenario};
+use staya_sim::scenario::{Fault, LawSetup, Scenario};
 use staya_tests::{run, scenario};
 
 fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
@@ -49,9 +50,10 @@ fn ranks_close_the_gap_of_a_dead_robot() {
         let mut scenario = without("figure-5", 1, &dead, 300);
         let goals: Vec<_> = scenario.robots.iter().map(|robot| robot.goal).collect();
         let mut ends = [false, true].map(|closes_ranks| {
-            let mut params = scenario.laws.formation.params();
-            params.closes_ranks = closes_ranks;
-            scenario.laws.formation = FormationSetup::Staya(params);
+            let LawSetup::BuiltIn(LawSettings::Formation(law)) = &mut scenario.laws.on_grid else {
+                panic!("a formation")
+            };
+            law.params.closes_ranks = closes_ranks;
             assert_eq!(missing(&scenario, &dead), [0_usize; 0], "without {robot}");
             let (_, rows) = run(&scenario);
             let (_, robots) = rows.last().expect("at least the start").clone();

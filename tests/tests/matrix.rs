@@ -1,8 +1,8 @@
-//! Every guidance law with every safety layer, with a perfect, a lossy and a dead radio: robots
+//! Every law with every safety layer, with a perfect, a lossy and a dead radio: robots
 //! arrive or stay together, do not overlap where that can be avoided, and stay in their area.
 
 use rayon::prelude::*;
-use staya_controller::agent::{GuidanceKind, SafetyKind};
+use staya_controller::agent::{LawSettings, SafetyKind};
 use staya_controller::names::Named as _;
 use staya_controller::push_out::Model;
 use staya_sim::metrics::flock::FlockMeter;
@@ -26,59 +26,60 @@ fn layers() -> Vec<Layer> {
 }
 
 /// Robots, settings, and the smallest and largest x and y.
-fn swarm(guidance: GuidanceKind) -> (&'static str, &'static str, [f64; 2]) {
-    match guidance {
-        GuidanceKind::Waypoint => ("robots.circle = { count = 6, radius_m = 3, noise_m = 0.05 }", "", [-5.0, 5.0]),
-        GuidanceKind::Lattice => (
+fn swarm(law: &str) -> (&'static str, &'static str, [f64; 2]) {
+    match law {
+        "waypoint" => ("robots.circle = { count = 6, radius_m = 3, noise_m = 0.05 }", "", [-5.0, 5.0]),
+        "lattice" => (
             "robots.cloud = { count = 6, from_m = [0, 0], to_m = [3, 3], goals_m = [[6, 6]] }\nlattice = { spacing_m = 1 }",
             "",
             [-4.0, 10.0],
         ),
-        GuidanceKind::GoalFlock => (
+        "goal_flock" => (
             "robots.cloud = { count = 6, from_m = [0, 0], to_m = [3, 3], goals_m = [[8, 8]] }\n\
              goal_flock = { min_distance_m = 0.7 }",
             "",
             [-4.0, 12.0],
         ),
-        GuidanceKind::Boids => (
+        "boids" => (
             "robots.cloud = { count = 6, from_m = [0, 0], to_m = [4, 4] }\nboids = { crowded_m = 0.8, closest_m = 4 }",
             "",
             [-100.0, 100.0],
         ),
-        GuidanceKind::Route => (
+        "route" => (
             "",
             "[terrain]\nuniform = { width = 12, height = 12, classes = 1 }\n[robots]\nlist = [{ start = [1, 5], goal = [10, 5] }, \
              { start = [10, 6], goal = [1, 6] }, { start = [5, 1], goal = [5, 10] }, { start = [6, 10], goal = [6, 1] }, \
              { start = [1, 1], goal = [10, 10] }, { start = [10, 1], goal = [1, 10] }]",
             [0.0, 12.0],
         ),
-        GuidanceKind::Formation => (
+        "formation" => (
             "",
             "[terrain]\nuniform = { width = 24, height = 12, classes = 1 }\n\
              [robots.formation]\nrows = 2\ncolumns = 3\nspacing = [2, -2]\nstart = [2, 8]\ngoal = [16, 8]",
             [0.0, 24.0],
         ),
+        _ => panic!("give robots for the law {law}"),
     }
 }
 
-fn scenario(guidance: GuidanceKind, (safety, model): Layer, radio: &str) -> Result<Scenario, ScenarioError> {
-    let (own, above, _) = swarm(guidance);
+fn scenario(law: &str, (safety, model): Layer, radio: &str) -> Result<Scenario, ScenarioError> {
+    let (own, above, _) = swarm(law);
     let push_out = match safety {
         SafetyKind::PushOut => format!("push_out = {{ min_distance_m = 0.5, model = \"{}\" }}", model.name()),
         _ => String::new(),
     };
     let text = format!(
         "name = \"matrix\"\nseed = 1\nticks = 1800\ntick_s = 0.05\n[radio]\nrange_m = 30\n{radio}\n{above}\n[plane]\n\
-         radius_m = {RADIUS_M}\nmax_speed_mps = {FASTEST_MPS}\ntolerance_m = 0.05\nguidance = \"{}\"\nsafety = \"{}\"\n{own}\n{push_out}\n",
-        guidance.name(),
+         radius_m = {RADIUS_M}\nmax_speed_mps = {FASTEST_MPS}\ntolerance_m = 0.05\nlaw = \"{}\"\nsafety = \"{}\"\n{own}\n{push_out}\n",
+        law,
         safety.name(),
     );
     Scenario::parse(&text, Path::new("matrix.toml"), &Overrides::default())
 }
 
 /// A robot with a straight path cannot pass another one if both turn aside.
-fn is_refused(guidance: GuidanceKind, layer: Layer) -> bool {
-    (guidance, layer) == (GuidanceKind::Waypoint, (SafetyKind::PushOut, Model::Tangential))
+fn is_refused(law: &str, layer: Layer) -> bool {
+    (law, layer) == ("waypoint", (SafetyKind::PushOut, Model::Tangential))
 }
 
 #[derive(Debug)]
@@ -92,9 +93,9 @@ struct Verdict {
     stays: bool,
 }
 
-fn verdict(guidance: GuidanceKind, safety: Layer, radio: &str) -> Verdict {
-    let (.., [low, high]) = swarm(guidance);
-    let scenario = scenario(guidance, safety, radio).unwrap_or_else(|error| panic!("{error}"));
+fn verdict(law: &str, safety: Layer, radio: &str) -> Verdict {
+    let (.., [low, high]) = swarm(law);
+    let scenario = scenario(law, safety, radio).unwrap_or_else(|error| panic!("{error}"));
     let (outcome, rows) = run(&scenario);
     let robots = || rows.iter().flat_map(|(_, robots)| robots);
     let is_fine = |at: &[f64; 3], v: &[f64; 3]| {
@@ -116,9 +117,9 @@ fn verdict(guidance: GuidanceKind, safety: Layer, radio: &str) -> Verdict {
     }
 }
 
-fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
+fn complaint(law: &str, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
     let hears = radio != "dead";
-    let has_goal = !matches!(guidance, GuidanceKind::Boids | GuidanceKind::Lattice);
+    let has_goal = !matches!(law, "boids" | "lattice");
     let guards = safety != SafetyKind::None;
     // Each expects the others, and hears none.
     if !hears && guards && safety != SafetyKind::PushOut {
@@ -130,7 +131,7 @@ fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &
     if has_goal && verdict.arrived < ROBOTS {
         return "not all arrived";
     }
-    if guidance == GuidanceKind::Lattice && hears && verdict.parts > 1 {
+    if law == "lattice" && hears && verdict.parts > 1 {
         return "the flock broke up";
     }
     match radio {
@@ -144,10 +145,10 @@ fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &
 #[test]
 fn unsupported_combinations_are_refused_with_a_remedy() {
     let mut refused = 0;
-    for &(_, guidance) in GuidanceKind::NAMES {
+    for &(law, _) in LawSettings::ALL {
         for layer in layers() {
-            let answer = scenario(guidance, layer, "");
-            assert_eq!(answer.is_err(), is_refused(guidance, layer), "{guidance:?} behind {layer:?}");
+            let answer = scenario(law, layer, "");
+            assert_eq!(answer.is_err(), is_refused(law, layer), "{law} behind {layer:?}");
             refused += usize::from(answer.is_err_and(|error| error.to_string().contains("plane.push_out.model")));
         }
     }
@@ -155,20 +156,20 @@ fn unsupported_combinations_are_refused_with_a_remedy() {
 }
 
 #[test]
-fn every_guidance_works_with_every_safety_layer_and_radio() {
+fn every_law_works_with_every_safety_layer_and_radio() {
     let mut all = Vec::new();
-    for &(_, guidance) in GuidanceKind::NAMES {
-        for safety in layers().into_iter().filter(|&layer| !is_refused(guidance, layer)) {
-            all.extend(RADIOS.map(|radio| (guidance, safety, radio)));
+    for &(law, _) in LawSettings::ALL {
+        for safety in layers().into_iter().filter(|&layer| !is_refused(law, layer)) {
+            all.extend(RADIOS.map(|radio| (law, safety, radio)));
         }
     }
     let complaints: Vec<String> = all
         .par_iter()
-        .filter_map(|&(guidance, safety, (radio, fields))| {
-            let verdict = verdict(guidance, safety, fields);
-            let complaint = complaint(guidance, safety, radio, &verdict);
+        .filter_map(|&(law, safety, (radio, fields))| {
+            let verdict = verdict(law, safety, fields);
+            let complaint = complaint(law, safety, radio, &verdict);
             let (layer, model) = (safety.0.name(), safety.1.name());
-            let pair = format!("{} behind {layer} ({model}), {radio} radio", guidance.name());
+            let pair = format!("{} behind {layer} ({model}), {radio} radio", law);
             (!complaint.is_empty()).then(|| format!("{pair}: {complaint}: {verdict:?}"))
         })
         .collect();

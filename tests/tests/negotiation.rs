@@ -18,10 +18,9 @@ fn in_plane(map: &str, ends: &[([u8; 2], [u8; 2])], loss: f64, more: &str) -> Sc
     let text = format!(
         "name = \"maze\"\nticks = 2400\ntick_s = 0.05\n\
          [terrain]\nfile = \"maze.map\"\ncell_m = 0.5\n\
-         [law]\nname = \"negotiation\"\n\
          [robots]\nlist = [{}]\n\
          [radio]\nrange_m = 3\nloss = {loss}\n\
-         [plane]\nradius_m = 0.15\nmax_speed_mps = 1\nmax_acceleration_mps2 = 2\nguidance = \"route\"\n\
+         [plane]\nradius_m = 0.15\nmax_speed_mps = 1\nmax_acceleration_mps2 = 2\nlaw = \"negotiation\"\n\
          [plane.orca]\nhorizon_s = 1\nwall_horizon_s = 0.3\nalone_mps = 1\n{more}",
         list.collect::<Vec<_>>().join(", "),
     );
@@ -120,7 +119,7 @@ fn a_disc_walks_around_one_that_died_in_a_corridor() {
     }
 }
 
-const LAW: &str = "[law]\nname = \"negotiation\"\n";
+const LAW: &str = "law = \"negotiation\"\n";
 
 /// Sixty robots of a benchmark among walls.
 fn crowd() -> (PathBuf, String) {

@@ -62,15 +62,15 @@ fn an_operator_can_set_the_ends_of_a_files_ranges() {
     for rest in [
         "tolerance_m = 10000\norca = { horizon_s = 60, wall_horizon_s = 60, share = 1, margin_m = 10 }\n",
         "tolerance_m = 0.001\norca = { horizon_s = 2, wall_horizon_s = 0.01, share = 0, margin_m = 0 }\n",
-        "guidance = \"boids\"\nboids = { crowded_m = 1000, closest_m = 10000, max_turn = 3.15, max_turn_away = 3.15 }\n",
-        "guidance = \"goal_flock\"\ngoal_flock = { min_distance_m = 1000, neighborhood_m = 10000, k1 = 1000, k2 = -1000 }\n",
-        "guidance = \"lattice\"\nlattice = { spacing_m = 100, c_alpha = 1000, c_beta = 10000, c_gamma = 1000, obstacle_ratio = 4 }\n",
+        "law = \"boids\"\nboids = { crowded_m = 1000, closest_m = 10000, max_turn = 3.15, max_turn_away = 3.15 }\n",
+        "law = \"goal_flock\"\ngoal_flock = { min_distance_m = 1000, neighborhood_m = 10000, k1 = 1000, k2 = -1000 }\n",
+        "law = \"lattice\"\nlattice = { spacing_m = 100, c1_alpha = 1000, c1_beta = 10000, c1_gamma = 1000, obstacle_ratio = 4 }\n",
     ] {
         of(plane, rest);
     }
     for rest in [
-        "[formation]\nhalt_cells = 937\nresume_cells = 936\ngain = 4095\n[route]\na0 = 4095\na3 = 4095\n",
-        "[formation]\nwaits = false\n",
+        "[grid.formation]\nhalt_cells = 937\nresume_cells = 936\nplace_gain = 4095\na0 = 4095\na3 = 4095\n",
+        "[grid.formation]\nwaits = false\n",
     ] {
         of(cells, rest);
     }
@@ -85,7 +85,7 @@ fn golden_list_of_parameters() {
     let gains: [&dyn Parameters; 3] =
         [&GoalParams::new(1.0_f32, 1.0), &LatticeParams::new(1.0_f32), &BoidsParams::paper(1.0_f32)];
     let mut list = String::from("name            MAVLink         unit      range          default  description\n");
-    for Parameter { name, mavlink, unit, range: [least, greatest], what } in parameters() {
+    for Parameter { name, mavlink, unit, range: [least, greatest], what, .. } in parameters() {
         let of = |table: &&dyn Parameters| table.get(table.index(name)?);
         let default =
             complete.iter().find_map(of).or_else(|| gains.iter().find_map(of).filter(|_| !unit.contains('m')));

@@ -52,8 +52,8 @@ pub fn check_layers(source: &Path) -> Result<()> {
 /// law. The laws themselves are `laws`.
 fn unit(path: &[String]) -> &str {
     match path {
-        [laws, folder, rest @ ..] if laws == "laws" && layer(folder).is_some() => {
-            if rest.first().is_some_and(|part| part == "law") { laws } else { folder }
+        [laws, folder, rest @ ..] if laws == "laws" && layer(folder).is_some_and(|layer| layer > 0) => {
+            if rest.first().is_some_and(|part| part == "law" || part == "settings") { laws } else { folder }
         }
         [first, ..] => first,
         [] => "",

@@ -114,24 +114,25 @@ mod task;
 mod tests;
 
 pub use crate::law::{
-    Action, AnySurroundings, BadInput, CellFrame, CellState, Decision, InCell, InCells, InPlane, KinematicState, Known,
-    Law, MessageOf, OfAnotherLaw, OnGrid, OrderOf, Outgoing, PayloadOf, Protocol, Radio, Report, Scene, Status,
-    Surroundings, Tools, View, Wait, WrongTask,
+    Action, AnySurroundings, Around, BadInput, CellFrame, CellState, Contradiction, Decision, Goals, InCell, InCells,
+    InPlane, KinematicState, Known, Law, MessageOf, Motion, OfAnotherLaw, OnGrid, OrderOf, Outgoing, PayloadOf,
+    Protocol, Radio, Report, Scene, Settings, Status, Surroundings, Tools, View, Wait, WrongTask,
 };
-pub use crate::laws::any::{AnyLaw, Large, dispatch};
+pub use crate::laws::any::{Large, dispatch};
 pub use crate::laws::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, OtherPayload, Raw};
-pub use crate::laws::boids::BoidsGuidance;
+pub use crate::laws::boids::{BoidsGuidance, BoidsSettings};
 pub use crate::laws::cells::{
     CellFollower, FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace,
     MAX_TEMPLATE, PartError, SharedMap, TEMPLATE_PART, TemplateAssembler, TemplatePart,
 };
 pub use crate::laws::external::{External, Incoming};
-pub use crate::laws::formation::{FormationGuidance, FormationInPlane};
-pub use crate::laws::goal_flock::{GOALS, GoalFlockGuidance};
+pub use crate::laws::formation::{FormationGuidance, FormationInPlane, FormationSettings};
+pub use crate::laws::goal_flock::{GOALS, GoalFlockGuidance, GoalFlockSettings};
 pub use crate::laws::guided::{Guided, Wish};
-pub use crate::laws::lattice::LatticeGuidance;
-pub use crate::laws::route::RouteGuidance;
-pub use crate::laws::waypoint::{WAYPOINTS, Waypoint, WaypointGuidance, WaypointOrder, Waypoints};
+pub use crate::laws::lattice::{GAMMA_OF_TWO, LatticeGuidance, LatticeSettings};
+pub use crate::laws::list::{AnyLaw, LawSettings};
+pub use crate::laws::route::{RouteGuidance, RouteSettings};
+pub use crate::laws::waypoint::{WAYPOINTS, Waypoint, WaypointGuidance, WaypointOrder, WaypointSettings, Waypoints};
 pub use crate::safety::{
     AnyHalfPlanes, AnySafety, FlySafety, OrcaSafety, PushOutSafety, Safety, SafetyInput, Unguarded,
 };
@@ -140,7 +141,7 @@ pub use contact_loss::ContactLossPolicy;
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, OUTBOX, Outputs, Refused};
 pub use parameter::parameters;
 pub use perception::{Perception, RadioOnly};
-pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task};
+pub use setup::{AnyAgent, SafetyKind, SafetySetup, Setup, Task};
 
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
@@ -161,8 +162,7 @@ pub const VISITS: usize = 64;
 pub const LEARNED: usize = 256;
 /// Tiles in a default shared map: 128 x 128 cells, 3 KiB, and 6 KiB of stack in a decision.
 pub const MAP_TILES: usize = 1024;
-/// Neighbours in a template of default capacity.
-pub const TEMPLATE: usize = 8;
+pub use crate::template::TEMPLATE;
 
 /// Half-planes in a default safety layer: one per neighbour, and equally many for obstacles.
 pub const HALF_PLANES: usize = 2 * NEIGHBORS;

@@ -1,24 +1,15 @@
 //! The configuration of a robot as data, for scenarios and host links; `f32` for any scalar type.
 
 use super::{
-    Agent, AgentConfig, AnyHalfPlanes, AnyLaw, AnySafety, BoidsGuidance, CellFollower, FlySafety, FormationGuidance,
-    FormationInPlane, GoalFlockGuidance, LatticeGuidance, OrcaSafety, PushOutSafety, RouteGuidance, TEMPLATE,
-    Unguarded, WAYPOINTS, Waypoint, WaypointGuidance,
+    Agent, AgentConfig, AnyHalfPlanes, AnyLaw, AnySafety, FlySafety, LawSettings, OrcaSafety, PushOutSafety, TEMPLATE,
+    Unguarded, WAYPOINTS, Waypoint,
 };
-use crate::boids::BoidsParams;
-use crate::formation::{FormationParams, NextMove};
-use crate::goal_flock::GoalParams;
 use crate::grid::Cell;
-use crate::lattice::{LatticeParams, ReferenceMotion};
-use crate::laws::any::large;
 use crate::names::named;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{AvoidParams, InSpace};
 use crate::push_out::PushOutParams;
-use crate::route::{Replan, RouteParams};
 use crate::scalar::{Scalar, cast};
-use crate::shuffle::Sharpness;
-use crate::template::Template;
 use crate::wire::{Format, FromFormat, Postcard, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -41,84 +32,12 @@ pub type AnyAgent<
 pub struct Setup {
     /// Id, seed, timing and body.
     pub agent: AgentConfig<f32>,
-    /// The guidance law.
-    pub guidance: GuidanceSetup,
+    /// The law.
+    pub law: LawSettings,
     /// The safety layer.
     pub safety: SafetySetup,
     /// The wire format, equal for all robots of a swarm.
     pub format: Format,
-}
-
-/// Configuration of windowed routing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct RouteSetup {
-    /// Costs of a route.
-    pub params: RouteParams,
-    /// When to repeat the search.
-    pub replan: Replan,
-    /// How strictly the order of moves follows their weights.
-    pub sharpness: Sharpness,
-}
-
-/// Configuration of boids, as input of [`BoidsParams::new`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct BoidsSetup {
-    /// Distance below which a boid turns away, metres.
-    pub crowded_m: f32,
-    /// Distance up to which a neighbour counts, metres.
-    pub closest_m: f32,
-    /// Largest turn towards the mean heading and the centre, radians per step.
-    pub max_turn: f32,
-    /// Largest turn away, radians per step.
-    pub max_turn_away: f32,
-}
-
-impl BoidsSetup {
-    /// The values of the paper at a scale of one metre: 30, 150, 0.05, 0.02.
-    pub const PAPER: Self = Self { crowded_m: 30.0, closest_m: 150.0, max_turn: 0.05, max_turn_away: 0.02 };
-
-    /// Returns the parameters in the given scalar type.
-    #[must_use]
-    pub fn params<S: Scalar>(&self) -> BoidsParams<S> {
-        BoidsParams::new(cast(self.crowded_m), cast(self.closest_m), cast(self.max_turn), cast(self.max_turn_away))
-    }
-}
-
-/// A guidance law with its parameters. Speeds in m/s, lengths in metres.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[expect(missing_docs, reason = "the constructors of the laws document them")]
-pub enum GuidanceSetup {
-    Waypoint {
-        speed_mps: f32,
-        tolerance_m: f32,
-    },
-    Lattice {
-        params: LatticeParams<f32>,
-        motion: ReferenceMotion<f32>,
-    },
-    GoalFlock {
-        params: GoalParams<f32>,
-        arrival_m: f32,
-        seed: u64,
-    },
-    Boids {
-        params: BoidsSetup,
-        speed_mps: f32,
-    },
-    /// In the plane with a speed, cell by cell without one.
-    Route {
-        route: RouteSetup,
-        speed_mps: Option<f32>,
-    },
-    Formation {
-        route: RouteSetup,
-        formation: FormationParams,
-        template: Template<TEMPLATE>,
-        speed_mps: Option<f32>,
-    },
 }
 
 /// A safety layer with its parameters.
@@ -130,40 +49,6 @@ pub enum SafetySetup {
     Orca { params: AvoidParams<f32>, inflation: StalenessInflation<f32>, source: AnyHalfPlanes },
     Fly { params: AvoidParams<f32>, inflation: StalenessInflation<f32>, downwash: f32 },
     PushOut { params: PushOutParams<f32> },
-}
-
-named! {
-    /// A guidance law by name.
-    #[derive(Default)]
-    pub enum GuidanceKind {
-        /// Straight to the goal.
-        #[default]
-        Waypoint = "waypoint",
-        /// The alpha flock (R. Olfati-Saber, OLF), with the first goal as its reference.
-        Lattice = "lattice",
-        /// The goal flock (V. E. and V. V. Pavlovsky, PAV).
-        GoalFlock = "goal_flock",
-        /// Boids (V. A. Starovoitova, STA).
-        Boids = "boids",
-        /// Windowed routing on the grid (A. V. Kuznetsov, KUZ), cell by cell.
-        Route = "route",
-        /// Windowed routing on the grid in formation.
-        Formation = "formation",
-    }
-}
-
-impl GuidanceKind {
-    /// Returns whether the law plans on the grid.
-    #[must_use]
-    pub const fn is_on_grid(self) -> bool {
-        matches!(self, Self::Route | Self::Formation)
-    }
-
-    /// Returns whether each robot has a goal of its own, at which it stays.
-    #[must_use]
-    pub const fn has_goals(self) -> bool {
-        matches!(self, Self::Waypoint | Self::Route | Self::Formation)
-    }
 }
 
 named! {
@@ -245,82 +130,7 @@ impl Setup {
         &self,
         wire: W,
     ) -> AnyAgent<S, CELLS, M, N, K, W, L> {
-        Agent::new(&self.agent.cast(), self.guidance.law(()), self.safety.safety(), wire)
-    }
-
-    /// Returns the `CELLS` of a [`CostField`](crate::route::CostField) that it needs; 0 for none.
-    #[must_use]
-    pub fn cells(&self) -> usize {
-        match &self.guidance {
-            GuidanceSetup::Route { route, .. } | GuidanceSetup::Formation { route, .. } => route.cells(),
-            _ => 0,
-        }
-    }
-}
-
-impl GuidanceSetup {
-    /// Returns the name of the law.
-    #[must_use]
-    pub const fn kind(&self) -> GuidanceKind {
-        match self {
-            Self::Waypoint { .. } => GuidanceKind::Waypoint,
-            Self::Lattice { .. } => GuidanceKind::Lattice,
-            Self::GoalFlock { .. } => GuidanceKind::GoalFlock,
-            Self::Boids { .. } => GuidanceKind::Boids,
-            Self::Route { .. } => GuidanceKind::Route,
-            Self::Formation { .. } => GuidanceKind::Formation,
-        }
-    }
-
-    /// Creates the law; laws on the grid take the `map`.
-    #[must_use]
-    pub fn law<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H>(
-        &self,
-        map: H,
-    ) -> AnyLaw<S, CELLS, M, TEMPLATE, L, H> {
-        match self {
-            Self::Waypoint { speed_mps, tolerance_m } => {
-                AnyLaw::Waypoint(WaypointGuidance::new(cast(*speed_mps), cast(*tolerance_m)))
-            }
-            Self::Lattice { params, motion } => {
-                AnyLaw::Lattice(LatticeGuidance::following(params.cast(), motion.cast()))
-            }
-            Self::GoalFlock { params, arrival_m, seed } => {
-                AnyLaw::GoalFlock(GoalFlockGuidance::new(params.cast(), cast(*arrival_m), *seed))
-            }
-            Self::Boids { params, speed_mps } => AnyLaw::Boids(BoidsGuidance::new(params.params(), cast(*speed_mps))),
-            Self::Route { route, speed_mps } => {
-                let guidance = route.law(map);
-                match speed_mps {
-                    Some(speed) => AnyLaw::Route(large(CellFollower::new(guidance, cast(*speed)))),
-                    None => AnyLaw::RouteOnGrid(guidance),
-                }
-            }
-            Self::Formation { route, formation, template, speed_mps } => {
-                let guidance = FormationGuidance::steered(route.params, *formation, template.clone(), NextMove, map);
-                let guidance = guidance.sharpness(route.sharpness);
-                match speed_mps {
-                    Some(speed) => AnyLaw::Formation(large(FormationInPlane::new(guidance, cast(*speed)))),
-                    None => AnyLaw::FormationOnGrid(large(guidance)),
-                }
-            }
-        }
-    }
-}
-
-impl RouteSetup {
-    const fn cells(&self) -> usize {
-        let side = 2 * self.params.radius as usize + 3;
-        side * side
-    }
-
-    /// Creates the law on the grid, with a map.
-    #[must_use]
-    pub const fn law<const CELLS: usize, const M: usize, const L: usize, H>(
-        &self,
-        map: H,
-    ) -> RouteGuidance<CELLS, M, L, H> {
-        RouteGuidance::with_map(self.params, map).replan(self.replan).sharpness(self.sharpness)
+        Agent::new(&self.agent.cast(), self.law.law(()), self.safety.safety(), wire)
     }
 }
 

@@ -1,11 +1,13 @@
 //! The interface between the agent and its law, which chooses where the robot goes.
 
 mod protocol;
+mod settings;
 mod surroundings;
 mod wait;
 
 pub(crate) use protocol::Queued;
 pub use protocol::{OfAnotherLaw, Outgoing, Protocol, Radio};
+pub use settings::{Around, Contradiction, Goals, Motion, Settings};
 pub use surroundings::{
     AnySurroundings, CellFrame, CellState, InCell, InCells, InPlane, KinematicState, OnGrid, Surroundings,
 };

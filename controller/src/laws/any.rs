@@ -1,14 +1,6 @@
 //! Law chosen at run time, for simulators and configurable firmware.
 
 use super::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, FromPayload};
-use super::boids::BoidsGuidance;
-use super::cells::{CellFollower, FarMap, GridWorkspace};
-use super::formation::{FormationGuidance, FormationInPlane};
-use super::goal_flock::GoalFlockGuidance;
-use super::lattice::LatticeGuidance;
-use super::route::RouteGuidance;
-use super::waypoint::WaypointGuidance;
-use crate::formation::NextMove;
 use crate::grid::Dir;
 use crate::law::{
     AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OrderOf, PayloadOf, Protocol, Radio, Tools, View,
@@ -17,7 +9,6 @@ use crate::neighbor::Neighbor;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use serde::{Deserialize, Serialize};
 
 /// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
 #[cfg(not(feature = "host"))]
@@ -179,25 +170,6 @@ macro_rules! laws {
     (@inside $law:ident large) => { $crate::agent::dispatch::inside($law) };
     (@inside_mut $law:ident) => { $law };
     (@inside_mut $law:ident large) => { $crate::agent::dispatch::inside_mut($law) };
-}
-
-laws! {
-    /// Any law, on the grid with a map `H`, in the plane or in space.
-    #[derive(Clone, Debug, Serialize, Deserialize)]
-    #[expect(missing_docs, reason = "each variant's type says it")]
-    pub enum AnyLaw[S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, H = ()] of S,
-    in GridWorkspace<CELLS>,
-    [S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize, H: FarMap]
-    for [S, CELLS, M, F, L, H] {
-        Waypoint(WaypointGuidance<S>),
-        Lattice(LatticeGuidance<S>),
-        GoalFlock(GoalFlockGuidance<S>),
-        Boids(BoidsGuidance<S>),
-        Route(Large<CellFollower<S, RouteGuidance<CELLS, M, L, H>>>, large),
-        Formation(Large<FormationInPlane<S, CELLS, M, F, L, H>>, large),
-        RouteOnGrid(RouteGuidance<CELLS, M, L, H>),
-        FormationOnGrid(Large<FormationGuidance<CELLS, M, F, L, NextMove, H>>, large),
-    }
 }
 
 /// The robots of an enum of laws as one of its laws knows them.

@@ -8,7 +8,7 @@
 //! | `negotiation` | cell by cell, planned together |
 //! | `external`, `guided` | the caller decides; an operator steers |
 //!
-//! `any` lists those that can be chosen at run time.
+//! `list` has those that can be chosen at run time.
 
 #[cfg(feature = "flock")]
 pub mod boids;
@@ -35,5 +35,7 @@ pub(crate) mod cells;
 pub(crate) mod external;
 #[cfg(feature = "agent")]
 pub(crate) mod guided;
+#[cfg(feature = "agent")]
+pub(crate) mod list;
 #[cfg(feature = "agent")]
 pub(crate) mod waypoint;

@@ -126,7 +126,7 @@ impl<
     fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8]) -> Result<u64, Refusal> {
         self.body.forget();
         check(setup)?;
-        let (needs, room) = (setup.cells(), CELLS);
+        let (needs, room) = (setup.law.cells(), CELLS);
         if needs > room {
             return Err(Refusal::Search { needs, room });
         }

@@ -8,13 +8,14 @@ mod sessions;
 use crate::message::{Hello, Stepped, kind};
 use crate::robot::{Large, Small};
 use crate::session::{About, Reaction, Session, content_bytes};
-use staya_controller::agent::{AgentConfig, AnyHalfPlanes, CELLS, GuidanceSetup, RouteSetup, SafetySetup, Setup, Task};
+use staya_controller::agent::{
+    AgentConfig, AnyHalfPlanes, CELLS, LawSettings, RouteSettings, SafetySetup, Setup, Task, WaypointSettings,
+};
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::RobotId;
-use staya_controller::route::{Replan, RouteParams};
-use staya_controller::shuffle::Sharpness;
+use staya_controller::route::RouteParams;
 use staya_controller::time::Duration;
 use staya_controller::wire::Format;
 use std::vec::Vec;
@@ -40,7 +41,7 @@ pub fn in_plane() -> Setup {
             max_acceleration_mps2: 2.0,
             ..AgentConfig::new(RobotId(1), 0.25, Duration::from_millis(100))
         },
-        guidance: GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.05 },
+        law: LawSettings::Waypoint(WaypointSettings { speed_mps: 1.0, tolerance_m: 0.05 }),
         safety: SafetySetup::Orca {
             params: AvoidParams::default(),
             inflation: StalenessInflation { growth_mps: 0.5, max_m: 0.25 },
@@ -54,10 +55,7 @@ pub fn on_grid(radius: u8) -> (Setup, Task) {
     let params = RouteParams { radius, ..RouteParams::default() };
     let setup = Setup {
         agent: AgentConfig { seed: 7, ..AgentConfig::new(RobotId(1), 0.0, Duration::from_millis(100)) },
-        guidance: GuidanceSetup::Route {
-            route: RouteSetup { params, replan: Replan::EachCell, sharpness: Sharpness::Greedy },
-            speed_mps: None,
-        },
+        law: LawSettings::Route(RouteSettings { params, ..RouteSettings::default() }),
         safety: SafetySetup::None,
         format: Format::Postcard,
     };

@@ -288,7 +288,7 @@ fn device_that_never_answers_is_an_error_of_the_start() {
 #[test]
 fn setup_that_does_not_fit_is_an_error_of_the_start() {
     let mut config = config(2, "thread");
-    if let staya_controller::agent::GuidanceSetup::Route { route, .. } = &mut config.setup.guidance {
+    if let staya_controller::agent::LawSettings::Route(route) = &mut config.setup.law {
         route.params.radius = 6;
     }
     let lines = vec![(config, small(Mischief::default()))];

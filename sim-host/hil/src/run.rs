@@ -11,7 +11,6 @@ use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_wit
 use staya_sim::expected::Expected;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
-use staya_sim::scenario::{FormationLaw, FormationSetup};
 use staya_sim::shown::Shown as _;
 use staya_view::watch::{About, DeviceFigures, Insight, Watcher};
 use std::ops::ControlFlow;
@@ -49,13 +48,8 @@ impl HilArgs {
 /// Missing devices, firmware or firmware features, or a device that fails or differs from its
 /// shadow.
 pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
-    let other = match scenario.laws.formation {
-        FormationSetup::Staya(_) => None,
-        FormationSetup::Lookahead(_) => Some(FormationLaw::Lookahead),
-        FormationSetup::Published(_) => Some(FormationLaw::Paper),
-    };
-    if let Some(law) = other {
-        bail!("formation.law = \"{law}\" is not available in firmware; give \"staya\", or run without devices");
+    if let Some(law) = scenario.laws().find(|law| law.built_in().is_none()) {
+        bail!("law = \"{}\" is not available in firmware; give another law, or run without devices", law.name());
     }
     drive(&Ours, scenario, devices, page, global)
 }

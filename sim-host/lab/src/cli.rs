@@ -1,6 +1,7 @@
-//! The commands `staya sweep` and `staya experiment`.
+//! The commands `staya sweep`, `staya experiment` and `staya migrate`.
 
 mod figure;
+mod migrate;
 mod sweep;
 
 use crate::sweep::Shard;
@@ -16,6 +17,8 @@ pub enum Command {
     Sweep(Box<sweep::SweepArgs>),
     /// Rerun experiments from papers, and benchmarks; without a name, they are listed.
     Experiment(Box<figure::FigureArgs>),
+    /// Rewrite scenarios of earlier versions.
+    Migrate(migrate::MigrateArgs),
 }
 
 impl Command {
@@ -27,6 +30,7 @@ impl Command {
         match self {
             Self::Sweep(args) => args.run(global),
             Self::Experiment(args) => args.run(global),
+            Self::Migrate(args) => args.run(global),
         }
     }
 }

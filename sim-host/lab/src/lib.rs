@@ -6,6 +6,7 @@ pub mod cli;
 pub mod error;
 pub mod figure;
 pub mod measure;
+mod migrate;
 pub mod optimal;
 pub mod probe;
 pub mod study;

@@ -4,9 +4,10 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use staya_controller::agent::{
-    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OrderOf,
-    Protocol, Radio, Report, Tools, View,
+    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Goals, GridOrder, InPlane,
+    Known, Law, MessageOf, Motion, OrderOf, Protocol, Radio, Report, Tools, View, Waypoint, WaypointOrder,
 };
+use staya_controller::geom::Position;
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::negotiation::{Moves, NegotiationGuidance, NegotiationInPlane};
 use staya_controller::neighbor::Neighbor;
@@ -57,24 +58,33 @@ static NAMED: Mutex<BTreeMap<&'static str, Make>> = Mutex::new(BTreeMap::new());
 /// The name of [`NegotiationGuidance`] and [`NegotiationInPlane`], which every program has.
 pub(crate) const NEGOTIATION: &str = "negotiation";
 
-/// Makes a law known to scenario files, as `law.name = "..."`, with its default parameters. A
-/// program calls it before it reads scenarios: then files, sweeps, ranks, checkpoints and views
-/// have the law. A law with the same name is replaced.
+/// Makes a law known to scenario files, as `law = "..."`, with its default parameters. A program
+/// calls it before it reads scenarios: then files, sweeps, ranks, checkpoints and views have the
+/// law. A law with the same name is replaced.
 pub fn add_law<L: OwnLaw + Default>(name: &'static str) {
     NAMED.lock().unwrap_or_else(PoisonError::into_inner).insert(name, || Own::new(L::default()));
 }
 
-/// A law that scenario files name, for bodies with these moves, or in the plane with this cruising
-/// speed; `Err` lists the known names.
-pub(crate) fn named(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Result<Own, Vec<&'static str>> {
+/// The laws that [`own`] knows, each with a sentence.
+pub(crate) fn added() -> Vec<(&'static str, &'static str)> {
+    let named = NAMED.lock().unwrap_or_else(PoisonError::into_inner);
+    let of_the_program =
+        named.keys().map(|name| (*name, "a law of this program")).filter(|(name, _)| *name != NEGOTIATION);
+    let what = "each robot over land in cells, planned with the robots around it";
+    [(NEGOTIATION, what)].into_iter().chain(of_the_program).collect()
+}
+
+/// A law that firmware does not have, for bodies with these moves, or in the plane with this
+/// cruising speed; `None`: no law has this name.
+pub(crate) fn own(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Option<Own> {
     let named = NAMED.lock().unwrap_or_else(PoisonError::into_inner);
     match named.get(name) {
-        Some(make) => Ok(make()),
-        None if name == NEGOTIATION => Ok(match cruise_mps {
+        Some(make) => Some(make()),
+        None if name == NEGOTIATION => Some(match cruise_mps {
             Some(speed) => Own::new(NegotiationInPlane::<f32, 64, 8>::new(speed)),
             None => Own::new(NegotiationGuidance::<64, 8>::new(moves)),
         }),
-        None => Err(named.keys().copied().chain([NEGOTIATION]).collect()),
+        None => None,
     }
 }
 
@@ -89,6 +99,41 @@ impl Own {
     /// Whether the law can use these surroundings.
     pub(crate) fn fits(&self, here: &AnySurroundings<'_, f32>) -> bool {
         self.0.fits(here)
+    }
+
+    /// The bodies that it moves.
+    pub(crate) fn motion(&self) -> Motion {
+        let plane = AnySurroundings::InPlane(InPlane { max_speed_mps: 0.0, obstacles: &[] });
+        if self.fits(&plane) { Motion::Velocities } else { Motion::Cells }
+    }
+
+    /// The goals that it takes, as its answers to orders show.
+    pub(crate) fn goals(&self) -> Goals {
+        let first = WaypointOrder::first(Waypoint::fixed(Position::ORIGIN));
+        let takes = |order: &AnyOrder| self.clone().0.order(order);
+        if takes(&AnyOrder::Grid(GridOrder::Goal(Cell::new(1, 1)))) {
+            Goals::Cell
+        } else if takes(&AnyOrder::Waypoint(first)) {
+            Goals::Waypoints
+        } else {
+            Goals::None
+        }
+    }
+
+    /// Calls `visit` with each of its tables.
+    pub(crate) fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        self.0.parameters(visit);
+    }
+
+    /// The first row of a table whose values do not go together.
+    pub(crate) fn contradiction(&mut self) -> Option<&'static str> {
+        let mut wrong = None;
+        self.tables(&mut |table| {
+            if !table.is_sound() {
+                wrong = wrong.or_else(|| table.table().first().map(|row| row.name));
+            }
+        });
+        wrong
     }
 }
 

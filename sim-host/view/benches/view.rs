@@ -52,7 +52,7 @@ fn scenario(robots: u32) -> Result<Scenario, Box<dyn Error>> {
     let side_m = f64::from(robots).sqrt() * 1.5;
     let text = format!(
         "name = \"pictures\"\nseed = 1\nticks = 10\ntick_s = 0.1\n[radio]\nrange_m = 5\n[plane]\nradius_m = 0.2\n\
-         max_speed_mps = 1\nguidance = \"goal_flock\"\nsafety = \"orca\"\n[plane.robots.cloud]\ncount = {robots}\n\
+         max_speed_mps = 1\nlaw = \"goal_flock\"\nsafety = \"orca\"\n[plane.robots.cloud]\ncount = {robots}\n\
          from_m = [0, 0]\nto_m = [{side_m:.1}, {side_m:.1}]\ngoals_m = [[{side_m:.1}, 0]]\n[plane.goal_flock]\nmin_distance_m = 0.6\n"
     );
     Ok(Scenario::parse(&text, Path::new("pictures.toml"), &Overrides::default())?)

@@ -27,7 +27,7 @@ const PARTS: [&str; 20] = [
     "[plane]\n",
     "[[fault]]\n",
     "loss = 2\n",
-    "guidance",
+    "law",
     "radius_m",
     "\u{e9}",
 ];

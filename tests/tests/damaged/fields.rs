@@ -31,10 +31,31 @@ drift = { share = 0.5, step = 1, classes = 4 }
 class = 2
 polygon_m = [[12, 9], [16, 9], [16, 12]]
 [grid]
+radius = 8
 norm = "chebyshev"
 corner_cutting = true
 moves = 8
 simultaneous = false
+law = "formation"
+[grid.formation]
+exit = "best"
+replan = "each_cell"
+a0 = 1
+a1 = 1.5
+a2 = 1
+a3 = 1
+halved_per_ticks = 2
+eps_cells = 2
+place_gain = 3
+halt_cells = 2
+resume_cells = 1
+lead_cells = 2
+footprint = 1
+patience = 9
+waits = true
+closes_ranks = true
+prediction = "reflexive"
+recovery = "def"
 [radio]
 format = "postcard"
 range_m = 40.5
@@ -56,27 +77,7 @@ loss = 0.95
 at_s = 1
 for_s = 2.5
 [robots]
-formation = { rows = 2, columns = 2, spacing = [2, 2], start = [1, 1], goal = [7, 2] }
-[route]
-radius = 8
-exit = "best"
-a0 = 1
-a1 = 1.5
-a2 = 1
-a3 = 1
-halved_per_ticks = 2
-[formation]
-law = "staya"
-rho = 3
-eps = 2
-gain = 3
-halt_cells = 2
-resume_cells = 1
-lead = 2
-footprint = 1
-closes_ranks = true
-prediction = "reflexive"
-recovery = "def"
+formation = { rows = 2, columns = 2, spacing = [2, 2], start = [1, 1], goal = [7, 2], rho = 3 }
 [[fault]]
 robot = 2
 at_s = 3
@@ -139,9 +140,6 @@ seed = 4
 radius = 12
 [robots]
 list = [{ id = 1, start = [1, 1], goal = [9, 1] }, { id = 2, start = [1, 5], goal = [9, 5] }]
-[route]
-radius = 5
-replan = "each_cell"
 [plane]
 radius_m = 0.2
 max_speed_mps = 1
@@ -150,7 +148,8 @@ lag_s = 0.1
 cruise_mps = 0.7
 tolerance_m = 0.1
 sight_m = 5
-guidance = "route"
+law = "route"
+route = { replan = "each_cell" }
 safety = "orca"
 [plane.orca]
 horizon_s = 4
@@ -165,8 +164,8 @@ expects_others = true
 alone_mps = 0.5
 [[plane.group]]
 flock = 3
-guidance = "lattice"
-lattice = { spacing_m = 1, algorithm = 3, c_alpha = 1, c_beta = 1, c_gamma = 1, goal_moves = false, goal_rest_m = 1, takes_turns = true, obstacle_ratio = 0.6 }
+law = "lattice"
+lattice = { spacing_m = 1, algorithm = 3, c1_alpha = 1, c1_beta = 1, c1_gamma = 1, goal_moves = false, goal_rest_m = 1, takes_turns = true, obstacle_ratio = 0.6 }
 [plane.group.robots.cloud]
 count = 3
 from_m = [12, 12]
@@ -176,15 +175,15 @@ velocity_to_mps = [0.5, 0.5]
 goals_m = [[20, 20]]
 goal_velocity_mps = [0.1, 0]
 [[plane.group]]
-guidance = "goal_flock"
-goal_flock = { min_distance_m = 0.6, neighborhood_m = 3, k1 = 1, k2 = 1, k3 = 1, arrival_m = 2 }
+law = "goal_flock"
+goal_flock = { min_distance_m = 0.6, neighborhood_m = 3, k1 = 1, k2 = 1, k3 = 1, tolerance_m = 2 }
 robots = { list = [{ start_m = [20, 3], goal_m = [25, 3] }] }
 [[plane.group]]
-guidance = "boids"
+law = "boids"
 boids = { crowded_m = 1, closest_m = 4, max_turn = 0.1, max_turn_away = 0.1 }
 robots = { list = [{ start_m = [20, 6, 0], velocity_mps = [0.4, 0], max_speed_mps = 0.8, radius_m = 0.3 }] }
 [[plane.group]]
-guidance = "waypoint"
+law = "waypoint"
 safety = "push_out"
 push_out = { min_distance_m = 0.8, model = "radial", single = true }
 robots = { scattered = { count = 2, from_m = [20, 12], to_m = [28, 18], travel_m = 5, spacing_m = 1 } }

@@ -185,15 +185,18 @@ fn numbers_out_of_range_are_errors_with_a_remedy() {
     for (arguments, expected) in [
         (&["route", "--set", "obstacles=99999999"][..], "obstacles"),
         (&["route", "--set", "terrain.natural.width=65535"], "each side must be"),
-        (&["route", "--set", "route.radius=0"], "route.radius"),
+        (&["route", "--set", "grid.radius=0"], "grid.radius"),
         (&["route", "--seeds", "1000000"], "more than a million runs"),
         (&["boids", "--set", "boids=0"], "study.boids: 0 is out of range"),
         (&["movingai", "--set", "study.visits=5"], "give 16, 64, 256 or 1024"),
         (&["flock", "--set", "study.knows=none"], "unknown value `none`"),
         (&["goals-tuned", "--set", "study.particles=1"], "study.particles: 1 is out of range"),
         (&["formation", "--set", "radio.loss=-1"], "radio.loss: -1 is not a probability"),
-        (&["formation", "--set", "formation.rho=0"], "formation.rho: with rho = 0 no robot knows its neighbours"),
-        (&["formation", "--set", "formation.halt_cells=-1"], "formation.halt_cells: -1"),
+        (
+            &["formation", "--set", "robots.formation.rho=0"],
+            "robots.formation.rho: with rho = 0 no robot knows its neighbours",
+        ),
+        (&["formation", "--set", "grid.formation.halt_cells=-1"], "grid.formation.halt_cells: -1"),
     ] {
         let refused = refusal(&[&["experiment"], arguments].concat());
         assert!(refused.contains(expected), "{refused}");

@@ -7,7 +7,7 @@ use crate::law::Law;
 use crate::memory::{answers, plain};
 use crate::setup::StayaSetup;
 use crate::status::{Checked, StayaStatus};
-use staya_controller::agent::{BoidsGuidance, BoidsSetup, GoalFlockGuidance, LatticeGuidance};
+use staya_controller::agent::{BoidsGuidance, BoidsSettings, GoalFlockGuidance, LatticeGuidance};
 use staya_controller::boids::BoidsParams;
 use staya_controller::goal_flock::GoalParams;
 use staya_controller::lattice::{Gain, LatticeParams};
@@ -153,14 +153,14 @@ impl StayaGoalFlock {
 
 impl StayaBoids {
     pub(crate) fn defaults(unit_m: f32) -> Self {
-        let BoidsSetup { crowded_m, closest_m, max_turn: max_turn_rad, max_turn_away: max_turn_away_rad } =
-            BoidsSetup::PAPER;
+        let BoidsSettings { crowded_m, closest_m, max_turn: max_turn_rad, max_turn_away: max_turn_away_rad, .. } =
+            BoidsSettings::default();
         Self { crowded_m: crowded_m * unit_m, closest_m: closest_m * unit_m, max_turn_rad, max_turn_away_rad }
     }
 
     pub(crate) fn params(&self) -> BoidsParams<Number> {
         let Self { crowded_m, closest_m, max_turn_rad: max_turn, max_turn_away_rad: max_turn_away } = *self;
-        BoidsSetup { crowded_m, closest_m, max_turn, max_turn_away }.params()
+        BoidsParams::new(cast(crowded_m), cast(closest_m), cast(max_turn), cast(max_turn_away))
     }
 }
 

@@ -1,41 +1,38 @@
 //! Tests of agents that are created from data.
 
 use super::super::*;
-use crate::formation::FormationParams;
 use crate::geom::{Position, Vec3};
 use crate::goal_flock::GoalParams;
-use crate::lattice::{LatticeParams, ReferenceMotion};
 use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::push_out::PushOutParams;
 use crate::robot::RobotId;
-use crate::route::{Replan, RouteParams};
 use crate::scalar::{Q16, Scalar};
-use crate::shuffle::Sharpness;
 use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, Format, Header, Message, encode};
 use heapless::Vec;
 
 const TICK: Duration = Duration::from_millis(50);
 
-fn guidances() -> [GuidanceSetup; 7] {
-    let route = RouteSetup { params: RouteParams::default(), replan: Replan::EachCell, sharpness: Sharpness::Greedy };
+fn laws() -> [LawSettings; 7] {
+    let route = RouteSettings::default();
+    let lattice = LatticeSettings::default();
     [
-        GuidanceSetup::Waypoint { speed_mps: 0.5, tolerance_m: 0.01 },
-        GuidanceSetup::Lattice { params: LatticeParams::new(1.0), motion: ReferenceMotion::Dynamic },
-        GuidanceSetup::Lattice { params: LatticeParams::new(1.0), motion: ReferenceMotion::Resting(7.0) },
-        GuidanceSetup::GoalFlock { params: GoalParams::new(0.5, 0.5), arrival_m: 0.3, seed: 9 },
-        GuidanceSetup::Boids {
-            params: BoidsSetup { crowded_m: 0.3, closest_m: 1.5, ..BoidsSetup::PAPER },
+        LawSettings::Waypoint(WaypointSettings { speed_mps: 0.5, tolerance_m: 0.01 }),
+        LawSettings::Lattice(lattice),
+        LawSettings::Lattice(LatticeSettings { goal_moves: false, goal_rest_m: 7.0, ..lattice }),
+        LawSettings::GoalFlock(GoalFlockSettings { params: GoalParams::new(0.5, 0.5), arrival_m: 0.3, seed: 9 }),
+        LawSettings::Boids(BoidsSettings {
+            crowded_m: 0.3,
+            closest_m: 1.5,
             speed_mps: 0.5,
-        },
-        GuidanceSetup::Route { route, speed_mps: None },
-        GuidanceSetup::Formation {
-            route,
-            formation: FormationParams::default(),
-            template: crate::template::Template::default(),
-            speed_mps: Some(0.4),
-        },
+            ..BoidsSettings::default()
+        }),
+        LawSettings::Route(route),
+        LawSettings::Formation(FormationSettings {
+            route: RouteSettings { speed_mps: Some(0.4), ..route },
+            ..FormationSettings::default()
+        }),
     ]
 }
 
@@ -50,10 +47,10 @@ fn safeties() -> [SafetySetup; 4] {
 }
 
 fn setups() -> impl Iterator<Item = Setup> {
-    guidances().into_iter().flat_map(|guidance| {
+    laws().into_iter().flat_map(|law| {
         safeties().into_iter().map(move |safety| Setup {
             agent: AgentConfig { seed: 7, ..AgentConfig::new(RobotId(3), 0.0, TICK) },
-            guidance: guidance.clone(),
+            law: law.clone(),
             safety,
             format: Format::Postcard,
         })
@@ -64,9 +61,9 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
     let agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, 0>();
     let mut agent = agent.unwrap();
     let place = Waypoint::fixed(Position::from_mm([4000, 1000, 0]));
-    let task = match setup.guidance {
-        GuidanceSetup::Route { .. } | GuidanceSetup::Formation { .. } => Task::Cell(Cell::new(9, 5)),
-        GuidanceSetup::Boids { .. } => Task::Waypoints(Vec::new()),
+    let task = match setup.law {
+        LawSettings::Route(_) | LawSettings::Formation(_) => Task::Cell(Cell::new(9, 5)),
+        LawSettings::Boids(_) => Task::Waypoints(Vec::new()),
         _ => Task::Waypoints(Vec::from_array([(0, place)])),
     };
     agent.assign(&task).unwrap();
@@ -93,8 +90,8 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
                 position: Position::from_mm([step as i32 * 10, 0, 0]),
                 velocity_mps: Vec3::new(S::from_ratio(1, 5), S::ZERO, S::ZERO),
             },
-            surroundings: match setup.guidance {
-                GuidanceSetup::Route { .. } => AnySurroundings::OnGrid(grid),
+            surroundings: match setup.law {
+                LawSettings::Route(_) => AnySurroundings::OnGrid(grid),
                 _ => AnySurroundings::InCells(InCells {
                     grid,
                     plane: InPlane { max_speed_mps: S::ONE, obstacles: &[] },
@@ -110,14 +107,18 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
 }
 
 #[test]
-fn each_law_takes_either_a_cell_or_a_waypoint() {
-    let takes = guidances().map(|setup| {
-        let mut law: AnyLaw<f32, CELLS, VISITS, TEMPLATE> = setup.law(());
+fn each_law_takes_the_goals_that_its_settings_name() {
+    for settings in laws() {
+        let mut law: AnyLaw<f32, CELLS, VISITS, TEMPLATE> = settings.law(());
         let waypoint = WaypointOrder::first(Waypoint::fixed(crate::geom::Position::ORIGIN));
-        [AnyOrder::Grid(GridOrder::Goal(Cell::new(3, 4))), AnyOrder::Waypoint(waypoint)].map(|order| law.order(&order))
-    });
-    let (waypoint, none, cell) = ([false, true], [false, false], [true, false]);
-    assert_eq!(takes, [waypoint, waypoint, waypoint, waypoint, none, cell, cell]);
+        let orders = [AnyOrder::Grid(GridOrder::Goal(Cell::new(3, 4))), AnyOrder::Waypoint(waypoint)];
+        let expected = match settings.goals() {
+            Goals::None => [false, false],
+            Goals::Cell => [true, false],
+            Goals::Waypoints | Goals::Shared(_) => [false, true],
+        };
+        assert_eq!(orders.map(|order| law.order(&order)), expected, "{}", settings.name());
+    }
 }
 
 #[test]
@@ -171,11 +172,6 @@ fn a_format_that_the_wire_type_lacks_is_refused() {
 
 #[test]
 fn cells_returns_the_size_of_the_search() {
-    let cells = |guidance: &GuidanceSetup| {
-        let setup = Setup { guidance: guidance.clone(), ..setups().next().unwrap() };
-        setup.cells()
-    };
-    let [waypoint, _, _, _, _, route, formation] = guidances();
-    assert_eq!(cells(&waypoint), 0);
-    assert_eq!((cells(&route), cells(&formation)), (CELLS, CELLS));
+    let [waypoint, _, _, _, _, route, formation] = laws();
+    assert_eq!([waypoint, route, formation].map(|law| law.cells()), [0, CELLS, CELLS]);
 }

@@ -18,12 +18,16 @@
 
 #[cfg(feature = "agent")]
 mod law;
+#[cfg(feature = "agent")]
+mod settings;
 
 #[cfg(all(test, feature = "micromath"))]
 mod tests;
 
 #[cfg(feature = "agent")]
 pub use law::BoidsGuidance;
+#[cfg(feature = "agent")]
+pub use settings::BoidsSettings;
 
 use crate::geom::Vec2;
 use crate::neighbor::{Nearby, tie};
@@ -70,6 +74,14 @@ impl<S: Scalar> Turn<S> {
     }
 }
 
+const CROWDED: Parameter =
+    row("crowded_m", "BOID_CROWDED_M", "m", [0.0, 1000.0], "nearer than this a boid turns away").needed();
+const CLOSEST: Parameter =
+    row("closest_m", "BOID_CLOSEST_M", "m", [0.0, 10_000.0], "largest distance of a neighbour that counts").needed();
+const TURN: Parameter = row("max_turn", "BOID_TURN", "rad", [0.0, 3.15], "largest turn towards the others in a step");
+const TURN_AWAY: Parameter =
+    row("max_turn_away", "BOID_TURN_AWAY", "rad", [0.0, 3.15], "largest turn away from a too near boid in a step");
+
 /// Parameters of boids, with values that [`BoidsParams::new`] precomputes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -108,12 +120,7 @@ impl<S: Scalar> BoidsParams<S> {
     }
 
     /// Parameters that may change while a robot runs.
-    pub const TABLE: &'static [Parameter] = &[
-        row("crowded_m", "BOID_CROWDED_M", "m", [0.0, 1000.0], "nearer than this a boid turns away"),
-        row("closest_m", "BOID_CLOSEST_M", "m", [0.0, 10_000.0], "largest distance of a neighbour that counts"),
-        row("max_turn", "BOID_TURN", "rad", [0.0, 3.15], "largest turn towards the others in a step"),
-        row("max_turn_away", "BOID_TURN_AWAY", "rad", [0.0, 3.15], "largest turn away from a too near boid in a step"),
-    ];
+    pub const TABLE: &'static [Parameter] = &[CROWDED, CLOSEST, TURN, TURN_AWAY];
 
     /// The paper's values, at a scale of `unit_m` metres: 30, 150, 0.05, 0.02.
     #[must_use]
@@ -198,7 +205,7 @@ impl<S: Scalar> Parameters for BoidsParams<S> {
         self.values.get(index).map(|value| value.number())
     }
 
-    fn store(&mut self, index: usize, value: f32) -> bool {
+    fn store(&mut self, index: usize, value: f32, _: bool) -> bool {
         if let Some(slot) = self.values.get_mut(index) {
             *slot = S::nearest(value);
         }

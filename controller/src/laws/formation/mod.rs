@@ -36,6 +36,8 @@ mod lookahead;
 mod measure;
 mod neighbors;
 mod places;
+#[cfg(feature = "agent")]
+mod settings;
 mod steering;
 
 #[cfg(test)]
@@ -50,6 +52,8 @@ pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 #[cfg(feature = "agent")]
 pub(crate) use places::scaled;
 pub use places::{Drive, behind, is_straight};
+#[cfg(feature = "agent")]
+pub use settings::FormationSettings;
 pub use steering::{Anchor, Footprint, PaceControl, aim, blended, def, deviation, distances, lag, should_stay};
 
 use crate::cost::Gain;
@@ -142,10 +146,10 @@ crate::parameters! {
         row("halt_cells", "FORM_HALT", "cells", [0.0, 937.0], "lag of a robot at which the leader waits")
             => halt_lag / UNIT as f32,
         row("resume_cells", "FORM_RESUME", "cells", [0.0, 937.0], "lag at which the waiting leader continues")
-            => resume_lag / UNIT as f32,
+            .depends("that of the law, at most `halt_cells`") => resume_lag / UNIT as f32,
         row("lead_cells", "FORM_LEAD", "cells", [0.0, 255.0], "how far ahead of the leader the others aim") => lead,
-        row("footprint", "FORM_FOOTPRINT", "/16", [0.0, 16.0], "share of the others' land in the leader's price")
-            => footprint,
+        row("footprint", "FORM_FOOTPRINT", "", [0.0, 1.0], "share of the others' land in the leader's price")
+            => footprint / 16.0,
         row("patience", "FORM_PATIENCE", "decisions", [0.0, 30_000.0], "how long to wait before each robot continues alone")
             => patience,
     }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub const GOALS: usize = WAYPOINTS;
 
 crate::parameters! {
-    impl[S: Scalar] GoalFlockGuidance<S> { TOLERANCE => arrival_m }
+    impl[S: Scalar] GoalFlockGuidance<S> { TOLERANCE.depends("`neighborhood_m`") => arrival_m }
 }
 
 /// The goal flock (V. E. and V. V. Pavlovsky, PAV): moves to the centre of the goals together, then

@@ -13,12 +13,16 @@
 
 #[cfg(feature = "agent")]
 mod law;
+#[cfg(feature = "agent")]
+mod settings;
 
 #[cfg(all(test, feature = "micromath"))]
 mod tests;
 
 #[cfg(feature = "agent")]
 pub use law::{GOALS, GoalFlockGuidance};
+#[cfg(feature = "agent")]
+pub use settings::GoalFlockSettings;
 
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
@@ -95,7 +99,7 @@ crate::parameters! {
         SPEED => speed_mps,
         MIN_DISTANCE => min_distance_m,
         row("neighborhood_m", "GOAL_NBH_M", "m", [0.002, 10_000.0], "largest distance of a neighbour that counts")
-            => neighborhood_m,
+            .depends("4 `min_distance_m`") => neighborhood_m,
         row("k1", "GOAL_K1", "", [-1000.0, 1000.0], "pull of the goal (K1)") => goal_gain,
         row("k2", "GOAL_K2", "", [-1000.0, 1000.0], "pull of the middle of the neighbours (K2)") => center_gain,
         row("k3", "GOAL_K3", "", [-1000.0, 1000.0], "push of neighbours that are too near (K3)") => repulsion_gain,

@@ -38,12 +38,16 @@
 #[cfg(feature = "agent")]
 mod law;
 mod reference;
+#[cfg(feature = "agent")]
+mod settings;
 
 #[cfg(all(test, feature = "micromath"))]
 mod tests;
 
 #[cfg(feature = "agent")]
 pub use law::LatticeGuidance;
+#[cfg(feature = "agent")]
+pub use settings::{GAMMA_OF_TWO, LatticeSettings};
 
 use crate::body::Body;
 use crate::flock::action::{PhiAlpha, PhiBeta, SPACING, SigmaNorm, sigma_1, sigma_norm, sigmoid_shift};
@@ -220,19 +224,24 @@ impl<S: Scalar> LatticeParams<S> {
 
 crate::parameters! {
     impl[S: Scalar] LatticeParams<S>, where is_sound {
-        row("spacing_m", "LAT_SPACING_M", "m", [0.01, 100.0], "distance of neighbours in the lattice (d)") => spacing_m,
+        row("spacing_m", "LAT_SPACING_M", "m", [0.01, 100.0], "distance of neighbours in the lattice (d)")
+            .needed() => spacing_m,
         row("range_ratio", "LAT_RANGE", "", [1.001, 4.0], "range of interaction over spacing") => range_ratio,
         row("obstacle_ratio", "LAT_OBSTACLE", "", [0.001, 4.0], "distance from obstacles over spacing")
             => obstacle_ratio,
         row("attraction", "LAT_A", "", [0.001, 1000.0], "bound of the attraction (a)") => attraction,
         row("repulsion", "LAT_B", "", [0.001, 1000.0], "bound of the repulsion (b), not less than a") => repulsion,
-        row("c1_alpha", "LAT_C1_ALPHA", "1/s^2", [0.0, 1000.0], "robots among each other, on places") => alpha.position,
+        row("c1_alpha", "LAT_C1_ALPHA", "1/s^2", [0.0, 1000.0], "robots among each other, on places")
+            .depends("stable with the delay of the radio") => alpha.position,
         row("c2_alpha", "LAT_C2_ALPHA", "1/s", [0.0, 1000.0], "robots among each other, on velocities")
-            => alpha.velocity,
+            .depends("2 sqrt(`c1_alpha`)") => alpha.velocity,
         row("c1_beta", "LAT_C1_BETA", "1/s^2", [0.0, 10_000.0], "obstacles, on places") => beta.position,
-        row("c2_beta", "LAT_C2_BETA", "1/s", [0.0, 1000.0], "obstacles, on velocities") => beta.velocity,
-        row("c1_gamma", "LAT_C1_GAMMA", "1/s^2", [0.0, 1000.0], "the reference, on places") => gamma.position,
-        row("c2_gamma", "LAT_C2_GAMMA", "1/s", [0.0, 1000.0], "the reference, on velocities") => gamma.velocity,
+        row("c2_beta", "LAT_C2_BETA", "1/s", [0.0, 1000.0], "obstacles, on velocities")
+            .depends("2 sqrt(`c1_beta`)") => beta.velocity,
+        row("c1_gamma", "LAT_C1_GAMMA", "1/s^2", [0.0, 1000.0], "the reference, on places")
+            .depends("stable with the delay of the radio") => gamma.position,
+        row("c2_gamma", "LAT_C2_GAMMA", "1/s", [0.0, 1000.0], "the reference, on velocities")
+            .depends("2 sqrt(`c1_gamma`)") => gamma.velocity,
     }
 }
 

@@ -17,6 +17,8 @@ mod known;
 mod law;
 mod learned;
 mod router;
+#[cfg(feature = "agent")]
+mod settings;
 mod visits;
 
 #[cfg(test)]
@@ -30,6 +32,8 @@ pub use known::{LandMemory, SUPPOSED_CLOSED, supposed};
 pub use law::RouteGuidance;
 pub use learned::LearnedCosts;
 pub use router::{PLAN, Replan, Router};
+#[cfg(feature = "agent")]
+pub use settings::RouteSettings;
 pub use visits::VisitMemory;
 
 use crate::cost::Gain;
@@ -82,8 +86,8 @@ impl Default for RouteParams {
     /// r = 5, best exit, Euclidean, no corner cutting, a = (1, 2, 3, 3).
     ///
     /// On random natural land a3 = 3 loses almost the least time against the optimum
-    /// (`staya experiment route --axis route.a3=1,2,3`); a1 and a2 hardly matter there unless they
-    /// are 0.
+    /// (`staya experiment route --axis grid.route.a3=1,2,3`); a1 and a2 hardly matter there unless
+    /// they are 0.
     fn default() -> Self {
         Self {
             radius: 5,

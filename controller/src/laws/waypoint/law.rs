@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 crate::parameters! {
-    impl[S: Scalar] WaypointGuidance<S> { SPEED => speed_mps, TOLERANCE => tolerance_m }
+    impl[S: Scalar] WaypointGuidance<S> { SPEED => speed_mps, TOLERANCE.of_body("tolerance_m") => tolerance_m }
 }
 
 /// Within this distance, in own radii, an intermediate waypoint is passed, even if it is occupied.

@@ -4,7 +4,9 @@ mod goal_occupancy;
 mod law;
 mod make_way;
 mod protocol;
+mod settings;
 
 pub(crate) use goal_occupancy::{Claim, GoalOccupancy};
 pub use law::WaypointGuidance;
 pub use protocol::{WAYPOINTS, Waypoint, WaypointOrder, Waypoints};
+pub use settings::WaypointSettings;

@@ -36,7 +36,7 @@ fn thousand_steps<B: Controller + Default>(
     let mut moved = false;
     for tick in 0..1000 {
         let scene = world.scene(tick);
-        let plane = matches!(setup.guidance, GuidanceSetup::Waypoint { .. });
+        let plane = matches!(setup.law, LawSettings::Waypoint(_));
         let inputs = scene.inputs(&world, plane);
         let capacities = Large::new().capacities();
         let capacities = crate::capacities::Capacities { inbox_bytes: 1024, ..capacities };

@@ -8,7 +8,6 @@ use heapless::Vec;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use staya_controller::agent::*;
-use staya_controller::formation::FormationParams;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::obstacle::Obstacle;
@@ -106,19 +105,18 @@ fn longest_setup_fits() {
         *span = LATE;
     }
     let (routing, _) = super::on_grid(u8::MAX);
-    let GuidanceSetup::Route { route, .. } = routing.guidance else {
+    let LawSettings::Route(route) = routing.law else {
         panic!("a route");
     };
     let entry = TemplateEntry { offset: FAR, id: HIGH, hops: u8::MAX };
     let entries: Vec<_, TEMPLATE> = core::iter::repeat_n(entry, TEMPLATE).collect();
     let setup = Setup {
         agent,
-        guidance: GuidanceSetup::Formation {
-            route,
-            formation: FormationParams::default(),
+        law: LawSettings::Formation(FormationSettings {
+            route: RouteSettings { speed_mps: Some(1.0), ..route },
             template: template(entries),
-            speed_mps: Some(1.0),
-        },
+            ..FormationSettings::default()
+        }),
         safety: super::in_plane().safety,
         format: Format::Mavlink,
     };

@@ -1,8 +1,9 @@
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use staya_controller::agent::{
-    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, Grid, GridPayload, GuidanceSetup, InPlane,
-    Inputs, KinematicState, OnGrid, Protocol as _, RouteSetup, SafetySetup, Setup, Task, Waypoint,
+    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, Grid, GridPayload, InPlane, Inputs,
+    KinematicState, LawSettings, OnGrid, Protocol as _, RouteSettings, SafetySetup, Setup, Task, Waypoint,
+    WaypointSettings,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -10,8 +11,6 @@ use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::{Mode, RobotId};
-use staya_controller::route::{Replan, RouteParams};
-use staya_controller::shuffle::Sharpness;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Content as _, Format, Header, Message, Wire};
 use staya_link::robot::Controller;
@@ -29,24 +28,22 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
         ..AgentConfig::new(RobotId(robot), 0.25, Duration::from_millis(100))
     };
     let waypoint = Waypoint::fixed(Position::from_mm([30_000, 500, 0]));
-    let (guidance, safety, task) = if robot.is_multiple_of(2) {
-        let route =
-            RouteSetup { params: RouteParams::default(), replan: Replan::EachCell, sharpness: Sharpness::Greedy };
-        let guidance = GuidanceSetup::Route { route, speed_mps: None };
-        (guidance, SafetySetup::None, Task::Cell(Cell::new(90, 40)))
+    let (law, safety, task) = if robot.is_multiple_of(2) {
+        let law = LawSettings::Route(RouteSettings::default());
+        (law, SafetySetup::None, Task::Cell(Cell::new(90, 40)))
     } else {
-        let guidance = GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.05 };
+        let law = LawSettings::Waypoint(WaypointSettings { speed_mps: 1.0, tolerance_m: 0.05 });
         let safety = SafetySetup::Orca {
             params: AvoidParams::default(),
             inflation: StalenessInflation { growth_mps: 0.5, max_m: 0.25 },
             source: AnyHalfPlanes::Analytic,
         };
         let waypoints = [(0, waypoint)].into_iter().collect();
-        (guidance, safety, Task::Waypoints(waypoints))
+        (law, safety, Task::Waypoints(waypoints))
     };
     DeviceConfig {
         device: device.to_owned(),
-        setup: Setup { agent, guidance, safety, format: Format::Postcard },
+        setup: Setup { agent, law, safety, format: Format::Postcard },
         task: Some(task),
         law: Vec::new(),
         faults: LineFaults::default(),

@@ -23,7 +23,7 @@ impl Probe for Alone {
         let mut alone = scenario.clone();
         alone.formations.clear();
         alone.laws.maps = None;
-        alone.laws.route.sharpness = Sharpness::Greedy;
+        alone.change_routes(|route| route.sharpness = Sharpness::Greedy);
         alone.radio = RadioParams { range_m: scenario.radio.range_m, ..RadioParams::default() };
         let other = simulate(&alone, |_, _| ControlFlow::Continue(())).ok();
         let ratio = last(outcome).zip(other.as_ref().and_then(last)).map(|(own, other)| own as f64 / other as f64);

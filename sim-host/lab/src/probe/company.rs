@@ -8,7 +8,7 @@
 //! without any K2, and a larger K2 draws them into clumps.
 
 use super::{Kind, Probe};
-use staya_controller::agent::{GOALS, GuidanceSetup};
+use staya_controller::agent::{GOALS, GoalFlockSettings, LawSettings};
 use staya_sim::engine::{Moment, Outcome};
 use staya_sim::metrics::flock::{FlockMeter, polarisation};
 use staya_sim::nearby::Space;
@@ -65,7 +65,10 @@ struct State {
 impl State {
     fn new(scenario: &Scenario) -> Option<Self> {
         let plane = scenario.plane()?;
-        let GuidanceSetup::GoalFlock { params, arrival_m, .. } = &plane.group(0).guidance else { return None };
+        let Some(LawSettings::GoalFlock(GoalFlockSettings { params, arrival_m, .. })) = plane.group(0).law.built_in()
+        else {
+            return None;
+        };
         let unit_m = f64::from(params.min_distance_m);
         Some(Self {
             arrival_m: f64::from(*arrival_m),

@@ -1,7 +1,7 @@
 //! Measures of an alpha flock (R. Olfati-Saber 2006, OLF, sections VII and VIII).
 
 use super::{Kind, Probe};
-use staya_controller::agent::GuidanceSetup;
+use staya_controller::agent::LawSettings;
 use staya_plot::{Chart, Panels, Series};
 use staya_sim::engine::{Moment, Outcome};
 use staya_sim::metrics::flock::{AlphaLimits, EnergyMeter, FlockMeasure, FlockMeter, alpha_flocking, gaps};
@@ -60,7 +60,8 @@ struct State {
 
 impl State {
     fn new(scenario: &Scenario, plane: &PlaneSetup) -> Option<Self> {
-        let GuidanceSetup::Lattice { params, .. } = &plane.group(0).guidance else { return None };
+        let Some(LawSettings::Lattice(lattice)) = plane.group(0).law.built_in() else { return None };
+        let params = &lattice.params;
         let robots = scenario.robots.len();
         let spacing_m = f64::from(params.spacing_m);
         let is_flat = plane.starts.iter().all(|start| start.position_m[2] == 0.0);

@@ -32,8 +32,7 @@ impl Probe for Least {
             let land = (&scenario.land.terrain, &scenario.land.changes[..], scenario.seed);
             let ends = [robot.start, robot.goal];
             // The least travel time is at most that of the robot.
-            let least =
-                Foresight::default().least_cost(land, ends, scenario.laws.route.params.norm, time).unwrap_or(time);
+            let least = Foresight::default().least_cost(land, ends, scenario.route().params.norm, time).unwrap_or(time);
             100.0 * (time as f64 / least.max(1) as f64 - 1.0)
         });
         vec![loss]

@@ -24,7 +24,7 @@ impl Probe for Optimum {
         let mut planner = Planner::default();
         let loss = |(robot, time): (&Robot, &Option<u64>)| {
             let since = time.as_ref()?.saturating_sub(u64::from(departure(scenario, robot)) * u64::from(UNIT));
-            let RouteParams { norm, corner_cutting, .. } = scenario.laws.route.params;
+            let RouteParams { norm, corner_cutting, .. } = scenario.route().params;
             let route = planner.route(&scenario.land.terrain, robot.start, robot.goal, norm, corner_cutting)?;
             (route.cost > 0).then(|| 100.0 * (since as f64 / route.cost as f64 - 1.0))
         };

@@ -11,7 +11,7 @@ use crate::error::SweepError;
 use crate::measure::{Job, draw, measure};
 use crate::probe;
 use crowd::Crowd;
-use staya_controller::agent::{GOALS, GuidanceSetup};
+use staya_controller::agent::GOALS;
 use staya_controller::rand::Rng;
 use staya_sim::engine::{self, Outcome};
 use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
@@ -119,10 +119,6 @@ table! {
         pub nearest: usize = usize::MAX;
         /// Speed limit of alpha flocks with exact knowledge; the paper has none.
         pub fastest_mps: f64 = f64::MAX;
-        /// Gain c2 of alpha flocks for neighbours, instead of 2 sqrt(c1).
-        pub c2_alpha: Option<f32>;
-        /// Gain c2 of alpha flocks for the reference, instead of 2 sqrt(c1).
-        pub c2_gamma: Option<f32>;
         /// Standard deviation of starts along each axis, instead of the scenario's starts.
         pub deviation_m: [f64; 3] = [0.0; 3];
         /// Starts instead of the scenario's.
@@ -212,10 +208,6 @@ impl Run {
             let target = |&(position_m, _): &([f64; 3], f64)| Target { position_m, velocity_mps };
             let targets: Vec<Target> = goals.iter().map(target).collect();
             plane.starts.iter_mut().for_each(|start| start.places.clone_from(&targets));
-        }
-        if let GuidanceSetup::Lattice { params, .. } = &mut plane.general.guidance {
-            params.alpha.velocity = parameters.c2_alpha.unwrap_or(params.alpha.velocity);
-            params.gamma.velocity = parameters.c2_gamma.unwrap_or(params.gamma.velocity);
         }
         let run = Self { scenario, parameters };
         if run.parameters.knows == Knowledge::All

@@ -102,7 +102,8 @@ impl Trip {
             let what = "the scenario is not about one robot on the grid";
             return Err(given.error("radius", what, "name one whose robots.list has one element"));
         }
-        let radius = radius.unwrap_or(scenario.laws.route.params.radius);
+        let route = scenario.route();
+        let radius = radius.unwrap_or(route.params.radius);
         if !(1..=MAX_RADIUS).contains(&radius) {
             let what = format!("a window of radius {radius} is out of range");
             return Err(given.error("radius", what, format!("give 1 to {MAX_RADIUS} cells")));
@@ -112,7 +113,7 @@ impl Trip {
             let what = format!("{parked} parked robots on {cells} cells");
             return Err(given.error("parked", what, "take at most half of the cells"));
         }
-        let params = RouteParams { radius, ..scenario.laws.route.params };
+        let params = RouteParams { radius, ..route.params };
         let parked = park(&scenario, parked, given.seed);
         Ok(Self { scenario, params, parked, maker })
     }
@@ -121,8 +122,8 @@ impl Trip {
         let Self { scenario, params, parked, maker } = self;
         let (land, from, to) = (&scenario.land.terrain, scenario.robots[0].start, scenario.robots[0].goal);
         let mut walker = maker();
-        let order = (scenario.laws.route.sharpness, &mut Rng::keyed(scenario.seed, MOVES, 0, 0));
-        let walk = walker.walk(&Task { land, parked, from, to }, params, scenario.laws.route.replan, order);
+        let order = (scenario.route().sharpness, &mut Rng::keyed(scenario.seed, MOVES, 0, 0));
+        let walk = walker.walk(&Task { land, parked, from, to }, params, scenario.route().replan, order);
         (walk, walker, optimal::route(land, from, to, params.norm, params.corner_cutting))
     }
 

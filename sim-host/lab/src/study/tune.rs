@@ -17,7 +17,7 @@ use argmin::solver::particleswarm::ParticleSwarm;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng as _;
 use rayon::prelude::*;
-use staya_controller::agent::GuidanceSetup;
+use staya_controller::agent::{GoalFlockSettings, LawSettings};
 use staya_sim::scenario::{Field, Scenario, Source};
 use staya_sim::table;
 use std::path::PathBuf;
@@ -179,7 +179,9 @@ impl CostFunction for Cost<'_> {
 /// `None` without a goal flock.
 fn way(scenario: &Scenario) -> Option<(f64, f64, f64)> {
     let plane = scenario.plane()?;
-    let GuidanceSetup::GoalFlock { arrival_m, params, .. } = &plane.general.guidance else { return None };
+    let Some(LawSettings::GoalFlock(GoalFlockSettings { arrival_m, params, .. })) = plane.general.law.built_in() else {
+        return None;
+    };
     let mean =
         |places: &[[f64; 3]], axis: usize| places.iter().map(|place| place[axis]).sum::<f64>() / places.len() as f64;
     let starts: Vec<_> = plane.starts.iter().map(|start| start.position_m).collect();

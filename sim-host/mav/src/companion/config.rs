@@ -6,10 +6,10 @@ use super::offboard::{Entry, Rules};
 use crate::Endpoint;
 use crate::endpoint::EndpointError;
 use crate::geo::{Global, Origin};
-use staya_controller::agent::{GuidanceKind, SafetyKind};
+use staya_controller::agent::{Goals, SafetyKind};
 use staya_controller::robot::RobotId;
 use staya_sim::file::{TEXT, read_text};
-use staya_sim::scenario::{Overrides, PlaneSetup, Scenario, ScenarioError, Source};
+use staya_sim::scenario::{LawSetup, Overrides, PlaneSetup, Scenario, ScenarioError, Source};
 use staya_sim::{defaults, table};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -215,8 +215,11 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         return Err(no_plane(source));
     };
     let tick = format!("its tick of {} s is too long for vehicles", scenario.tick_s());
-    let radius = format!("route.radius {} is too large", scenario.laws.route.params.radius);
-    let faults: [(bool, &str, &str); 7] = [
+    let radius = format!("grid.radius {} is too large", scenario.laws.radius);
+    let added = scenario.laws().find(|law| law.built_in().is_none());
+    let law = format!("companions do not have the law \"{}\"", added.map_or("", LawSetup::name));
+    let faults: [(bool, &str, &str); 8] = [
+        (added.is_some(), &law, "give one of the controller's laws"),
         (scenario.tick_us > 500_000, &tick, "give it tick_s = 0.5 or less; 0.1 is good"),
         (
             !plane.orders.is_empty(),
@@ -231,7 +234,7 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         (plane.torus_m.is_some(), "plane.torus_m is not supported on real vehicles", "remove plane.torus_m"),
         (!scenario.clocks.is_synchronous(), "real vehicles have clocks of their own", "remove [clocks] and phase_s"),
         (scenario.sensing().is_some(), "autopilots report no detections of other vehicles", "remove plane.sensing"),
-        (scenario.laws.route.params.radius > RADIUS, &radius, "give 16 or less"),
+        (scenario.laws.radius > RADIUS, &radius, "give 16 or less"),
     ];
     match faults.into_iter().find(|(is_wrong, ..)| *is_wrong) {
         Some((_, what, remedy)) => Err(source.error("scenario", what, remedy)),
@@ -371,12 +374,10 @@ fn assign_goal(
     let place = origin.to_enu_m(&Global { latitude_deg, longitude_deg, altitude_m: origin.place().altitude_m });
     let [x, y, _] = place.ok_or(["not a position near the origin", "give [latitude, longitude] in degrees"])?;
     let plane = scenario.plane_mut();
-    let target = plane.filter(|plane| plane.group(index).guidance.kind() == GuidanceKind::Waypoint);
+    let target = plane.filter(|plane| plane.group(index).law.goals() == Goals::Waypoints);
     let target = target.and_then(|plane| plane.starts.get_mut(index)?.places.last_mut());
-    let target = target.ok_or([
-        "this robot's guidance in the scenario has no goal to replace",
-        "remove it, or use guidance \"waypoint\"",
-    ])?;
+    let target = target
+        .ok_or(["this robot's law in the scenario has no goal to replace", "remove it, or give law = \"waypoint\""])?;
     target.position_m = [x, y, target.position_m[2]];
     Ok(())
 }

@@ -4,7 +4,7 @@ use staya_controller::agent::{
     Agent, AgentConfig, AnyLaw, AnySafety, Command, GridWorkspace, Guided, HALF_PLANES, LEARNED, NEIGHBORS, Outputs,
     TEMPLATE, VISITS, Wait, Wish,
 };
-use staya_controller::agent::{GuidanceKind, SafetyKind, SafetySetup};
+use staya_controller::agent::{Goals, SafetyKind, SafetySetup};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::parameters::RADIUS;
 use staya_controller::time::Instant;
@@ -38,7 +38,7 @@ pub struct Controller<W> {
     senses: Senses,
     out: Outputs<f32>,
     is_in_space: bool,
-    /// Goal, metres; `None` if the guidance has none.
+    /// Goal, metres; `None` if the law has none.
     pub goal_m: Option<[f64; 3]>,
     radius_m: f64,
     stepped: Option<(Instant, Position, [f64; 3])>,
@@ -55,17 +55,17 @@ impl<W: Wire> Controller<W> {
         let (seed, plausibility) = (scenario.seed, scenario.trust.plausibility);
         let config = AgentConfig { boot, seed, plausibility, is_synchronous, ..config };
         // No operator sends goals here, so speed and tolerance are unused.
-        let law = Guided::new(scenario.guidance(index).law(()), 0.0, 0.0);
+        let law = Guided::new(scenario.law(index).on_device().law(()), 0.0, 0.0);
         let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).safety(), wire));
         // A law that takes no task refuses it; the scenario was validated for that.
         let _ = agent.assign(&task);
         let plane = scenario.plane();
         let group = plane.map(|plane| plane.group(index));
         let places = plane.and_then(|plane| plane.starts.get(index)).map(|start| &start.places);
-        let goal = group.zip(places).and_then(|(group, places)| match group.guidance.kind() {
-            kind if kind.is_on_grid() => None,
-            GuidanceKind::Waypoint => places.last(),
-            _ => places.first(),
+        let goal = group.zip(places).and_then(|(group, places)| match group.law.goals() {
+            Goals::Cell => None,
+            Goals::Waypoints => places.last(),
+            Goals::None | Goals::Shared(_) => places.first(),
         });
         let safety = group.map(|group| group.safety.kind());
         Self {

@@ -149,7 +149,7 @@ const CHANGES: &str = "[scouting]\nradius = 9\nunknown = 0.2\nwrong = 0.2\npatch
 const PLANE_CHANGES: &str = "name = 'plane-on-land'\nseed = 5\nticks = 120\ntick_s = 0.1\n[radio]\nrange_m = 4\n\
     [terrain]\nuniform = { width = 20, height = 12, classes = 2 }\n[[terrain.change]]\nat_s = 2\nfor_s = 4\nclass = 0\n\
     rectangle = { x = 7, y = 0, width = 5, height = 11 }\n[scouting]\nunknown = 0.3\nwrong = 0.2\n\
-    [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = 'route'\n[robots.scattered]\ncount = 30\n";
+    [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nlaw = 'route'\n[robots.scattered]\ncount = 30\n";
 
 #[test]
 fn radio_faults_and_interventions_do_not_depend_on_ranks() {

@@ -2,7 +2,7 @@
 
 use super::{Engine, Senses, Status, Tick};
 use crate::scenario::Scenario;
-use staya_controller::agent::{AnyInputs, Command, GuidanceSetup, OUTBOX, SafetySetup, Setup, Task};
+use staya_controller::agent::{AnyInputs, Command, LawSettings, OUTBOX, SafetySetup, Setup, Task};
 use staya_controller::time::Instant;
 
 /// Controllers outside this process. Robots are numbered as in the scenario. They decide in each
@@ -46,7 +46,7 @@ pub struct Decision {
 pub(super) struct External {
     pub(super) controllers: Box<dyn ExternalController>,
     /// Sorted by index.
-    pub(super) robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
+    pub(super) robots: Vec<(usize, LawSettings, SafetySetup)>,
 }
 
 impl Engine {
@@ -55,7 +55,7 @@ impl Engine {
     pub fn with_external(mut self, scenario: &Scenario, controllers: Box<dyn ExternalController>) -> Self {
         let robots = controllers.robots().into_iter();
         let robots = robots.filter(|&index| index < self.robots.len());
-        let robots = robots.map(|index| (index, scenario.guidance(index), scenario.safety(index)));
+        let robots = robots.map(|index| (index, scenario.law(index).on_device(), scenario.safety(index)));
         let robots: Vec<_> = robots.collect();
         let indices: Vec<_> = robots.iter().map(|&(index, ..)| index).collect();
         self.external = Some(External { controllers, robots });

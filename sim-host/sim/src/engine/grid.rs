@@ -46,7 +46,7 @@ impl Grid {
             numbers: (0..scenario.robots.len() as u32).collect(),
             changed: Changed::new(),
             scouts: scenario.scouts(),
-            radius: scenario.laws.route.params.radius,
+            radius: scenario.laws.radius,
             tick_us: scenario.tick_us,
             world,
         })

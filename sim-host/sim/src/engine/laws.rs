@@ -2,11 +2,11 @@
 
 use super::witness::Witness;
 use crate::own_law::{Own, OwnLaw};
-use crate::scenario::{FormationSetup, NamedLaw, Scenario};
+use crate::scenario::{LawSetup, Scenario};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, AnySafety, AnySurroundings, CellState, FormationGuidance, GridWorkspace, GuidanceSetup, Guided,
-    HALF_PLANES, InCell, InCells, InPlane, LEARNED, MAP_TILES, OnGrid, SharedMap, TEMPLATE, VISITS,
+    AnyLaw, AnySafety, AnySurroundings, CellState, FormationGuidance, GridWorkspace, Guided, HALF_PLANES, InCell,
+    InCells, InPlane, LEARNED, MAP_TILES, OnGrid, SharedMap, TEMPLATE, VISITS,
 };
 use staya_controller::geom::Vec2;
 use staya_controller::laws;
@@ -38,25 +38,19 @@ laws! {
     }
 }
 
-/// Staya's law for a robot, or that of a paper instead of Staya's formation.
-fn law_of(setup: &GuidanceSetup, formation: &FormationSetup, map: Map) -> ScenarioLaw {
-    match (setup, formation) {
-        (GuidanceSetup::Formation { route, template, .. }, FormationSetup::Published(params)) => {
-            let law = PublishedFormation::new(route.params, *params, template.clone());
-            ScenarioLaw::Published(Box::new(law.sharpness(route.sharpness)))
-        }
-        (GuidanceSetup::Formation { route, template, .. }, FormationSetup::Lookahead(params)) => {
-            let law = FormationGuidance::steered(route.params, *params, template.clone(), Course::new(), map);
-            ScenarioLaw::LooksAhead(Box::new(law.sharpness(route.sharpness)))
-        }
-        _ => ScenarioLaw::BuiltIn(setup.law(map)),
+fn law_of(setup: &LawSetup, map: Map) -> ScenarioLaw {
+    match setup {
+        LawSetup::BuiltIn(settings) => ScenarioLaw::BuiltIn(settings.law(map)),
+        LawSetup::Published(settings) => ScenarioLaw::Published(Box::new(settings.law())),
+        LawSetup::Lookahead(settings) => ScenarioLaw::LooksAhead(Box::new(settings.law(map))),
+        LawSetup::Added(law) => ScenarioLaw::Own(law.law()),
     }
 }
 
 /// Returns a function that creates the law and the safety layer of a robot.
 #[must_use]
 pub fn agents(scenario: &Scenario) -> Agents {
-    let kind = |index| (scenario.guidance(index), scenario.safety(index), limits(scenario, index));
+    let kind = |index| (scenario.law(index), scenario.safety(index), limits(scenario, index));
     // Members of formations differ individually, others only by group; each kind is created once.
     let groups = scenario.plane().map_or(0, |plane| plane.groups.len());
     let group_of = |index: usize| match (scenario.formation_of(index), scenario.plane()) {
@@ -72,14 +66,12 @@ pub fn agents(scenario: &Scenario) -> Agents {
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, formation) = (scenario.laws.maps, scenario.laws.formation);
-    let own = scenario.laws.added.as_ref().map(NamedLaw::law);
+    let maps = scenario.laws.maps;
     Box::new(move |index| {
-        let (guidance, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
+        let (law, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
-        let map = maps.filter(|_| guidance.kind().is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
-        let law = own.as_ref().map_or_else(|| law_of(guidance, &formation, map), |own| ScenarioLaw::Own(own.clone()));
-        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        let map = maps.filter(|_| law.is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
+        (Guided::new(law_of(law, map), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     })
 }
 

@@ -267,9 +267,8 @@ impl Engine {
         let (config, task) = self.setup(index, starts);
         let robots = self.external.as_mut().and_then(|external| {
             let found = external.robots.iter().find(|(robot, ..)| *robot == index);
-            let (_, guidance, safety) = found?;
-            let setup =
-                Setup { agent: config, guidance: guidance.clone(), safety: *safety, format: self.roster.format };
+            let (_, law, safety) = found?;
+            let setup = Setup { agent: config, law: law.clone(), safety: *safety, format: self.roster.format };
             external.controllers.start(index, setup, task);
             Some(())
         });

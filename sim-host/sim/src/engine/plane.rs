@@ -16,8 +16,8 @@ use crate::world::plane::{Clearance, Disc, Plane, Sight, Solid, narrow};
 use crate::world::scouts::Scouts;
 use crate::world::window_but;
 use staya_controller::agent::{
-    AgentConfig, AnyInputs, AnySurroundings, CellState, ContactLossPolicy, GuidanceKind, InCell, InCells, InPlane,
-    Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, ContactLossPolicy, Goals, InCell, InCells, InPlane, Inputs,
+    KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -101,7 +101,7 @@ impl PlaneGround {
         });
         Self {
             sight,
-            flock: (0..setup.starts.len()).find(|&index| setup.group(index).guidance.kind() == GuidanceKind::GoalFlock),
+            flock: (0..setup.starts.len()).find(|&index| setup.group(index).law.goals().movable() > 1),
             clearance: Clearance::FREE,
             gap_m: None,
             changed: Changed::new(),
@@ -109,7 +109,7 @@ impl PlaneGround {
             plane,
             robots: scenario.numbered(),
             numbers: (0..scenario.robots.len() as u32).collect(),
-            radius: scenario.laws.route.params.radius,
+            radius: scenario.laws.radius,
             tick_us: scenario.tick_us,
             clocks: scenario.clocks.clone(),
             delay_us: libm::round((scenario.radio.delay_ms + scenario.radio.jitter_ms) * 1000.0) as u32,
@@ -226,8 +226,8 @@ impl PlaneGround {
     }
 
     fn task(&self, number: usize, tick: u32) -> Task {
-        let guidance = self.setup.group(number).guidance.kind();
-        if guidance.is_on_grid() {
+        let law = &self.setup.group(number).law;
+        if law.is_on_grid() {
             return Task::Cell(self.robots[number].goal);
         }
         let first = (0..).zip(&self.setup.starts[number].places);
@@ -237,7 +237,7 @@ impl PlaneGround {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
             (index, waypoint(target, age_s))
         });
-        Task::Waypoints(course(aged, guidance == GuidanceKind::Waypoint))
+        Task::Waypoints(course(aged, law.goals() == Goals::Waypoints))
     }
 
     fn goals_m(&self, tick: u32) -> [Option<[f64; 3]>; WAYPOINTS] {

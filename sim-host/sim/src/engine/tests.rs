@@ -125,7 +125,7 @@ fn all_robots_decide_on_messages_of_the_previous_tick_in_any_order() {
 
 #[test]
 fn a_robot_gets_its_pose_in_metres_and_a_full_window() {
-    let rest = "[route]\nradius = 3\n";
+    let rest = "[grid]\nradius = 3\n";
     let scenario = scenario("list = [{ start = [0, 19], goal = [9, 19] }]", rest);
     let (mut engine, known) = scouts(&scenario);
     engine.step();

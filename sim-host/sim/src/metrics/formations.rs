@@ -28,7 +28,7 @@ impl FormationMeters {
     #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let meter = |graph| {
-            FormationMeter::new(graph, scenario.laws.formation.eps(), &scenario.land.terrain, scenario.tick_s())
+            FormationMeter::new(graph, scenario.law_of(graph.first).eps(), &scenario.land.terrain, scenario.tick_s())
         };
         let each: Vec<_> = scenario.formations.iter().map(|graph| (graph.members(), meter(graph))).collect();
         let numbers = scenario.robots.iter().map(|robot| robot.id.0).collect();

@@ -90,9 +90,8 @@ impl Law<f32> for Convoy {
 fn text(law: &str) -> String {
     let robots: Vec<_> = (0..5).map(|i| format!("{{ start_m = [{i}, 0] }}")).collect();
     format!(
-        "name = \"convoy\"\nseed = 3\nticks = 60\ntick_s = 0.1\n{law}\n[radio]\nrange_m = 1.5\nloss = 0.2\n[plane]\n\
-         guidance = \"boids\"\nradius_m = 0.1\nmax_speed_mps = 1.0\n[plane.boids]\ncrowded_m = 0.4\nclosest_m = 2\n\
-         [plane.robots]\nlist = [{}]\n",
+        "name = \"convoy\"\nseed = 3\nticks = 60\ntick_s = 0.1\n[radio]\nrange_m = 1.5\nloss = 0.2\n[plane]\n\
+         radius_m = 0.1\nmax_speed_mps = 1.0\n{law}\n[plane.robots]\nlist = [{}]\n",
         robots.join(", ")
     )
 }
@@ -119,17 +118,22 @@ fn named_run(law: &str) -> (Outcome, Vec<u32>) {
 
 #[test]
 fn a_named_law_runs_as_one_given_by_the_caller() {
-    let (named, halved) = named_run("[law]\nname = \"convoy\"");
-    let own = simulate_own(&scenario("").unwrap(), |_| Convoy::default(), on).unwrap();
+    let (named, halved) = named_run("law = \"convoy\"");
+    let own = simulate_own(
+        &scenario("law = \"boids\"\nboids = { crowded_m = 0.4, closest_m = 2 }").unwrap(),
+        |_| Convoy::default(),
+        on,
+    )
+    .unwrap();
     assert_eq!(named, own);
     assert_eq!(halved, [0, 1, 1, 1, 1], "each message arrives once, although packets are lost");
-    let (slow, _) = named_run("[law]\nname = \"convoy\"\nparameters = { pace_mps = 0.2 }");
+    let (slow, _) = named_run("law = \"convoy\"\nconvoy = { pace_mps = 0.2 }");
     assert_ne!(slow.trace_hash, named.trace_hash);
 }
 
 #[test]
 fn a_checkpoint_has_the_state_of_a_named_law() {
-    let scenario = scenario("[law]\nname = \"convoy\"").unwrap();
+    let scenario = scenario("law = \"convoy\"").unwrap();
     let whole = simulate(&scenario, on).unwrap();
     let mut bytes = Vec::new();
     let until_nine = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
@@ -145,7 +149,7 @@ fn a_checkpoint_has_the_state_of_a_named_law() {
 
 #[test]
 fn an_operator_sees_and_tunes_a_named_law() {
-    let scenario = scenario("[law]\nname = \"convoy\"").unwrap();
+    let scenario = scenario("law = \"convoy\"").unwrap();
     let mut run = operated(&scenario).unwrap();
     for _ in 0..scenario.ticks {
         run.step();
@@ -160,17 +164,17 @@ fn an_operator_sees_and_tunes_a_named_law() {
 #[test]
 fn a_wrong_name_place_or_parameter_is_refused_with_a_remedy() {
     let refused = |law: &str| scenario(law).unwrap_err();
-    let spelled = refused("[law]\nname = \"convoi\"");
+    let spelled = refused("law = \"convoi\"");
     assert!(
-        spelled.contains("convoy.toml:6:8: law.name: ") && spelled.contains("did you mean \"convoy\"?"),
+        spelled.contains("convoy.toml:11:7: plane.law: ") && spelled.contains("did you mean \"convoy\"?"),
         "{spelled}"
     );
-    let unknown = refused("[law]\nname = \"convoy\"\nparameters = { pase_mps = 1 }");
-    assert!(unknown.contains("law.parameters.pase_mps") && unknown.contains("\"pace_mps\""), "{unknown}");
-    let fast = refused("[law]\nname = \"convoy\"\nparameters = { pace_mps = 9 }");
+    let unknown = refused("law = \"convoy\"\nconvoy = { pase_mps = 1 }");
+    assert!(unknown.contains("plane.convoy.pase_mps") && unknown.contains("`pace_mps`"), "{unknown}");
+    let fast = refused("law = \"convoy\"\nconvoy = { pace_mps = 9 }");
     assert!(fast.contains("give 0.1 to 2 m/s"), "{fast}");
-    let grid = "name = \"t\"\nticks = 4\n[law]\nname = \"convoy\"\n[terrain]\nuniform = { width = 9, height = 4, classes = 1 }\n\
+    let grid = "name = \"t\"\nticks = 4\n[grid]\nlaw = \"convoy\"\n[terrain]\nuniform = { width = 9, height = 4, classes = 1 }\n\
         [robots]\nlist = [{ start = [1, 1], goal = [8, 1] }]\n";
     let grid = Scenario::parse(grid, Path::new("t.toml"), &Overrides::default()).unwrap_err().to_string();
-    assert!(grid.contains("law.name") && grid.contains("give [plane]"), "{grid}");
+    assert!(grid.contains("grid.law") && grid.contains("give [plane]"), "{grid}");
 }

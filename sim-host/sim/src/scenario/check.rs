@@ -1,13 +1,14 @@
 //! Checks that involve more than one field.
 
-use super::params::FormationLaw;
+use super::law::{LawPart, LawSetup};
 use super::ranges::{micros, short};
-use super::source::Checked;
+use super::source::{Checked, Section};
 use super::{Crop, Draft, Fault, LandSource, PlaneSetup, Robot, ScenarioError, TerrainTable, UniformTable};
 use crate::file::has_memory;
 use crate::radio::{self, LAST_START};
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
+use staya_controller::agent::LawSettings;
 use staya_controller::robot::RobotId;
 use staya_controller::route::Replan;
 use staya_controller::wire::Format;
@@ -104,8 +105,9 @@ pub(super) fn moves(draft: &Draft<'_>) -> Checked {
     draft.require(is_four || grid.moves == 8, field, "a cell has 4 or 8 neighbours", "give 4 or 8")?;
     let what = "robots in the plane do not move from cell to cell";
     draft.require(!(is_four && has_plane), field, what, "leave it out")?;
-    let remedy = "give law.name = \"negotiation\", or leave it out";
-    let is_known = !is_four || draft.file.law.is_some();
+    let remedy = "give law = \"negotiation\", or leave it out";
+    let name = grid.law.name.as_deref();
+    let is_known = !is_four || name.is_some_and(|name| LawSettings::by_name(name).is_none());
     draft.require(is_known, field, "routes and formations use eight neighbours", remedy)?;
     let (what, remedy) = ("diagonal moves at once would cross each other", "give moves = 4, or leave it out");
     draft.require(is_four || !grid.simultaneous, "grid.simultaneous", what, remedy)
@@ -200,33 +202,12 @@ fn terrain_error(draft: &Draft<'_>, field: &str, error: &TerrainError) -> Scenar
     draft.error(field, error.to_string(), remedy)
 }
 
-pub(super) fn formation_only(draft: &Draft<'_>) -> Checked {
-    let (table, in_plane) = (&draft.file.formation, draft.file.plane.is_some());
-    let in_formation = draft.file.in_formation();
-    let remedy = "give robots.formation, or leave this table out";
-    let is_used = in_formation || !draft.has("formation");
-    draft.require(is_used, "formation", "these robots keep no formation", remedy)?;
-    let what = format!("the law \"{}\" goes from cell to cell", table.law);
-    let remedy = "give \"staya\", or leave [plane] out";
-    draft.require(table.law == FormationLaw::Staya || !in_plane, "formation.law", what, remedy)?;
-    let foreign: &[&str] = match table.law {
-        FormationLaw::Paper => &["waits", "lead", "closes_ranks", "footprint", "recovery"],
-        _ => &["crowd"],
-    };
-    let refuse = |names: &[&str], what: &str, remedy: &str| {
-        let mut fields = names.iter().map(|name| format!("formation.{name}"));
-        fields.try_for_each(|field| draft.require(!draft.has(&field), &field, what, remedy))
-    };
-    refuse(foreign, &format!("the law \"{}\" has no use for it", table.law), "leave it out")?;
-    if !table.waits {
-        let what = "robots in the plane do not wait; the slowest sets the pace";
-        draft.require(!in_plane, "formation.waits", what, "leave it out")?;
-        let what = "with waits = false no robot waits";
-        refuse(&["halt_cells", "resume_cells"], what, "leave out one of the two")?;
-    }
-    let searches = !in_formation || draft.file.route.replan != Replan::UntilChanged;
+/// Routes that their laws cannot use as they are given.
+pub(super) fn routes(at: &Section<'_>, part: &LawPart, law: &LawSetup) -> Checked {
+    let Some(route) = law.route().filter(|_| law.keeps_formation()) else { return Ok(()) };
+    let searches = route.replan != Replan::UntilChanged || !part.given("replan");
     let what = "robots in formation search in each cell";
-    draft.require(searches, "route.replan", what, "give \"each_cell\", or leave it out")
+    at.require(searches, &format!("{}.replan", law.name()), what, "give \"each_cell\", or leave it out")
 }
 
 /// Refuses a robot that is not in the scenario.

@@ -29,6 +29,9 @@ table! {
         pub places: Option<Vec<[i16; 2]>>;
         /// With `places`: pairs of robot numbers that are neighbours in the formation's graph.
         pub edges: Option<Vec<[u32; 2]>>;
+        /// Largest number of graph edges between robots that count as neighbours, 1 or more; no
+        /// robot may have more than 8 neighbours. Default: the largest of 3, 2, 1 that fits.
+        pub rho: Option<u8>;
         /// Goal cell of robot 1; the others go to their places around it.
         pub goal: [i16; 2];
     }

@@ -3,14 +3,9 @@
 
 use super::read::{Limits, Line, Table, Wrong};
 use super::table::Fields;
-use staya_controller::boids::BoidsParams;
-use staya_controller::formation::FormationParams;
-use staya_controller::goal_flock::GoalParams;
-use staya_controller::lattice::LatticeParams;
 use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::{Parameter, Parameters};
 use staya_controller::push_out::PushOutParams;
-use staya_controller::route::RouteParams;
 use std::marker::PhantomData;
 
 /// A field of a settings file that is a parameter.
@@ -53,12 +48,6 @@ macro_rules! rows {
 rows! {
     AvoidParams<f32> = Self::default(), [] [horizon_s, wall_horizon_s, share, margin_m];
     PushOutParams<f32> = Self::new(1.0), [min_distance_m] [];
-    LatticeParams<f32> = Self::new(1.0), [spacing_m]
-        [c_alpha = c1_alpha, c_beta = c1_beta, c_gamma = c1_gamma, obstacle_ratio];
-    GoalParams<f32> = Self::new(1.0, 1.0), [min_distance_m] [neighborhood_m, k1, k2, k3];
-    BoidsParams<f32> = Self::paper(1.0), [crowded_m, closest_m] [max_turn, max_turn_away];
-    RouteParams = Self::default(), [] [a0, a1, a2, a3];
-    FormationParams = Self::default(), [] [gain = place_gain, halt_cells, resume_cells];
 }
 
 const fn last(names: &[&'static str]) -> &'static str {
@@ -78,23 +67,12 @@ impl<P: Rows> Given<P> {
         *self.values.get(P::ROWS.iter().position(|row| row.name == name)?)?
     }
 
-    /// The value of a required field.
-    pub(super) fn need(&self, name: &str) -> f64 {
-        self.get(name).unwrap_or_else(|| panic!("{name} is a required field"))
-    }
-
-    /// Limits of a field.
-    pub(super) fn limits(name: &str) -> Limits {
-        let row = P::ROWS.iter().find(|row| row.name == name);
-        Limits::of(parameter(&P::usual(), row.unwrap_or_else(|| panic!("no field {name}"))).1)
-    }
-
     /// Stores the given values. Values that contradict the other parameters are left out.
     pub(super) fn store(&self, params: &mut P) {
         for (row, value) in P::ROWS.iter().zip(&self.values) {
             if let Some(value) = value {
                 let (index, _) = parameter(params, row);
-                let _ = params.store(index, *value as f32);
+                let _ = params.store(index, *value as f32, true);
             }
         }
     }
@@ -128,7 +106,7 @@ impl<P: Rows> Fields for Given<P> {
             let default = usual.get(index).filter(|_| !row.is_needed && !depends);
             Line {
                 name: row.name,
-                doc: parameter.what,
+                doc: parameter.what.into(),
                 kind: <f64 as super::Read>::KIND,
                 limits: Some(Limits::of(parameter)),
                 default: default.map(|value| value.to_string()).unwrap_or_default().into(),

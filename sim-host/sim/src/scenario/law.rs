@@ -1,123 +1,443 @@
-//! `[law]`: a law that the program adds, instead of those of Staya.
+//! `law = "NAME"` of a group of robots, and the table `NAME` beside it with the law's values.
 
-use super::read::{Limits, nearest};
-use super::source::Checked;
-use super::{Draft, PlaneSetup};
-use crate::own_law::{NEGOTIATION, Own, named};
-use crate::table;
-use crate::terrain::Terrain;
-use serde::Serialize;
-use staya_controller::agent::{AnySurroundings, CellState, InCell, InCells, InPlane, Law, OnGrid};
-use staya_controller::geom::Vec2;
+use super::read::{Field as _, Limits, Line, Node, Table, Wrong, nearest};
+use super::source::{Checked, Section};
+use super::table::Fields;
+use crate::own_law::{NEGOTIATION, Own, added, own};
+use staya_controller::agent::{
+    Around, Contradiction, FormationSettings, Goals, LawSettings, Motion, RouteSettings, Settings, TEMPLATE,
+    WaypointSettings,
+};
 use staya_controller::negotiation::Moves;
-use std::collections::BTreeMap;
+use staya_controller::parameters::{Absent, Parameter, Parameters};
+use staya_controller::template::Template;
+use staya_papers::{LookaheadSettings, PublishedSettings};
+use toml::de::DeValue;
 
-/// Largest radius of robots that negotiate, cells: two that follow each other around a corner pass
-/// at 0.7 cells.
-const WIDEST: f64 = 0.35;
-
-table! {
-    /// `[law]`: all robots have a law that the program adds with
-    /// [`add_law`](crate::engine::add_law). The guidance still decides which goals the file gives.
-    pub struct LawTable {
-        /// The name that the program gives to the law.
-        pub name: String;
-        /// Parameters of the law by their names. Default: those of the law.
-        pub parameters: BTreeMap<String, f64> = Default::default();
-    }
+/// A law of robots, with the values that it is made from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawSetup {
+    /// One of the controller's.
+    BuiltIn(LawSettings),
+    /// Formations as published.
+    Published(PublishedSettings),
+    /// Formations with followers that look ahead.
+    Lookahead(LookaheadSettings),
+    /// Negotiation, or one that the program adds.
+    Added(AddedLaw),
 }
 
-/// A law that the program adds, with its parameters.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NamedLaw {
+/// A law that firmware does not have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AddedLaw {
     /// Its name.
     pub name: String,
-    /// Values by the names of its parameters.
-    pub parameters: Vec<(String, f32)>,
-    /// The moves of the bodies, for a law that needs them.
+    /// Given values by the names of its parameters.
+    pub values: Vec<(String, f32)>,
+    /// The moves of bodies on the grid.
     pub moves: Moves,
     /// The cruising speed of bodies in the plane, m/s.
     pub cruise_mps: Option<f32>,
+    /// The bodies that it moves.
+    pub motion: Motion,
+    /// The goals that it takes.
+    pub goals: Goals,
 }
 
-impl NamedLaw {
+impl AddedLaw {
+    fn new(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Option<Self> {
+        let law = own(name, moves, cruise_mps)?;
+        let (motion, goals) = (law.motion(), law.goals());
+        Some(Self { name: name.to_owned(), values: Vec::new(), moves, cruise_mps, motion, goals })
+    }
+
     /// Creates the law of one robot.
     ///
     /// # Panics
     /// If the program does not add it; [`Scenario::load`](super::Scenario::load) refuses that.
     #[must_use]
     pub fn law(&self) -> Own {
-        let mut law = named(&self.name, self.moves, self.cruise_mps)
-            .unwrap_or_else(|_| panic!("no law {} in this program", self.name));
-        for (name, value) in &self.parameters {
-            Law::<f32>::parameters(&mut law, &mut |table| {
-                if let Some(index) = table.index(name) {
-                    let _ = table.set(index, *value);
-                }
-            });
-        }
+        let mut law =
+            own(&self.name, self.moves, self.cruise_mps).unwrap_or_else(|| panic!("no law {} here", self.name));
+        law.tables(&mut |table| store(table, &self.values));
         law
     }
 }
 
-pub(super) fn law(
-    draft: &Draft<'_>,
-    plane: Option<&PlaneSetup>,
-    terrain: Option<&Terrain>,
-) -> Checked<Option<NamedLaw>> {
-    let Some(table) = &draft.file.law else { return Ok(None) };
-    let grid = &draft.file.grid;
-    let moves = Moves { diagonals: grid.moves == 8, circles: grid.simultaneous };
-    let cruise_mps = plane.map(|setup| setup.general.cruise_mps as f32);
-    let mut law = named(&table.name, moves, cruise_mps).map_err(|known| {
-        let remedy = suggestion(&table.name, &known, "build a program that adds it, see docs/project.md");
-        draft.error("law.name", format!("this program has no law \"{}\"", table.name), remedy)
-    })?;
-    let grid = OnGrid { cell: CellState::default(), window: None };
-    let in_plane = InPlane { max_speed_mps: 0.0, obstacles: &[] };
-    let (here, place) = match (plane.is_some(), terrain.is_some()) {
-        (false, _) => (AnySurroundings::OnGrid(grid), "the robots go from cell to cell, and the law does not"),
-        (true, false) => (AnySurroundings::InPlane(in_plane), "the robots have no cells, and the law needs them"),
-        (true, true) => {
-            let in_cell = InCell { offset_m: Vec2::ZERO, cell_m: 1.0 };
-            let here = AnySurroundings::InCells(InCells { grid, plane: in_plane, in_cell });
-            (here, "the robots go by velocities, and the law does not")
-        }
-    };
-    let remedy = if plane.is_some() { "give [terrain], or another law" } else { "give [plane], or another law" };
-    draft.require(law.fits(&here), "law.name", place, remedy)?;
-    if let (NEGOTIATION, Some(setup), Some(land)) = (&table.name[..], plane, terrain) {
-        let are_in_cells = setup.kinds().all(|group| group.guidance.kind().is_on_grid());
-        let what = "robots that negotiate have goals in cells";
-        draft.require(are_in_cells, "plane.guidance", what, "give guidance = \"route\"")?;
-        let widest_m = land.cell_m * WIDEST;
-        let radius_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
-        let what = format!("{radius_m} m are more than {WIDEST} cells: robots touch at a corner");
-        let remedy = format!("give at most {widest_m}, or a larger terrain.cell_m");
-        draft.require(radius_m <= widest_m, "plane.radius_m", what, remedy)?;
-    }
-    let mut parameters = Vec::new();
-    for (name, &value) in &table.parameters {
-        let field = format!("law.parameters.{name}");
-        let (mut limits, mut known) = (None, Vec::new());
-        Law::<f32>::parameters(&mut law, &mut |table| {
-            known.extend(table.table().iter().map(|row| row.name));
-            limits = limits.take().or_else(|| table.index(name).map(|index| Limits::of(&table.table()[index])));
-        });
-        let limits = limits.ok_or_else(|| {
-            draft.error(&field, "the law has no such parameter", suggestion(name, &known, "leave it out: it has none"))
-        })?;
-        draft.limit(&field, value, &limits)?;
-        parameters.push((name.clone(), value as f32));
-    }
-    Ok(Some(NamedLaw { name: table.name.clone(), parameters, moves, cruise_mps }))
+/// The names of all laws, each with a sentence; the laws of this program last.
+#[must_use]
+pub fn laws() -> Vec<(&'static str, &'static str)> {
+    let of_papers =
+        [(PublishedSettings::NAME, PublishedSettings::WHAT), (LookaheadSettings::NAME, LookaheadSettings::WHAT)];
+    LawSettings::ALL.iter().copied().chain(of_papers).chain(added()).collect()
 }
 
-/// The remedy for an unknown name.
-fn suggestion(name: &str, known: &[&str], if_empty: &str) -> String {
-    match nearest(name, known.iter().copied()) {
+impl LawSetup {
+    /// The law with this name and its defaults.
+    #[must_use]
+    pub fn by_name(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Option<Self> {
+        if let Some(settings) = LawSettings::by_name(name) {
+            return Some(Self::BuiltIn(settings));
+        }
+        match name {
+            PublishedSettings::NAME => Some(Self::Published(PublishedSettings::default())),
+            LookaheadSettings::NAME => Some(Self::Lookahead(LookaheadSettings::default())),
+            _ => AddedLaw::new(name, moves, cruise_mps).map(Self::Added),
+        }
+    }
+
+    /// The name of the law.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::BuiltIn(settings) => settings.name(),
+            Self::Published(_) => PublishedSettings::NAME,
+            Self::Lookahead(_) => LookaheadSettings::NAME,
+            Self::Added(law) => &law.name,
+        }
+    }
+
+    /// The bodies that it moves.
+    #[must_use]
+    pub const fn motion(&self) -> Motion {
+        match self {
+            Self::BuiltIn(settings) => settings.motion(),
+            Self::Published(_) => PublishedSettings::MOTION,
+            Self::Lookahead(_) => LookaheadSettings::MOTION,
+            Self::Added(law) => law.motion,
+        }
+    }
+
+    /// Whether it goes from cell to cell, on the grid or in the plane.
+    #[must_use]
+    pub fn is_on_grid(&self) -> bool {
+        self.motion() == Motion::Cells
+    }
+
+    /// The goals that it takes.
+    #[must_use]
+    pub fn goals(&self) -> Goals {
+        match self {
+            Self::BuiltIn(settings) => settings.goals(),
+            Self::Published(_) => PublishedSettings::GOALS,
+            Self::Lookahead(_) => LookaheadSettings::GOALS,
+            Self::Added(law) => law.goals,
+        }
+    }
+
+    /// Whether its robots have places in a formation.
+    #[must_use]
+    pub const fn keeps_formation(&self) -> bool {
+        matches!(self, Self::BuiltIn(LawSettings::Formation(_)) | Self::Published(_) | Self::Lookahead(_))
+    }
+
+    /// The settings of its routes, if it plans them.
+    #[must_use]
+    pub const fn route(&self) -> Option<&RouteSettings> {
+        match self {
+            Self::BuiltIn(LawSettings::Route(route)) => Some(route),
+            Self::BuiltIn(LawSettings::Formation(FormationSettings { route, .. }))
+            | Self::Published(PublishedSettings { route, .. })
+            | Self::Lookahead(LookaheadSettings(FormationSettings { route, .. })) => Some(route),
+            _ => None,
+        }
+    }
+
+    /// See [`route`](Self::route).
+    pub const fn route_mut(&mut self) -> Option<&mut RouteSettings> {
+        match self {
+            Self::BuiltIn(LawSettings::Route(route)) => Some(route),
+            Self::BuiltIn(LawSettings::Formation(FormationSettings { route, .. }))
+            | Self::Published(PublishedSettings { route, .. })
+            | Self::Lookahead(LookaheadSettings(FormationSettings { route, .. })) => Some(route),
+            _ => None,
+        }
+    }
+
+    /// The settings, if it is a law of the controller.
+    #[must_use]
+    pub const fn built_in(&self) -> Option<&LawSettings> {
+        match self {
+            Self::BuiltIn(settings) => Some(settings),
+            _ => None,
+        }
+    }
+
+    /// The law as firmware has it. Firmware with a law of its own gets that one by other means.
+    #[must_use]
+    pub fn on_device(&self) -> LawSettings {
+        match (self, self.motion()) {
+            (Self::BuiltIn(settings), _) => settings.clone(),
+            (_, Motion::Velocities) => LawSettings::Waypoint(WaypointSettings::default()),
+            (_, Motion::Cells) => LawSettings::Route(RouteSettings::default()),
+        }
+    }
+
+    /// Distance from its place within which a member of a formation counts as found, cells; 0
+    /// without a formation.
+    #[must_use]
+    pub const fn eps(&self) -> u8 {
+        match self {
+            Self::BuiltIn(LawSettings::Formation(settings)) | Self::Lookahead(LookaheadSettings(settings)) => {
+                settings.params.eps
+            }
+            Self::Published(settings) => settings.params.eps,
+            _ => 0,
+        }
+    }
+
+    /// The law of a robot with this place in its formation.
+    #[must_use]
+    pub fn with_template(mut self, own: Template<TEMPLATE>) -> Self {
+        match &mut self {
+            Self::BuiltIn(LawSettings::Formation(settings)) | Self::Lookahead(LookaheadSettings(settings)) => {
+                settings.template = own;
+            }
+            Self::Published(settings) => settings.template = own,
+            _ => {}
+        }
+        self
+    }
+
+    /// Calls `visit` with each table of values.
+    pub fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        match self {
+            Self::BuiltIn(settings) => settings.tables(visit),
+            Self::Published(settings) => settings.tables(visit),
+            Self::Lookahead(settings) => settings.tables(visit),
+            Self::Added(law) => law.law().tables(visit),
+        }
+    }
+
+    fn adapt(&mut self, is_given: &dyn Fn(&str) -> bool, around: &Around) -> Result<(), Contradiction> {
+        match self {
+            Self::BuiltIn(settings) => settings.adapt(is_given, around),
+            Self::Published(settings) => settings.adapt(is_given, around),
+            Self::Lookahead(settings) => settings.adapt(is_given, around),
+            Self::Added(law) => match law.law().contradiction() {
+                None => Ok(()),
+                Some(row) => {
+                    let (what, remedy) = ("contradicts the other values of the law", "change it or leave it out");
+                    Err(Contradiction { row, what, remedy })
+                }
+            },
+        }
+    }
+}
+
+/// Stores the values that the table has, whatever the others are.
+fn store(table: &mut dyn Parameters, values: &[(String, f32)]) {
+    for (name, value) in values {
+        if let Some(index) = table.index(name) {
+            let _ = table.store(index, *value, false);
+        }
+    }
+}
+
+/// The first value that is not a whole number although the law stores one, with the stored number.
+fn rounded(law: &mut LawSetup, values: &[(String, f32)]) -> Option<(&'static str, f32, f32)> {
+    /// Gains are rounded to sixteenths, lengths to parts of a cell.
+    const FINE: f32 = 0.04;
+    let mut found = None;
+    law.tables(&mut |table| {
+        for (name, value) in values {
+            let Some(index) = table.index(name) else { continue };
+            let stored = table.get(index).unwrap_or(*value);
+            if value.fract() != 0.0 && stored.fract() == 0.0 && (stored - value).abs() > FINE {
+                found = found.or(Some((table.table()[index].name, *value, stored)));
+            }
+        }
+    });
+    found
+}
+
+/// `law` and the tables of laws among the fields of a group.
+#[derive(Clone, Debug, Default)]
+pub struct LawPart {
+    /// The name, if it is given.
+    pub name: Option<String>,
+    /// The tables of laws that are given, with their values.
+    tables: Vec<(&'static str, Vec<(String, f32)>)>,
+}
+
+/// The rows of a law that files give, each with its default value.
+fn rows(law: &mut LawSetup) -> Vec<(&'static Parameter, Option<f32>)> {
+    let (mut rows, is_added) = (Vec::new(), matches!(law, LawSetup::Added(law) if law.name != NEGOTIATION));
+    law.tables(&mut |table| {
+        let all = table.table().iter().enumerate();
+        let given = all.filter(|(_, row)| is_added || !matches!(row.absent, Absent::OfBody(_)));
+        rows.extend(given.map(|(index, row)| (row, table.get(index))));
+    });
+    rows
+}
+
+fn usual(name: &str) -> Option<LawSetup> {
+    LawSetup::by_name(name, Moves::EIGHT, Some(1.0))
+}
+
+impl LawPart {
+    /// The name of the law, `otherwise` if none is given.
+    pub(super) fn name_or<'a>(&'a self, otherwise: &'a str) -> &'a str {
+        self.name.as_deref().unwrap_or(otherwise)
+    }
+
+    /// Whether a value of the law is given.
+    pub(super) fn given(&self, row: &str) -> bool {
+        self.tables.iter().flat_map(|(_, values)| values).any(|(name, _)| name == row)
+    }
+
+    /// Whether a law or a value of one is given.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.name.is_none() && self.tables.is_empty()
+    }
+
+    /// The law, with the values of the file and those that depend on others.
+    pub(super) fn build(&self, at: &Section<'_>, otherwise: &str, moves: Moves, around: &Around) -> Checked<LawSetup> {
+        let name = self.name_or(otherwise);
+        let Some(mut law) = LawSetup::by_name(name, moves, around.cruise_mps) else {
+            unreachable!("a law that was read is known");
+        };
+        if let Some((given, _)) = self.tables.iter().find(|(given, _)| *given != name) {
+            let remedy = format!("give law = \"{given}\", or leave this table out");
+            return Err(at.error(given, format!("these robots have the law \"{name}\""), remedy));
+        }
+        let missing = rows(&mut law).into_iter().find(|(row, _)| row.absent == Absent::Needed && !self.given(row.name));
+        if let Some((row, _)) = missing {
+            let remedy = format!("give {}, {}, in [{}]", row.name, Limits::of(row), at.field(name));
+            return Err(at.error(name, format!("the law \"{name}\" needs `{}`: {}", row.name, row.what), remedy));
+        }
+        let values = self.tables.first().map_or(&[][..], |(_, values)| values);
+        match &mut law {
+            LawSetup::Added(law) => law.values = values.to_vec(),
+            law => law.tables(&mut |table| store(table, values)),
+        }
+        if let Some((row, value, stored)) = rounded(&mut law, values) {
+            let remedy = format!("give {stored}, or another whole number");
+            return Err(at.error(&format!("{name}.{row}"), format!("{value} is not a whole number"), remedy));
+        }
+        law.adapt(&|row| self.given(row), around)
+            .map_err(|wrong| at.error(&format!("{name}.{}", wrong.row), wrong.what, wrong.remedy))?;
+        Ok(law)
+    }
+}
+
+fn unknown(node: &Node<'_>, name: &str) -> Wrong {
+    let names: Vec<_> = laws().into_iter().map(|(name, _)| name).collect();
+    let remedy = match nearest(name, names.iter().copied()) {
         Some(near) => format!("did you mean \"{near}\"?"),
-        None if known.is_empty() => if_empty.to_owned(),
-        None => format!("it has {}", known.join(", ")),
+        None => format!("it has {}; docs/project.md says how a program adds one", names.join(", ")),
+    };
+    let wrong = Wrong::new(node, format!("this program has no law \"{name}\""));
+    Wrong { remedy: Some(remedy), is_listed: false, ..wrong }
+}
+
+fn value(table: &Table<'_>, row: &Parameter) -> Result<Option<f32>, Wrong> {
+    if row.is_switch() {
+        return Ok(table.read::<bool>(row.name, None)?.map(|is| f32::from(u8::from(is))));
+    }
+    if row.words.is_empty() {
+        return Ok(table.read::<f64>(row.name, Some(&Limits::of(row)))?.map(|value| value as f32));
+    }
+    let Some(Word(word)) = table.read::<Word>(row.name, None)? else { return Ok(None) };
+    match row.words.iter().position(|known| *known == word) {
+        Some(index) => Ok(Some(index as f32)),
+        None => {
+            let known: Vec<_> = row.words.iter().map(|word| (*word, ())).collect();
+            table.of(row.name, |node| super::word(node, &known)).map(|_| None)
+        }
+    }
+}
+
+struct Word(String);
+
+impl super::Read for Word {
+    const KIND: &'static str = "a name in quotes";
+
+    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
+        match node.get_ref() {
+            DeValue::String(text) => Ok(Self(text.clone().into_owned())),
+            _ => Err(Wrong::not(node, Self::KIND)),
+        }
+    }
+}
+
+impl Fields for LawPart {
+    fn names() -> Vec<&'static str> {
+        ["law"].into_iter().chain(laws().into_iter().map(|(name, _)| name)).collect()
+    }
+
+    fn fields(table: &Table<'_>) -> Result<Self, Wrong> {
+        let name = table.read::<Word>("law", None)?.map(|Word(name)| name);
+        if let Some(name) = &name
+            && usual(name).is_none()
+        {
+            return table.of("law", |node| Err(unknown(node, name)));
+        }
+        let mut tables = Vec::new();
+        for (law, _) in laws() {
+            let Some(mut setup) = table.has(law).then(|| usual(law)).flatten() else { continue };
+            let values = table.of(law, |node| {
+                let rows: Vec<_> = rows(&mut setup).into_iter().map(|(row, _)| row).collect();
+                let names: Vec<_> = rows.iter().map(|row| row.name).collect();
+                let table = Table::new(node, &names)?;
+                let value =
+                    |row: &&'static Parameter| Ok(value(&table, row)?.map(|value| (row.name.to_owned(), value)));
+                rows.iter().filter_map(|row| value(row).transpose()).collect::<Result<Vec<_>, Wrong>>()
+            })?;
+            tables.push((law, values));
+        }
+        Ok(Self { name, tables })
+    }
+
+    fn part_lines() -> Vec<Line> {
+        let law = Line {
+            name: "law",
+            doc: "The law of the robots, by name.".into(),
+            kind: Word::KIND,
+            limits: None,
+            default: String::new().into(),
+            inner: Vec::new(),
+        };
+        let tables = laws().into_iter().filter_map(|(name, what)| {
+            let rows = rows(&mut usual(name)?);
+            let inner: Vec<_> = rows.into_iter().map(|(row, default)| line(row, default)).collect();
+            let line =
+                Line { name, doc: what.into(), kind: "a table", limits: None, default: String::new().into(), inner };
+            (!line.inner.is_empty()).then_some(line)
+        });
+        [law].into_iter().chain(tables).collect()
+    }
+}
+
+/// The documentation of a row.
+fn line(row: &'static Parameter, default: Option<f32>) -> Line {
+    let (kind, limits) = match (row.is_switch(), row.words.is_empty()) {
+        (true, _) => (bool::KIND, None),
+        (_, true) => (f64::KIND, Some(Limits::of(row))),
+        _ => (Word::KIND, None),
+    };
+    let shown = |value: f32| match row.words.get(value as usize) {
+        Some(word) if row.is_switch() => (*word).to_owned(),
+        Some(word) => format!("\"{word}\""),
+        None => value.to_string(),
+    };
+    let default = match row.absent {
+        Absent::Default => default.map(shown).unwrap_or_default(),
+        Absent::Depends(on) => on.to_owned(),
+        Absent::OfBody(name) => format!("that of the body, `{name}`"),
+        Absent::Needed => String::new(),
+    };
+    let words = if row.words.is_empty() || row.is_switch() {
+        String::new()
+    } else {
+        format!(" ({})", row.words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "))
+    };
+    Line {
+        name: row.name,
+        doc: format!("{}{words}", row.what).into(),
+        kind,
+        limits,
+        default: default.into(),
+        inner: Vec::new(),
     }
 }

@@ -1,10 +1,9 @@
 //! `[maps]`: exchange of terrain maps between robots.
 
-use super::params::FormationLaw;
+use super::law::LawSetup;
 use super::source::Checked;
-use super::{Draft, PlaneSetup, ranges::duration};
+use super::{Draft, ranges::duration};
 use crate::{defaults, table};
-use staya_controller::agent::RouteSetup;
 use staya_controller::land::MapParams;
 use staya_controller::route::{ExitRule, Replan};
 
@@ -21,24 +20,28 @@ table! {
 
 defaults!(MapsTable);
 
-pub(super) fn sharing(draft: &Draft<'_>, route: &RouteSetup, plane: Option<&PlaneSetup>) -> Checked<Option<MapParams>> {
+pub(super) fn sharing(draft: &Draft<'_>, laws: &[&LawSetup]) -> Checked<Option<MapParams>> {
     let MapsTable { share, forget_after_s } = draft.file.maps;
     if !share {
         let (field, remedy) = ("maps.forget_after_s", "give maps.share = true, or leave it out");
         draft.require(forget_after_s.is_none(), field, "no robot shares a map", remedy)?;
         return Ok(None);
     }
-    let plans = plane.is_none_or(|plane| plane.kinds().any(|group| group.guidance.kind().is_on_grid()));
+    let routes = || laws.iter().filter_map(|law| law.route());
     for (fits, what, remedy) in [
-        (plans, "no robot plans on the map", "give a guidance \"route\" or \"formation\", or leave it out"),
         (
-            route.params.exit != ExitRule::Ray,
-            "route.exit = \"ray\" ignores the land beyond the window",
+            routes().next().is_some(),
+            "no robot plans on the map",
+            "give a law \"route\" or \"formation\", or leave it out",
+        ),
+        (
+            routes().all(|route| route.params.exit != ExitRule::Ray),
+            "exit = \"ray\" ignores the land beyond the window",
             "give exit = \"best\"",
         ),
         (
-            route.replan != Replan::UntilChanged,
-            "route.replan = \"until_changed\" plans routes in the window only",
+            routes().all(|route| route.replan != Replan::UntilChanged),
+            "replan = \"until_changed\" plans routes in the window only",
             "give \"each_cell\"",
         ),
         (
@@ -47,9 +50,9 @@ pub(super) fn sharing(draft: &Draft<'_>, route: &RouteSetup, plane: Option<&Plan
             "leave one of the two out",
         ),
         (
-            draft.file.formation.law != FormationLaw::Paper,
+            !laws.iter().any(|law| matches!(law, LawSetup::Published(_))),
             "the paper's law knows the window alone",
-            "give formation.law = \"staya\", or leave it out",
+            "give law = \"formation\", or leave it out",
         ),
     ] {
         draft.require(fits, "maps.share", what, remedy)?;

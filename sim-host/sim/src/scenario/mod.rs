@@ -9,15 +9,16 @@ mod field;
 mod fingerprint;
 mod formation;
 mod given;
+mod grid;
 mod intervention;
 mod land;
 mod law;
 mod maps;
-mod params;
 mod plane;
 mod plausibility;
 mod ranges;
 mod read;
+mod renamed;
 mod robots;
 mod schema;
 mod scouting;
@@ -32,18 +33,18 @@ pub use clocks::{Clocks, ClocksTable, Phases};
 pub use field::Field;
 pub use formation::{FormationEntry, FormationStarts};
 pub use given::{Given, Row, Rows};
+pub use grid::GridTable;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
-pub use law::{LawTable, NamedLaw};
+pub use law::{AddedLaw, LawPart, LawSetup, laws};
 pub use maps::MapsTable;
-pub use params::{FormationLaw, FormationSetup, FormationTable, GridTable, RouteTable};
-pub(crate) use plane::goals;
 pub use plane::{
-    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
-    IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
-    PlaneTable, PushOutTable, RobotGroup, RobotsSource, ScatteredDiscs, SensingTable, Start, Target, WallEntry,
+    BallEntry, BallsEntry, CircleEntry, CloudEntry, GroupTable, HalfSpaceEntry, Intruder, IntruderEntry, OrcaTable,
+    Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, PushOutTable, RobotGroup,
+    RobotsSource, ScatteredDiscs, SensingTable, Start, Target, WallEntry,
 };
 pub use plausibility::PlausibilityTable;
 pub use read::{AnyTable, Field as Read, Limits, Line, Node, Table, Wrong, nearest, word};
+pub use renamed::{formation_law, value as renamed_value};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
     Area, AttackKind, AttackTable, AuthenticationTable, ChangeSource, ChangeTable, Crop, DriftTable, EntropyTable,
@@ -63,7 +64,7 @@ use crate::world::MoveRules;
 pub use crate::world::plane::Sensing;
 pub use crate::world::scouts::Scouting;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::RouteSetup;
+use staya_controller::agent::RouteSettings;
 use staya_controller::auth::Key;
 use staya_controller::land::MapParams;
 use staya_controller::neighbor::PlausibilityLimits;
@@ -226,14 +227,14 @@ pub enum Movement {
 /// Laws of the robots of a scenario.
 #[derive(Clone, Debug)]
 pub struct Laws {
-    /// The law of all robots, if the program adds it.
-    pub added: Option<NamedLaw>,
-    /// Route planning.
-    pub route: RouteSetup,
+    /// The law of robots that move from cell to cell; groups in the plane have their own.
+    pub on_grid: LawSetup,
+    /// Sight of robots over cells in each direction, cells.
+    pub radius: u8,
+    /// Routes of robots whose law does not say otherwise.
+    pub usual_route: RouteSettings,
     /// Exchange of terrain maps; `None`: disabled.
     pub maps: Option<MapParams>,
-    /// The law of formations.
-    pub formation: FormationSetup,
 }
 
 /// Identities of the robots, and which packets they trust.
@@ -299,6 +300,7 @@ impl Scenario {
     /// Refuses events that are later than `ticks`, than the text's ticks, and than the override's.
     fn build(mut source: Source<'_>, overrides: &Overrides, ticks: u32) -> Checked<Self> {
         let parameters = source.json();
+        renamed::refuse(&source)?;
         plane::inherit(source.root_mut());
         let mut file: ScenarioFile = source.read(LIST)?;
         let ticks = ticks.max(file.ticks);
@@ -312,7 +314,7 @@ impl Scenario {
         check::moves(draft)?;
         let mut clocks = clocks::clocks(draft)?;
         let land = check::terrain(draft)?;
-        let (route, formation) = (params::routing(draft)?, FormationSetup::new(draft)?);
+        let (on_grid, radius) = (grid::law(draft)?, grid::radius(draft)?);
         let (Placed { robots, formations, parts }, movement) = match &file.plane {
             Some(table) => {
                 let (placed, setup) = plane::build(draft, table, land.as_ref())?;
@@ -322,7 +324,7 @@ impl Scenario {
                 let rules = MoveRules {
                     norm: file.grid.norm,
                     corner_cutting: file.grid.corner_cutting,
-                    crossing: matches!(formation, FormationSetup::Published(_)),
+                    crossing: matches!(on_grid, LawSetup::Published(_)),
                     orthogonal: file.grid.moves == 4,
                     simultaneous: file.grid.simultaneous,
                 };
@@ -333,16 +335,15 @@ impl Scenario {
         clocks.has_own_phases = plane.is_some_and(PlaneSetup::has_phases);
         check::numbers(draft, &robots, plane.map_or(0, PlaneSetup::heard))?;
         check::radio_faults(draft, &robots)?;
-        let laws = Laws {
-            added: law::law(draft, plane, land.as_ref())?,
-            maps: maps::sharing(draft, &route, plane)?,
-            route,
-            formation,
+        let kinds: Vec<&LawSetup> = match plane {
+            Some(plane) => plane.kinds().map(|group| &group.law).collect(),
+            None => vec![&on_grid],
         };
-        let scouting = scouting::scouting(draft, land.as_ref())?;
+        let maps = maps::sharing(draft, &kinds)?;
+        let scouting = scouting::scouting(draft, plane.map_or(&on_grid, |plane| &plane.general.law), land.as_ref())?;
+        let laws = Laws { on_grid, radius, usual_route: grid::usual_route(draft)?, maps };
         let terrain = land.unwrap_or_else(|| Terrain::flat(1, 1));
         check::memory(draft, &robots, plane, &terrain)?;
-        check::formation_only(draft)?;
         let mut scenario = Self {
             name: file.name.clone(),
             seed: file.seed,

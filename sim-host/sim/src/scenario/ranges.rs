@@ -1,7 +1,6 @@
 //! Conversions shared by several tables.
 
 pub(super) use super::read::short;
-use staya_controller::grid::UNIT;
 use staya_controller::time::Duration;
 
 pub(super) fn micros(seconds: f64) -> u32 {
@@ -10,11 +9,6 @@ pub(super) fn micros(seconds: f64) -> u32 {
 
 pub(super) fn duration(seconds: f64) -> Duration {
     Duration::from_micros(libm::round(seconds * 1e6) as i32)
-}
-
-/// Parts of a cell, as the controller counts them.
-pub(super) fn units(cells: f64) -> u16 {
-    libm::round(cells * f64::from(UNIT)) as u16
 }
 
 /// First tick that does not begin before `at_s`. Exact for times that are multiples of a tick.

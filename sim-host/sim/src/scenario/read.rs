@@ -101,7 +101,7 @@ pub struct Line {
     /// Name of the field.
     pub name: &'static str,
     /// Documentation, one sentence or more.
-    pub doc: &'static str,
+    pub doc: Cow<'static, str>,
     /// Kind of its value, such as `a number`.
     pub kind: &'static str,
     /// Least and greatest value, and the unit.
@@ -158,11 +158,6 @@ impl Limits {
         let units = [("m", "metres"), ("s", "seconds"), ("rad", "radians")];
         let unit = units.iter().find(|(short, _)| *short == row.unit).map_or(row.unit, |(_, unit)| unit);
         Self::new(low..=high, unit)
-    }
-
-    /// Greatest value.
-    pub(super) const fn most(&self) -> f64 {
-        *self.range.end()
     }
 
     /// Cause and remedy, if the value is out of range.
@@ -386,6 +381,17 @@ impl<'a> Table<'a> {
         let value = T::read(node);
         let value = value.and_then(|value| limits.map_or(Ok(()), |limits| limits.check_node(node)).map(|()| value));
         value.map(Some).map_err(|wrong| wrong.under(key.get_ref()))
+    }
+
+    /// Reads the value of a field by `read`; an error carries the field's place.
+    ///
+    /// # Errors
+    /// Those of `read`; also a missing field.
+    pub fn of<T>(&self, name: &str, read: impl FnOnce(&Node<'_>) -> Result<T, Wrong>) -> Result<T, Wrong> {
+        let Some((key, node)) = self.table.iter().find(|(key, _)| key.get_ref() == name) else {
+            return Err(self.missing(name));
+        };
+        read(node).map_err(|wrong| wrong.under(key.get_ref()))
     }
 
     /// Whether a field is there.

@@ -97,7 +97,7 @@ pub(super) fn build(draft: &Draft<'_>, terrain: &Terrain) -> Checked<(Vec<Robot>
             for (index, entry) in list.iter().enumerate() {
                 let number = if list.len() == 1 { String::new() } else { format!("[{index}]") };
                 let at = draft.at(format!("robots.formation{number}"));
-                let (graph, mut members) = formation(&at, entry, draft.file.formation.rho, entries.len())?;
+                let (graph, mut members) = formation(&at, entry, entries.len())?;
                 entries.append(&mut members);
                 formations.push(graph);
             }
@@ -132,18 +132,13 @@ pub(super) fn of_group(
     entry: &FormationEntry,
     terrain: &Terrain,
 ) -> Checked<(Vec<Robot>, Formation)> {
-    let (formation, entries) = formation(at, entry, draft.file.formation.rho, 0)?;
+    let (formation, entries) = formation(at, entry, 0)?;
     check(draft, &entries, terrain)?;
     Ok((entries.into_iter().map(|entry| entry.robot).collect(), formation))
 }
 
-fn formation(
-    at: &Section<'_>,
-    entry: &FormationEntry,
-    rho: Option<u8>,
-    before: usize,
-) -> Checked<(Formation, Vec<Entry>)> {
-    let graph = graph(at, entry, rho)?;
+fn formation(at: &Section<'_>, entry: &FormationEntry, before: usize) -> Checked<(Formation, Vec<Entry>)> {
+    let graph = graph(at, entry)?;
     let first = u32::try_from(before).unwrap_or(u32::MAX).saturating_add(1);
     let entries = placed(at, entry, &graph, first)?;
     Ok((graph.of(before, first), entries))
@@ -163,7 +158,7 @@ fn listed(list: &[RobotEntry]) -> Vec<Entry> {
 
 type Graph = (Vec<Cell>, Vec<(u16, u16)>);
 
-fn graph(at: &Section<'_>, entry: &FormationEntry, rho: Option<u8>) -> Checked<Formation> {
+fn graph(at: &Section<'_>, entry: &FormationEntry) -> Checked<Formation> {
     let (places, edges) = match (entry.rows, entry.columns, &entry.places, &entry.edges) {
         (Some(rows), Some(columns), None, None) => grid_graph(rows, columns, entry.spacing.unwrap_or([3, -3]))
             .ok_or_else(|| {
@@ -177,8 +172,8 @@ fn graph(at: &Section<'_>, entry: &FormationEntry, rho: Option<u8>) -> Checked<F
             Err(at.unfit("its shape is not clear", remedy))
         }
     }?;
-    let (whole, field) = (at.source.whole(), "formation.rho");
-    whole.require(rho != Some(0), field, "with rho = 0 no robot knows its neighbours", "give 1 or more")?;
+    let rho = entry.rho;
+    at.require(rho != Some(0), "rho", "with rho = 0 no robot knows its neighbours", "give 1 or more")?;
     let templates =
         |rho| (0..places.len()).map(|own| Template::from_graph(&places, &edges, own, rho)).collect::<Result<_, _>>();
     // More knowledge keeps the formation better: use the largest rho that fits.
@@ -189,7 +184,7 @@ fn graph(at: &Section<'_>, entry: &FormationEntry, rho: Option<u8>) -> Checked<F
     .map_err(|error| match error {
         TemplateError::TooMany => {
             let what = format!("a robot would have more than {TEMPLATE} neighbours in the formation");
-            whole.error(field, what, "give a smaller rho, or fewer edges per robot")
+            at.error("rho", what, "give a smaller rho, or fewer edges per robot")
         }
         TemplateError::NoSuchPlace | TemplateError::BadEdge => {
             let what = format!("the formation has more than {MAX_PLACES} places");

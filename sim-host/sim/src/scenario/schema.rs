@@ -5,10 +5,9 @@
 
 use super::clocks::ClocksTable;
 use super::formation::FormationEntry;
+use super::grid::GridTable;
 use super::intervention::InterventionTable;
-use super::law::LawTable;
 use super::maps::MapsTable;
-use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::{PlaneTable, RobotsSource};
 use super::plausibility::PlausibilityTable;
 use super::robots::RobotsTable;
@@ -44,14 +43,8 @@ table! {
         pub robots: Option<RobotsTable>;
         /// Bodies that move in the plane or in space instead of from cell to cell.
         pub plane: Option<PlaneTable>;
-        /// A law that the program adds. Default: the laws of Staya.
-        pub law: Option<LawTable>;
-        /// Route planning.
-        pub route: RouteTable = Default::default();
         /// Exchange of terrain maps.
         pub maps: MapsTable = Default::default();
-        /// Formation keeping.
-        pub formation: FormationTable = Default::default();
         /// Temporary failures of robots.
         pub fault: Vec<FaultTable> = Vec::new();
         /// Changes during the run: goals, obstacles, radio, parameters.
@@ -164,8 +157,8 @@ table! {
     pub struct DriftTable {
         /// Share of the cells that are drawn each time, 0 to 1; at least one cell.
         pub share: f64, 0.0..=1.0, "(a share)";
-        /// Change of the crossing time, ticks, 1 to 254. Default: 1.
-        pub step: u8 = 1, 1.0..=255.0, "ticks";
+        /// Change of the crossing time. Cells take 1 to 255 ticks, so more than 254 has no effect.
+        pub step: u8 = 1, 1.0..=254.0, "ticks";
         /// Longest crossing time of a cell, ticks. Default: the longest of the map.
         pub classes: Option<u8>, 1.0..=255.0, "ticks";
     }
@@ -234,7 +227,7 @@ table! {
         pub assumed: Option<u8>, 1.0..=255.0, "ticks";
         /// Seed of the unknown and wrong patches. Default: the scenario's seed.
         pub seed: Option<u64>;
-        /// Planning radius, cells in each direction, 1 to 16, at least `route.radius`. Default: 16.
+        /// Planning radius, cells in each direction, 1 to 16, at least `grid.radius`. Default: 16.
         pub radius: Option<u8>;
     }
 }

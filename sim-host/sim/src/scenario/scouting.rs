@@ -1,19 +1,19 @@
 //! `[scouting]`: the terrain that robots know before they see it.
 
+use super::law::LawSetup;
 use super::source::Checked;
-use super::{Draft, check, params};
+use super::{Draft, check};
 use crate::terrain::Terrain;
 use crate::terrain::scouted::{Scouted, usual_class};
 use crate::world::scouts::Scouting;
 use std::sync::Arc;
 
 /// Checks the table; `land` is `None` for robots that move without terrain.
-pub(super) fn scouting(draft: &Draft<'_>, land: Option<&Terrain>) -> Checked<Option<Scouting>> {
+pub(super) fn scouting(draft: &Draft<'_>, law: &LawSetup, land: Option<&Terrain>) -> Checked<Option<Scouting>> {
     let Some(table) = &draft.file.scouting else { return Ok(None) };
-    let guidance = draft.file.plane.as_ref().map(|plane| plane.body.guidance);
-    let land = land.filter(|_| guidance.is_none_or(|guidance| guidance.is_on_grid()));
+    let land = land.filter(|_| law.is_on_grid());
     let (Some(land), Some(terrain)) = (land, &draft.file.terrain) else {
-        let (what, remedy) = ("these robots plan on no land", "leave this table out, or give guidance = \"route\"");
+        let (what, remedy) = ("these robots plan on no land", "leave this table out, or give law = \"route\"");
         return Err(draft.error("scouting", what, remedy));
     };
     let what = format!("unknown {} and wrong {} add up to more than 1", table.unknown, table.wrong);
@@ -32,7 +32,7 @@ pub(super) fn scouting(draft: &Draft<'_>, land: Option<&Terrain>) -> Checked<Opt
         assumed: table.assumed.unwrap_or_else(|| usual_class(old)),
         seed: table.seed.unwrap_or(draft.file.seed),
     };
-    Ok(Some(Scouting { map: Arc::new(scouted.map(old)), sight: params::sight(&draft.file) }))
+    Ok(Some(Scouting { map: Arc::new(scouted.map(old)), sight: draft.file.grid.radius }))
 }
 
 #[cfg(test)]

@@ -1,32 +1,47 @@
 //! Controller setup of each robot of a scenario.
 
-use super::{Formation, Intervention, Scenario};
+use super::law::LawSetup;
+use super::{Formation, Intervention, Movement, Scenario};
 use crate::terrain::change::ChangeKind;
 use crate::world::scouts::Scouts;
-use staya_controller::agent::{GuidanceSetup, SafetySetup};
+use staya_controller::agent::{RouteSettings, SafetySetup};
 use staya_controller::grid::Cell;
 
 impl Scenario {
-    /// Guidance law of robot `index`, with its formation template. Another
-    /// [`Laws::formation`](super::Laws::formation) than Staya's replaces the formation on the grid.
+    /// Law of robot `index`, with its place in a formation. O(formations).
     #[must_use]
-    pub fn guidance(&self, index: usize) -> GuidanceSetup {
-        let mut guidance = match (self.plane(), self.formation_of(index)) {
-            (Some(plane), _) => plane.group(index).guidance.clone(),
-            (None, None) => GuidanceSetup::Route { route: self.laws.route, speed_mps: None },
-            (None, Some(_)) => GuidanceSetup::Formation {
-                route: self.laws.route,
-                formation: self.laws.formation.params(),
-                template: Default::default(),
-                speed_mps: None,
-            },
+    pub fn law(&self, index: usize) -> LawSetup {
+        let law = self.law_of(index).clone();
+        let Some(formation) = self.formation_of(index) else { return law };
+        law.with_template(formation.templates.get(index - formation.first).cloned().unwrap_or_default())
+    }
+
+    /// Law of robot `index`, which it shares with its group.
+    #[must_use]
+    pub fn law_of(&self, index: usize) -> &LawSetup {
+        self.plane().map_or(&self.laws.on_grid, |plane| &plane.group(index).law)
+    }
+
+    /// The laws of the groups.
+    pub fn laws(&self) -> impl Iterator<Item = &LawSetup> {
+        let on_grid = Some(&self.laws.on_grid).filter(|_| self.plane().is_none());
+        on_grid.into_iter().chain(self.plane().into_iter().flat_map(|plane| plane.kinds().map(|group| &group.law)))
+    }
+
+    /// Routes of the first law that plans them, else those of the scenario's cells.
+    #[must_use]
+    pub fn route(&self) -> RouteSettings {
+        self.laws().find_map(LawSetup::route).copied().unwrap_or(self.laws.usual_route)
+    }
+
+    /// Changes the routes of each law that plans them.
+    pub fn change_routes(&mut self, change: impl Fn(&mut RouteSettings)) {
+        let groups = match &mut self.movement {
+            Movement::Cells(_) => None,
+            Movement::Plane(setup) => Some(setup.groups.iter_mut().chain([&mut setup.general])),
         };
-        if let GuidanceSetup::Formation { template, .. } = &mut guidance {
-            let graph = self.formation_of(index);
-            let own = graph.and_then(|graph| graph.templates.get(index - graph.first));
-            *template = own.cloned().unwrap_or_default();
-        }
-        guidance
+        let laws = groups.into_iter().flatten().map(|group| &mut group.law).chain([&mut self.laws.on_grid]);
+        laws.filter_map(LawSetup::route_mut).for_each(change);
     }
 
     /// Formation of robot `index`, if it is in one. O(formations).
@@ -69,7 +84,7 @@ impl Scenario {
     }
 
     pub(crate) fn scouts(&self) -> Option<Scouts> {
-        self.land.scouting.as_ref().map(|known| Scouts::new(known, self.laws.route.params.radius, self.robots.len()))
+        self.land.scouting.as_ref().map(|known| Scouts::new(known, self.laws.radius, self.robots.len()))
     }
 
     /// Safety layer of robot `index`.

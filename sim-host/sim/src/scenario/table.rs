@@ -245,7 +245,7 @@ macro_rules! table {
     (@line $name:expr, $doc:expr, $type:ty, $default:expr $(, $range:expr $(, $unit:literal)?)?) => {
         $crate::scenario::Line {
             name: $name,
-            doc: $doc,
+            doc: $doc.into(),
             kind: <$type as $crate::scenario::Read>::KIND,
             limits: $crate::table!(@limits $($range $(, $unit)?)?),
             default: $default.into(),

@@ -5,13 +5,14 @@ mod readme;
 
 use super::*;
 use proptest::prelude::*;
-use staya_controller::agent::GuidanceSetup;
+use staya_controller::agent::{FormationSettings, LawSettings};
 use staya_controller::cost::Gain;
-use staya_controller::formation::{FormationParams, NEVER};
+use staya_controller::formation::{FormationParams, Prediction, Recovery};
 use staya_controller::grid::Cell;
 use staya_controller::negotiation::Moves;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::shuffle::Sharpness;
+use staya_papers::LookaheadSettings;
 use staya_papers::criteria::PublishedParams;
 use std::fs;
 
@@ -61,9 +62,10 @@ fn the_command_line_overrides_the_file() {
 fn a_law_gets_the_moves_of_the_bodies() {
     let robots = with_robots("list = [{ start = [0, 0], goal = [3, 2] }]");
     let of = |grid: &str| {
-        let scenario = parse(&format!("{robots}[law]\nname = \"negotiation\"\n[grid]\n{grid}")).expect("good");
+        let scenario = parse(&format!("{robots}[grid]\nlaw = \"negotiation\"\n{grid}")).expect("good");
         let Movement::Cells(rules) = scenario.movement else { panic!("robots in cells") };
-        (rules.orthogonal, rules.simultaneous, scenario.laws.added.expect("a law").moves)
+        let LawSetup::Added(law) = scenario.laws.on_grid else { panic!("negotiation") };
+        (rules.orthogonal, rules.simultaneous, law.moves)
     };
     assert_eq!(of(""), (false, false, Moves::EIGHT));
     assert_eq!(of("moves = 4\nsimultaneous = true"), (true, true, Moves::FOUR));
@@ -72,15 +74,18 @@ fn a_law_gets_the_moves_of_the_bodies() {
 
 #[test]
 fn robots_that_negotiate_in_the_plane_fit_around_corners_and_have_goals_in_cells() {
-    let with = |plane: &str, robots: &str| {
-        format!("{HEAD}cell_m = 0.5\n{robots}[law]\nname = \"negotiation\"\n[plane]\nmax_speed_mps = 1\n{plane}")
+    let with = |robots: &str, plane: &str| {
+        format!("{HEAD}cell_m = 0.5\n{robots}[plane]\nmax_speed_mps = 1\nlaw = \"negotiation\"\n{plane}")
     };
     let cells = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
-    let route = |radius_m: f64| with(&format!("radius_m = {radius_m}\nguidance = \"route\"\n"), cells);
-    assert_eq!(parse(&route(0.15)).expect("good").laws.added.expect("a law").cruise_mps, Some(1.0));
-    assert!(refusal(&route(0.2)).starts_with("s.toml:12:12: plane.radius_m: 0.2 m are more than 0.35 cells"));
+    let scenario = parse(&with(cells, "radius_m = 0.15\n")).expect("good");
+    let LawSetup::Added(law) = scenario.law(0) else { panic!("negotiation") };
+    assert_eq!(law.cruise_mps, Some(1.0));
+    let wide = refusal(&with(cells, "radius_m = 0.2\n"));
+    assert!(wide.starts_with("s.toml:11:12: plane.radius_m: 0.2 m are more than 0.35 cells"), "{wide}");
     let in_metres = "radius_m = 0.15\n[plane.robots]\nlist = [{ start_m = [0.25, 0.25], goal_m = [1.75, 1.25] }]\n";
-    assert!(refusal(&with(in_metres, "")).contains("plane.guidance: robots that negotiate have goals in cells; give"));
+    let said = refusal(&with("", in_metres));
+    assert!(said.contains("plane.law: this law goes from cell to cell; give [terrain] and the top-level"), "{said}");
 }
 
 #[test]
@@ -202,91 +207,165 @@ fn fault_times_are_converted_to_ticks() {
     assert_eq!(parse(&text).expect("good").events.faults, [fault]);
 }
 
+const FORMATION: &str = "formation = { rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }";
+
+fn formation(law: &LawSetup) -> &FormationSettings {
+    match law {
+        LawSetup::BuiltIn(LawSettings::Formation(settings)) | LawSetup::Lookahead(LookaheadSettings(settings)) => {
+            settings
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
 #[test]
 fn parameters_of_routes_and_formations_are_checked() {
-    let with = |rest: &str| {
-        let robots = "formation = { rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }";
-        format!("{}{rest}", with_robots(robots))
-    };
-    let scenario = parse(&with("")).expect("good");
-    assert_eq!(scenario.laws.route, RouteSetup::default());
-    assert_eq!(scenario.laws.formation, FormationSetup::Staya(FormationParams::default()));
+    let with = |rest: &str| format!("{}{rest}", with_robots(FORMATION));
+    let usual = parse(&with("")).expect("good").laws.on_grid;
+    assert_eq!(usual, LawSetup::BuiltIn(LawSettings::Formation(FormationSettings::default())));
     let scenario = parse(&with(
-        "[grid]\ncorner_cutting = true\n[route]\nradius = 16\nexit = \"ray\"\n\
-         a2 = 0.5\nhalved_per_ticks = 2\n[formation]\nhalt_cells = 2\ngain = 4095\nfootprint = 1\n\
-         prediction = \"reflexive\"\nrecovery = \"def\"\n",
+        "[grid]\ncorner_cutting = true\nradius = 16\n[grid.formation]\nexit = \"ray\"\n\
+         a2 = 0.5\nhalved_per_ticks = 2\nhalt_cells = 2\nplace_gain = 4095\nfootprint = 1\n\
+         prediction = \"reflexive\"\nrecovery = \"def\"\nwaits = true\ncloses_ranks = true\n",
     ));
-    let Laws { route, formation: formation_law, .. } = scenario.expect("good").laws;
-    let formation = formation_law.params();
+    let law = scenario.expect("good").laws.on_grid;
+    let FormationSettings { route, params, .. } = formation(&law);
     assert_eq!((route.params.radius, route.params.exit), (16, ExitRule::Ray));
     assert_eq!(route.params.a2, Gain::from_sixteenths(8));
-    assert!(route.params.corner_cutting);
+    assert!(route.params.corner_cutting && params.closes_ranks);
     assert_eq!(route.sharpness, Sharpness::HalvedPer(Gain::from_int(2)));
-    assert_eq!((formation.halt_lag, formation.resume_lag), (140, 140));
-    assert_eq!((formation.gain, formation.footprint), (Gain::from_int(4095), 16));
+    assert_eq!((params.halt_lag, params.resume_lag), (140, 140));
+    assert_eq!((params.gain, params.footprint), (Gain::from_int(4095), 16));
+    assert_eq!((params.prediction, params.recovery), (Prediction::Reflexive, Recovery::Def));
+    for (row, expected) in [
+        ("a3 = -1", "a3: -1 is out of range; give 0 to 4095"),
+        ("a0 = nan", "a0: NaN is out of range"),
+        ("exit = \"door\"", "exit: unknown value `door`; give one of `best`, `ray`"),
+        ("exit = 1", "exit: 1 is not a name in quotes"),
+        ("waits = \"no\"", "waits: \"no\" is not true or false"),
+        ("replan = \"until_changed\"", "replan: robots in formation search in each cell"),
+        ("eps_cells = 1.5", "eps_cells: 1.5 is not a whole number; give 2, or another whole number"),
+        ("place_gain = 4096", "place_gain: 4096 is out of range"),
+        ("resume_cells = 5", "resume_cells: more than halt_cells; give at most halt_cells"),
+        ("footprint = 1.1", "footprint: 1.1 is out of range"),
+        ("gain = 1", "gain: this field is of an earlier version; write `place_gain = 1` in [grid.formation]"),
+        ("crowd = 2", "crowd: unknown field `crowd`"),
+    ] {
+        let refusal = refusal(&with(&format!("[grid.formation]\n{row}\n")));
+        let column = if row.starts_with("crowd") { 1 } else { row.find("= ").expect("a field") + 3 };
+        let expected = format!("s.toml:8:{column}: grid.formation.{expected}");
+        assert!(refusal.starts_with(&expected), "{refusal}\n{expected}");
+    }
     for (rest, expected) in [
-        ("[route]\nradius = 0\n", "route.radius: 0 is out of range; give 1 to 16 cells"),
-        ("[route]\nradius = 17\n", "route.radius: 17 is out of range"),
-        ("[route]\na3 = -1\n", "route.a3: -1 is out of range; give 0 to 4095"),
-        ("[route]\na0 = nan\n", "route.a0: NaN is out of range"),
-        ("[route]\nexit = \"door\"\n", "route.exit: unknown value `door`"),
-        ("[route]\nreplan = \"until_changed\"\n", "route.replan: robots in formation search in each cell"),
-        ("[formation]\neps = 1.5\n", "formation.eps: 1.5 is not a whole number from 0 to 255; scenarios/README.md"),
-        ("[formation]\ngain = 4096\n", "formation.gain: 4096 is out of range"),
-        ("[formation]\nresume_cells = 5\n", "formation.resume_cells: 5 is out of range; give 0 to 4.2857"),
-        ("[formation]\nfootprint = 1.1\n", "formation.footprint: 1.1 is out of range"),
+        ("[grid]\nradius = 0\n", "s.toml:8:10: grid.radius: 0 is out of range; give 1 to 16 cells"),
+        (
+            "[grid]\nlaw = \"other\"\n",
+            "s.toml:8:7: grid.law: this program has no law \"other\"; it has waypoint, lattice",
+        ),
+        (
+            "[grid]\nlaw = \"formations\"\n",
+            "s.toml:8:7: grid.law: this program has no law \"formations\"; did you mean \"formation\"?",
+        ),
+        ("[grid]\nlaw = 3\n", "s.toml:8:7: grid.law: 3 is not a name in quotes"),
+        ("[grid]\nradius = 17\n", "s.toml:8:10: grid.radius: 17 is out of range"),
+        (
+            "[grid]\nlaw = \"route\"\n",
+            "s.toml:8:7: grid.law: robots.formation and the law \"route\" do not go together",
+        ),
+        ("[grid]\nlaw = \"boids\"\n", "s.toml:8:7: grid.law: the law \"boids\" goes by velocities, and these robots"),
+        ("[grid]\nlaw = \"waypoint\"\n", "s.toml:8:7: grid.law: the law \"waypoint\" goes by velocities"),
     ] {
         let refusal = refusal(&with(rest));
-        let column = rest.lines().nth(1).and_then(|line| line.find("= ")).expect("a field") + 3;
-        assert!(refusal.starts_with(&format!("s.toml:8:{column}: {expected}")), "{refusal}");
+        assert!(refusal.starts_with(expected), "{refusal}");
     }
 }
 
 #[test]
 fn a_formation_has_the_law_of_its_file() {
-    let with = |rest: &str| {
-        let robots = "formation = { rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }";
-        format!("{}[formation]\n{rest}", with_robots(robots))
+    let with = |law: &str, rest: &str| {
+        let table = if law.is_empty() { "formation" } else { law };
+        let law = if law.is_empty() { String::new() } else { format!("law = \"{law}\"\n") };
+        format!("{}[grid]\n{law}[grid.{table}]\n{rest}", with_robots(FORMATION))
     };
-    let ours = parse(&with("law = \"staya\"\nwaits = false\n")).expect("good");
-    assert!(matches!(ours.laws.formation, FormationSetup::Staya(params) if params.halt_lag == NEVER));
-    let paper = parse(&with("law = \"paper\"\neps = 3\nhalt_cells = 6\nresume_cells = 2\ncrowd = 2\n"));
-    let paper = paper.expect("good");
+    let ours = parse(&with("", "waits = false\n")).expect("good").laws.on_grid;
+    assert!(!formation(&ours).waits);
+    let paper = "eps_cells = 3\nhalt_cells = 6\nresume_cells = 2\ncrowd = 2\n";
+    let paper = parse(&with("formation_paper", paper)).expect("good");
     let expected = PublishedParams { eps: 3, halt: 420, resume: 140, crowd: 2, ..PublishedParams::default() };
-    assert_eq!((paper.laws.formation, paper.laws.formation.eps()), (FormationSetup::Published(expected), 3));
-    assert!(matches!(paper.guidance(1), GuidanceSetup::Formation { template, .. } if template.slot == 1));
-    let ahead = parse(&with("law = \"lookahead\"\n")).expect("good");
-    assert_eq!(ahead.laws.formation, FormationSetup::Lookahead(FormationParams::looking_ahead()));
-    assert!(matches!(ahead.guidance(1), GuidanceSetup::Formation { template, .. } if template.slot == 1));
-    assert_ne!(ahead.fingerprint(), parse(&with("")).expect("good").fingerprint());
-    let low = parse(&with("law = \"paper\"\nhalt_cells = 1\n")).expect("good");
-    assert!(
-        matches!(low.laws.formation, FormationSetup::Published(params) if params.resume == 70),
-        "resume is at most halt"
-    );
-    for (rest, expected) in [
-        ("law = \"other\"\n", "law: unknown value `other`"),
-        ("law = \"paper\"\nlead = 2\n", "lead: the law \"paper\" has no use for it; leave it out"),
-        ("crowd = 2\n", "crowd: the law \"staya\" has no use for it; leave it out"),
-        ("law = \"lookahead\"\ncrowd = 2\n", "crowd: the law \"lookahead\" has no use for it; leave it out"),
-        ("law = \"lookahead\"\nresume_cells = 3.1\n", "resume_cells: 3.1 is out of range; give 0 to 3"),
-        ("waits = false\nhalt_cells = 3\n", "halt_cells: with waits = false no robot waits"),
-        ("law = \"paper\"\nhalt_cells = 938\n", "halt_cells: 938 is out of range"),
+    let LawSetup::Published(published) = &paper.laws.on_grid else { panic!("the paper's") };
+    assert_eq!((published.params, paper.laws.on_grid.eps()), (expected, 3));
+    assert!(matches!(paper.law(1), LawSetup::Published(settings) if settings.template.slot == 1));
+    let ahead = parse(&with("formation_lookahead", "")).expect("good");
+    assert_eq!(formation(&ahead.laws.on_grid).params, FormationParams::looking_ahead());
+    assert_eq!(formation(&ahead.law(1)).template.slot, 1);
+    assert_ne!(ahead.fingerprint(), parse(&with("", "")).expect("good").fingerprint());
+    let low = parse(&with("formation_paper", "halt_cells = 1\n")).expect("good").laws.on_grid;
+    assert!(matches!(low, LawSetup::Published(settings) if settings.params.resume == 70), "resume is at most halt");
+    for (law, rest, expected) in [
+        ("formation_paper", "lead_cells = 2\n", "grid.formation_paper.lead_cells: unknown field `lead_cells`"),
+        ("formation_lookahead", "crowd = 2\n", "grid.formation_lookahead.crowd: unknown field `crowd`"),
+        ("formation_lookahead", "resume_cells = 3.1\n", "grid.formation_lookahead.resume_cells: more than halt_cells"),
+        ("", "waits = false\nhalt_cells = 3\n", "grid.formation.halt_cells: with waits = false no robot waits"),
+        ("formation_paper", "halt_cells = 938\n", "grid.formation_paper.halt_cells: 938 is out of range"),
     ] {
-        let refusal = refusal(&with(rest));
-        assert!(refusal.contains(&format!("formation.{expected}")), "{refusal}");
+        let refusal = refusal(&with(law, rest));
+        assert!(refusal.contains(expected), "{refusal}");
     }
 }
 
 #[test]
-fn formation_options_are_refused_without_a_formation() {
+fn values_of_another_law_are_refused() {
     let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
-    let until_changed = format!("{list}[route]\nreplan = \"until_changed\"\n");
-    let scenario = parse(&until_changed).expect("good");
-    assert_eq!(scenario.laws.route.replan, Replan::UntilChanged);
-    let refusal = refusal(&format!("{list}[formation]\neps = 2\n"));
-    let expected = "s.toml:7:1: formation: these robots keep no formation; give robots.formation";
-    assert!(refusal.starts_with(expected), "{refusal}");
+    let scenario = parse(&format!("{list}[grid.route]\nreplan = \"until_changed\"\n")).expect("good");
+    assert_eq!(scenario.route().replan, Replan::UntilChanged);
+    for (rest, expected) in [
+        (
+            "[grid.formation]\neps_cells = 2\n",
+            "s.toml:7:1: grid.formation: these robots have the law \"route\"; give law = \"formation\", or leave this table out",
+        ),
+        (
+            "[grid.route]\na3 = 2\n[grid.formation]\neps_cells = 2\n",
+            "s.toml:9:1: grid.formation: these robots have the law \"route\"; give law = \"formation\"",
+        ),
+        ("[grid]\nlaw = \"formation\"\n", "s.toml:8:7: grid.law: robots.formation and the law \"formation\" do not go"),
+    ] {
+        let refusal = refusal(&format!("{list}{rest}"));
+        assert!(refusal.starts_with(expected), "{refusal}");
+    }
+}
+
+#[test]
+fn fields_of_earlier_versions_are_refused_with_the_line_to_write() {
+    let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
+    let in_plane = "[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n";
+    for (rest, expected) in [
+        (
+            "[route]\nradius = 4\n",
+            "s.toml:8:10: route.radius: this field is of an earlier version; write `radius = 4` in [grid];",
+        ),
+        (
+            "[route]\na3 = 4\n",
+            "s.toml:8:6: route.a3: this field is of an earlier version; write `a3 = 4` in [grid.route];",
+        ),
+        (
+            "[formation]\nrho = 4\n",
+            "formation.rho: this field is of an earlier version; write `rho = 4` in [robots.formation];",
+        ),
+        ("[formation]\nlaw = \"paper\"\n", "write `law = \"formation_paper\"` in [grid];"),
+        (
+            "[law]\nname = \"negotiation\"\n",
+            "law: this field is of an earlier version; write `law = \"negotiation\"` in [grid];",
+        ),
+        (&format!("{in_plane}guidance = \"route\"\n"), "write `law = \"route\"` in [plane];"),
+        (&format!("{in_plane}[route]\nexit = \"ray\"\n"), "write `exit = \"ray\"` in [plane.route];"),
+        (
+            &format!("{in_plane}[[plane.group]]\nlattice = {{ c_alpha = 3 }}\n"),
+            "plane.group[0].lattice.c_alpha: this field is of an earlier version; write `c1_alpha = 3` in [plane.group[0].lattice]",
+        ),
+    ] {
+        let refusal = refusal(&format!("{list}{rest}"));
+        assert!(refusal.contains(expected) && refusal.contains("`staya migrate FILE` rewrites a file"), "{refusal}");
+    }
 }
 
 #[test]
@@ -311,9 +390,9 @@ fn maps_are_shared_if_robots_plan_on_terrain() {
             "s.toml:9:18: maps.forget_after_s: 0.5 is out of range; give 1 to 2100",
         ),
         ("[maps]\nshares = true\n", "s.toml:8:1: maps.shares: unknown field `shares`"),
-        ("[maps]\nshare = true\n[route]\nexit = \"ray\"\n", "s.toml:8:9: maps.share: route.exit = \"ray\""),
+        ("[maps]\nshare = true\n[grid.route]\nexit = \"ray\"\n", "s.toml:8:9: maps.share: exit = \"ray\""),
         ("[maps]\nshare = true\n[scouting]\n", "s.toml:8:9: maps.share: robots that have a map"),
-        ("[maps]\nshare = true\n[route]\nreplan = \"until_changed\"\n", "s.toml:8:9: maps.share: route.replan"),
+        ("[maps]\nshare = true\n[grid.route]\nreplan = \"until_changed\"\n", "s.toml:8:9: maps.share: replan"),
     ] {
         let refusal = refusal(&with(rest));
         assert!(refusal.starts_with(expected), "{refusal}");
@@ -332,20 +411,19 @@ fn a_formation_too_large_for_the_controller_is_refused() {
         let refusal = refusal(text);
         assert!(refusal.contains(expected), "{refusal}");
     };
-    let too_many = "formation.rho: a robot would have more than 8 neighbours in the formation; give a smaller rho";
+    let too_many =
+        "robots.formation.rho: a robot would have more than 8 neighbours in the formation; give a smaller rho";
     refused(&star(9), too_many);
     refused(&star(8), "is in a wall");
     refused(&star(255), "256 robots are more than a formation holds; give at most 255");
     let wide = "formation = { rows = 16, columns = 16, start = [0, 0], goal = [0, 0] }";
     refused(&with_robots(wide), "16 rows of 16 robots do not fit any map or any memory");
-    let rho = format!(
-        "{}[formation]\nrho = 5\n",
-        with_robots("formation = { rows = 3, columns = 4, spacing = [1, 1], start = [0, 0], goal = [0, 0] }",)
-    );
-    refused(&rho, "s.toml:8:7: formation.rho");
+    let rho =
+        with_robots("formation = { rho = 5, rows = 3, columns = 4, spacing = [1, 1], start = [0, 0], goal = [0, 0] }");
+    refused(&rho, "s.toml:6:21: robots.formation.rho");
     refused(
         &rho.replace("rho = 5", "rho = 0"),
-        "s.toml:8:7: formation.rho: with rho = 0 no robot knows its neighbours; give 1 or more",
+        "s.toml:6:21: robots.formation.rho: with rho = 0 no robot knows its neighbours; give 1 or more",
     );
     let chain = |edges: &str| {
         with_robots(&format!(
@@ -373,7 +451,7 @@ proptest! {
         let mut text: Vec<char> = format!(
             "tick_s = 0.5\n{HEAD}crop = {{ x = 0, y = 0, width = 4, height = 3 }}\n[grid]\nnorm = \"chebyshev\"\n[radio]\nrange_m = 3\n\
              loss = 0.5\nburst = {{ share = 0.1, mean_ms = 1000 }}\nblackout_s = [[1, 2]]\n[robots]\n\
-             formation = {{ rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }}\n[route]\na1 = 2\n[formation]\nrho = 2\n[[fault]]\nrobot = 1\nat_s = 3\n"
+             formation = {{ rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0], rho = 2 }}\n[grid.formation]\na1 = 2\n[[fault]]\nrobot = 1\nat_s = 3\n"
         ).chars().collect();
         for (at, change) in changes {
             let at = at % text.len();

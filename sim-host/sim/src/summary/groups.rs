@@ -3,7 +3,6 @@
 use crate::engine::Outcome;
 use crate::scenario::{Part, Scenario};
 use serde::Serialize;
-use staya_controller::agent::GuidanceKind;
 use staya_controller::grid::UNIT;
 use std::fmt::{Display, Formatter};
 
@@ -15,7 +14,9 @@ pub(super) struct GroupFigures {
     first_robot: u32,
     last_robot: u32,
     robots: usize,
-    guidance: &'static str,
+    law: String,
+    #[serde(skip)]
+    has_goals: bool,
     safety: &'static str,
     arrived: usize,
     arrival_mean_seconds: Option<f64>,
@@ -43,7 +44,8 @@ impl GroupFigures {
             first_robot: number(part.members.start),
             last_robot: number(part.members.end - 1),
             robots: part.members.len(),
-            guidance: scenario.guidance(part.members.start).kind().name(),
+            law: scenario.law_of(part.members.start).name().to_owned(),
+            has_goals: scenario.law_of(part.members.start).goals().are_own(),
             safety: scenario.safety(part.members.start).kind().name(),
             arrived: times.len(),
             arrival_mean_seconds: (!times.is_empty())
@@ -58,18 +60,13 @@ impl GroupFigures {
             place_error_worst_s: place.map(|error| error.at_s),
         }
     }
-
-    /// Whether its robots have goals at which they stay.
-    fn has_goals(&self) -> bool {
-        self.guidance.parse().is_ok_and(GuidanceKind::has_goals)
-    }
 }
 
 impl Display for GroupFigures {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let Self { table, first_robot, last_robot, robots, guidance, safety, arrived, .. } = self;
-        write!(f, "robots {first_robot} to {last_robot} ({table}): {guidance}, safety {safety}")?;
-        if self.has_goals() || *arrived > 0 {
+        let Self { table, first_robot, last_robot, robots, law, safety, arrived, .. } = self;
+        write!(f, "robots {first_robot} to {last_robot} ({table}): {law}, safety {safety}")?;
+        if self.has_goals || *arrived > 0 {
             write!(f, "; {arrived} of {robots} arrived")?;
         }
         if let Some(last) = self.arrival_last_seconds {

@@ -257,7 +257,7 @@ fn a_selected_robot_shows_its_knowledge() {
 #[test]
 fn a_selected_robot_that_negotiates_shows_its_plan() {
     let mut run = Running::new(
-        "name = \"t\"\nticks = 50\nlaw.name = \"negotiation\"\nradio.range_m = 5\n\
+        "name = \"t\"\nticks = 50\ngrid.law = \"negotiation\"\nradio.range_m = 5\n\
          terrain.uniform = { width = 9, height = 1, classes = 1 }\n[robots]\n\
          list = [{ start = [0, 0], goal = [8, 0] }, { start = [2, 0], goal = [7, 0] }]\n",
     );

@@ -74,9 +74,9 @@ impl Configuration {
         let places: Vec<String> = (0..goals).map(place).collect();
         let mut text = format!(
             "name = \"new-run\"\nseed = {seed}\nticks = 4000\ntick_s = 0.1\n[radio]\nrange_m = 20\n\
-             [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"goal_flock\"\nsafety = \"orca\"\n\
+             [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nlaw = \"goal_flock\"\nsafety = \"orca\"\n\
              [plane.robots.cloud]\ncount = {robots}\nfrom_m = [0, 0]\nto_m = [{side_m:.2}, {side_m:.2}]\n\
-             goals_m = [{}]\n[plane.goal_flock]\nmin_distance_m = 0.6\narrival_m = {:.2}\n",
+             goals_m = [{}]\n[plane.goal_flock]\nmin_distance_m = 0.6\ntolerance_m = {:.2}\n",
             places.join(", "),
             0.6 * libm::sqrt(f64::from(robots)).max(2.0),
         );

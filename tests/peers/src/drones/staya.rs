@@ -2,14 +2,13 @@
 
 use super::{BEACON_STEPS, Body, FLOOR_M, LAG_S, Radio, SPEED_MPS, STEP_S, Scene, Swarm, Task as Wanted, Vector};
 use staya_controller::agent::{
-    AgentConfig, AnyAgent, AnyHalfPlanes, AnyInputs, CELLS, CellState, Command, ContactLossPolicy, GridWorkspace,
-    GuidanceSetup, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid, RouteSetup, SafetySetup, Setup, Task,
-    VISITS, Waypoint,
+    AgentConfig, AnyAgent, AnyHalfPlanes, AnyInputs, CELLS, CellState, Command, ContactLossPolicy, FormationSettings,
+    GridWorkspace, InCell, InCells, InPlane, Inputs, KinematicState, LatticeSettings, LawSettings, OnGrid,
+    RouteSettings, SafetySetup, Setup, Task, VISITS, Waypoint, WaypointSettings,
 };
-use staya_controller::formation::FormationParams;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
-use staya_controller::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
+use staya_controller::lattice::{Algorithm, Gain, LatticeParams};
 use staya_controller::neighbor::{Ages, StalenessInflation};
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::RobotId;
@@ -59,25 +58,22 @@ fn setup(scene: &Scene, drone: usize) -> Setup {
         ..AgentConfig::new(RobotId(drone as u32 + 1), (FLOOR_M / 2.0) as f32, STEP)
     };
     let speed_mps = scene.cruise_mps as f32;
-    let guidance = match scene.task {
-        Wanted::Goals => GuidanceSetup::Waypoint { speed_mps, tolerance_m: 0.05 },
+    let law = match scene.task {
+        Wanted::Goals => LawSettings::Waypoint(WaypointSettings { speed_mps, tolerance_m: 0.05 }),
         Wanted::Flock => {
             let params = LatticeParams { algorithm: Algorithm::Two, ..LatticeParams::new(SPACING_M) };
             let params = params.stable_for(STEP_S as f32, BEACON_HZ);
-            GuidanceSetup::Lattice {
-                params: LatticeParams { gamma: Gain::critical(C_GAMMA), ..params },
-                motion: ReferenceMotion::Dynamic,
-            }
+            let params = LatticeParams { gamma: Gain::critical(C_GAMMA), ..params };
+            LawSettings::Lattice(LatticeSettings { params, ..LatticeSettings::default() })
         }
         Wanted::Wedge(spacing_m) => {
             let places = wedge(scene.starts_m.len(), spacing_m);
             let edges: Vec<_> = (1..places.len() as u16).map(|place| (place.saturating_sub(2), place)).collect();
-            GuidanceSetup::Formation {
-                route: RouteSetup::default(),
-                formation: FormationParams::default(),
+            LawSettings::Formation(FormationSettings {
+                route: RouteSettings { speed_mps: Some(speed_mps), ..RouteSettings::default() },
                 template: Template::from_graph(&places, &edges, drone, 3).expect("a wedge"),
-                speed_mps: Some(speed_mps),
-            }
+                ..FormationSettings::default()
+            })
         }
     };
     let safety = SafetySetup::Orca {
@@ -85,7 +81,7 @@ fn setup(scene: &Scene, drone: usize) -> Setup {
         inflation: StalenessInflation { growth_mps: SPEED_MPS as f32, max_m: (FLOOR_M / 2.0) as f32 },
         source: AnyHalfPlanes::Analytic,
     };
-    Setup { agent, guidance, safety, format: Format::default() }
+    Setup { agent, law, safety, format: Format::default() }
 }
 
 /// The places of a wedge in cells, its tip first.

@@ -1,7 +1,7 @@
 //! Robots with exact knowledge, which move by the law alone.
 
 use super::Run;
-use staya_controller::agent::{GOALS, GuidanceSetup, SafetySetup};
+use staya_controller::agent::{GOALS, GoalFlockSettings, LawSettings, SafetySetup};
 use staya_controller::body::Body;
 use staya_controller::digest::{chained, digest};
 use staya_controller::geom::{Position, Vec3};
@@ -50,12 +50,12 @@ impl<'a> Crowd<'a> {
             SafetySetup::PushOut { params } => Some(params.cast()),
             SafetySetup::Orca { .. } | SafetySetup::Fly { .. } => return None,
         };
-        let (law, range_m) = match &group.guidance {
-            GuidanceSetup::Lattice { params, motion } if push_out.is_none() => {
-                let params: LatticeParams<f64> = params.cast();
-                (Law::Lattice { params, motion: motion.cast() }, params.range_m())
+        let (law, range_m) = match group.law.built_in()? {
+            LawSettings::Lattice(lattice) if push_out.is_none() => {
+                let params: LatticeParams<f64> = lattice.params.cast();
+                (Law::Lattice { params, motion: lattice.motion().cast() }, params.range_m())
             }
-            GuidanceSetup::GoalFlock { params, arrival_m, seed } => {
+            LawSettings::GoalFlock(GoalFlockSettings { params, arrival_m, seed }) => {
                 let (params, arrival_m): (GoalParams<f64>, _) = (params.cast(), f64::from(*arrival_m));
                 (Law::Goals { params, arrival_m, push_out, seed: *seed }, params.neighborhood_m)
             }

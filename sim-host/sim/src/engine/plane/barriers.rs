@@ -2,7 +2,7 @@
 
 use super::PlaneGround;
 use crate::world::plane::{Barrier, Barriers};
-use staya_controller::agent::{GuidanceKind, SafetyKind};
+use staya_controller::agent::{Goals, SafetyKind};
 use std::collections::HashMap;
 
 /// Robots times obstacles up to which barriers are looked for; those of later robots are not known.
@@ -16,7 +16,7 @@ impl PlaneGround {
     pub(super) fn last_goal_m(&self, number: usize, tick: u32) -> Option<[f64; 3]> {
         let places = &self.setup.starts[number].places;
         let last = self.ordered(number, tick).last().map(|order| &order.target).or(places.last())?;
-        let is_waypoint = self.setup.group(number).guidance.kind() == GuidanceKind::Waypoint;
+        let is_waypoint = self.setup.group(number).law.goals() == Goals::Waypoints;
         (is_waypoint && last.velocity_mps == [0.0; 3]).then_some(last.position_m)
     }
 

@@ -6,12 +6,12 @@ use crate::engine::grid::Changed;
 use crate::engine::ground::{Ground, Senses, StateWords, View};
 use crate::engine::state::{Reader, StateError, write};
 use crate::record::Motion;
-use crate::scenario::{Intervention, Order, Target, goals};
+use crate::scenario::{Intervention, Order, Target};
 use crate::world::Refusal;
 use crate::world::plane::{Barrier, Clearance, CommandAge, Disc, Solid};
 use crate::world::scouts::Memory;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{AgentConfig, AnyInputs, Command, GuidanceKind, Task};
+use staya_controller::agent::{AgentConfig, AnyInputs, Command, Task};
 use staya_controller::grid::{Cell, UNIT};
 use staya_controller::neighbor::Sighting;
 use staya_controller::robot::Mode;
@@ -197,8 +197,7 @@ impl Ground for PlaneGround {
 
     fn target_m(&self, index: usize, tick: u32, status: &Status) -> Option<[f64; 3]> {
         let number = self.number(index);
-        let guidance = self.setup.group(number).guidance.kind();
-        if guidance.is_on_grid() {
+        if self.setup.group(number).law.is_on_grid() {
             let land = self.plane.terrain().filter(|land| land.index(status.target).is_some())?;
             let [x, y] = land.center_m(status.target);
             return Some([x, y, 0.0]);
@@ -231,11 +230,11 @@ impl Ground for PlaneGround {
     }
 
     fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]) {
-        let guidance = self.setup.group(number).guidance.kind();
+        let goals = self.setup.group(number).law.goals();
         let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
         let places = &mut self.setup.starts[number].places;
         match places.first_mut() {
-            Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
+            Some(first) if goals.movable() > 1 => *first = target,
             _ => *places = vec![target],
         }
         if let Some(land) = self.plane.terrain() {
@@ -247,7 +246,7 @@ impl Ground for PlaneGround {
     fn change(&mut self, tick: u32, what: &Intervention) -> Result<(), Refusal> {
         match *what {
             Intervention::Waypoint { goal, place_m } => {
-                if self.setup.kinds().all(|group| goal >= goals(group.guidance.kind())) {
+                if self.setup.kinds().all(|group| goal >= group.law.goals().movable()) {
                     let what = format!("these robots have no goal {goal}");
                     return Err(Refusal::new("goal", what, "give one that they have, from 0"));
                 }

@@ -45,7 +45,7 @@ fn run(scenario: &Scenario) -> (Outcome, Vec<u32>) {
 #[test]
 fn robots_pass_a_gate_once_it_opens() {
     for replan in ["each_cell", "until_changed"] {
-        let route = format!("[route]\nreplan = \"{replan}\"\n");
+        let route = format!("[grid.route]\nreplan = \"{replan}\"\n");
         let free = run(&door(ONE, "", &route)).0;
         let gate = "[[terrain.change]]\nclass = 0\ncells = [[15, 3]]\nfor_s = 60\n";
         let kept = run(&door(ONE, gate, &route)).0;
@@ -60,7 +60,7 @@ fn a_robot_takes_another_route_when_one_closes_ahead() {
     for replan in ["each_cell", "until_changed"] {
         let changes = "[[terrain.change]]\nclass = 1\ncells = [[15, 0]]\n\
             [[terrain.change]]\nat_s = 5\nclass = 0\ncells = [[15, 3]]\n";
-        let (outcome, _) = run(&door(ONE, changes, &format!("[route]\nreplan = \"{replan}\"\n")));
+        let (outcome, _) = run(&door(ONE, changes, &format!("[grid.route]\nreplan = \"{replan}\"\n")));
         assert_eq!(outcome.arrived, 1, "{replan}");
         assert!(outcome.ticks < 60, "{replan}: {}", outcome.ticks);
     }
@@ -156,7 +156,7 @@ proptest! {
         };
         let gates: String = gates.into_iter().map(gate).collect();
         let drift = format!("[[terrain.change]]\nevery_s = 2\ndrift = {{ share = {share}, step = 2, classes = 5 }}\n");
-        let replan = if until_changed { "[route]\nreplan = \"until_changed\"\n" } else { "" };
+        let replan = if until_changed { "[grid.route]\nreplan = \"until_changed\"\n" } else { "" };
         let scouting = if is_scouted { "[scouting]\nradius = 8\nunknown = 0.3\nwrong = 0.3\n" } else { "" };
         let scenario = door(EIGHT, &(gates + &drift), &format!("{replan}{scouting}"));
         run(&Scenario { ticks: 250, ..scenario });
@@ -167,7 +167,7 @@ fn discs(first: [f64; 2], second: [f64; 2], change: &str) -> Scenario {
     parse(&format!(
         "name = \"t\"\nticks = 900\ntick_s = 0.1\n[terrain]\nuniform = {{ width = 12, height = 3, classes = 1 }}\n\
          [[terrain.change]]\nclass = 0\nrectangle = {{ x = 5, y = 0, width = 2, height = 3 }}\n{change}\n\
-         [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"route\"\n\
+         [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nlaw = \"route\"\n\
          [robots]\nlist = [{{ start = [{}, {}], goal = [10, 1] }}, {{ start = [{}, {}], goal = [10, 2] }}]\n",
         first[0], first[1], second[0], second[1]
     ))
@@ -207,7 +207,7 @@ fn with_maps(now: &[&str], old: &[&str], rest: &str) -> Scenario {
         std::fs::write(dir.path().join(name), text).expect("it can be written");
     }
     let text = format!(
-        "name = \"t\"\nticks = 3000\n[terrain]\nfile = \"now.map\"\n[route]\nradius = 3\n\
+        "name = \"t\"\nticks = 3000\n[terrain]\nfile = \"now.map\"\n[grid]\nradius = 3\n\
          [robots]\nlist = [{{ start = [1, 0], goal = [18, 0] }}]\n{rest}"
     );
     Scenario::parse(&text, &dir.path().join("t.toml"), &Overrides::default()).expect("a good scenario")
@@ -253,7 +253,7 @@ fn a_wrong_map_only_costs_time() {
     for replan in [Replan::EachCell, Replan::UntilChanged] {
         let [right, wrong] = [&WALL, &NO_DOOR_IN_THE_NORTH].map(|old| {
             let mut scenario = with_maps(&WALL, old, "[scouting]\nmap = \"old.map\"\n");
-            scenario.laws.route.replan = replan;
+            scenario.change_routes(|route| route.replan = replan);
             run(&scenario).0
         });
         assert_eq!((right.arrived, wrong.arrived), (1, 1), "{replan:?}");
@@ -273,7 +273,7 @@ fn a_map_without_a_route_does_not_prevent_exploration() {
 #[test]
 fn in_the_plane_a_map_leads_to_an_unseen_door_too() {
     let ticks = |rest: &str| {
-        let rest = format!("{rest}[plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"route\"\n");
+        let rest = format!("{rest}[plane]\nradius_m = 0.2\nmax_speed_mps = 1\nlaw = \"route\"\n");
         let scenario = with_maps(&WALL, &WALL, &rest);
         let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("it can be placed");
         assert_eq!((outcome.arrived, outcome.collisions), (1, 0), "{rest}");

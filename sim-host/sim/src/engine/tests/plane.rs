@@ -180,7 +180,7 @@ fn out_of_dead_end(depth: usize, width: usize, row: usize, in_plane: bool) -> Op
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("u.map"), format!("type octile\nheight 41\nwidth 41\nmap\n{map}\n"))
         .expect("a file");
-    let body = "[plane]\nradius_m = 0.3\nmax_speed_mps = 0.5\nguidance = \"route\"";
+    let body = "[plane]\nradius_m = 0.3\nmax_speed_mps = 0.5\nlaw = \"route\"";
     let (tick_s, ticks, body) = if in_plane { (0.1, 12_000, body) } else { (2.0, 600, "") };
     let text = format!(
         "name = \"u\"\nticks = {ticks}\ntick_s = {tick_s}\n[terrain]\nfile = \"u.map\"\n\

@@ -172,7 +172,7 @@ fn runs_with_changing_terrain_and_memory_resume() {
     moves(&on_grid, "grid", 9, 40);
     let in_plane = "tick_s = 0.1\nname = \"t\"\nticks = 200\n[terrain]\nuniform = { width = 12, height = 6, classes = 2 }\n\
         [[terrain.change]]\nat_s = 2\nfor_s = 3\nclass = 0\nrectangle = { x = 2, y = 0, width = 4, height = 6 }\n\
-        [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"route\"\n[scouting]\nunknown = 0.5\n\
+        [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nlaw = \"route\"\n[scouting]\nunknown = 0.5\n\
         [robots]\nlist = [{ start = [1, 2], goal = [10, 2] }, { start = [10, 3], goal = [1, 3] }]\n";
     let in_plane = Scenario::parse(in_plane, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
     resumes(&in_plane, "plane", 80, &[5, 19, 21, 25, 30, 49, 52]);

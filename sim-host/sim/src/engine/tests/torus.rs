@@ -30,7 +30,7 @@ fn run(starts: &[([f64; 2], [f64; 2])], torus: bool, shift_m: [f64; 2], ticks: u
     let torus = if torus { "torus_m = [60, 45]\n" } else { "" };
     let text = format!(
         "name = \"torus\"\nseed = 3\nticks = {ticks}\ntick_s = 0.1\n[radio]\nrange_m = 20\nloss = 0.1\n[plane]\nradius_m = 0.05\n\
-         max_speed_mps = 2\nguidance = \"boids\"\n{torus}[plane.boids]\ncrowded_m = 1.5\nclosest_m = 20\n[plane.robots]\nlist = [{}]\n",
+         max_speed_mps = 2\nlaw = \"boids\"\n{torus}[plane.boids]\ncrowded_m = 1.5\nclosest_m = 20\n[plane.robots]\nlist = [{}]\n",
         list.collect::<Vec<_>>().join(", ")
     );
     let scenario = Scenario::parse(&text, Path::new("torus.toml"), &Overrides::default());

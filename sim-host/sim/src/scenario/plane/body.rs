@@ -1,9 +1,11 @@
 //! The fields of a group of robots.
 
 use super::super::Draft;
-use super::super::source::Section;
+use super::super::grid::{around, moves};
+use super::super::law::LawSetup;
+use super::super::source::{Checked, Section};
 use super::table::{BodyTable, GroupTable, PlaneRobotEntry};
-use staya_controller::agent::GuidanceKind;
+use staya_controller::agent::{LawSettings, Settings as _, WaypointSettings};
 
 /// The fields of a group of robots, with their table in the file.
 #[derive(Clone, Debug)]
@@ -12,25 +14,43 @@ pub(super) struct Group<'a> {
     /// The table that defines the group: `plane` or `plane.group[1]`.
     pub at: Section<'a>,
     pub body: BodyTable,
+    /// The law without the values of the file.
+    pub kind: LawSetup,
     pub flock: u8,
 }
 
+/// The law of robots in the plane.
+const USUAL: &str = WaypointSettings::NAME;
+
 impl<'a> Group<'a> {
-    /// The robots of `[plane]`. `places` is the size of the largest formation.
-    pub fn general(draft: &'a Draft<'a>, body: &BodyTable, places: u8) -> Self {
-        let flock = if body.guidance == GuidanceKind::Formation { 0 } else { places };
-        Self { draft, at: draft.at("plane"), body: body.clone(), flock }
+    /// The robots of `[plane]`.
+    pub fn general(draft: &'a Draft<'a>, body: &BodyTable) -> Self {
+        Self::new(draft, "plane", body, 0)
     }
 
-    /// The robots of `[[plane.group]]` number `index`.
-    pub fn numbered(draft: &'a Draft<'a>, index: usize, table: &GroupTable, places: u8) -> Self {
-        let flock = match table.body.guidance {
-            // A beacon stores a formation place and a flock number in the same field.
-            GuidanceKind::Formation => 0,
-            // Each group has its own flock; when numbers run out, the last groups share one.
-            _ => table.flock.unwrap_or(places.saturating_add(u8::try_from(index + 1).unwrap_or(u8::MAX))),
-        };
-        Self { draft, at: draft.at(format!("plane.group[{index}]")), body: table.body.clone(), flock }
+    /// The robots of `[[plane.group]]` number `index`, with a flock number of their own as long as
+    /// there are any; then the last groups share one.
+    pub fn numbered(draft: &'a Draft<'a>, index: usize, table: &GroupTable) -> Self {
+        let flock = table.flock.unwrap_or(u8::try_from(index + 1).unwrap_or(u8::MAX));
+        Self::new(draft, &format!("plane.group[{index}]"), &table.body, flock)
+    }
+
+    fn new(draft: &'a Draft<'a>, path: &str, body: &BodyTable, flock: u8) -> Self {
+        let kind = LawSetup::by_name(body.law.name_or(USUAL), moves(&draft.file.grid), Some(0.0));
+        // A name that no law has was refused when it was read.
+        let kind = kind.unwrap_or_else(|| LawSetup::BuiltIn(LawSettings::Waypoint(WaypointSettings::default())));
+        Self { draft, at: draft.at(path), body: body.clone(), kind, flock }
+    }
+
+    /// The law of robots with this cruising speed and distance of arrival.
+    pub fn law(&self, cruise_mps: f64, tolerance_m: f64) -> Checked<LawSetup> {
+        let around = around(self.draft, Some(cruise_mps), tolerance_m)?;
+        self.body.law.build(&self.at, USUAL, moves(&self.draft.file.grid), &around)
+    }
+
+    /// Whether each robot has a goal of its own, at which it stays.
+    pub fn has_goals(&self) -> bool {
+        self.kind.goals().are_own()
     }
 
     /// The group of a listed robot that has a body of its own.

@@ -1,6 +1,8 @@
 //! Checks of `[plane]`: positions, speeds, and combinations of tables.
 
 use super::super::Draft;
+use super::super::check::routes;
+use super::super::law::LawSetup;
 use super::super::ranges::short;
 use super::super::source::{Checked, Section};
 use super::body::Group;
@@ -9,7 +11,7 @@ use super::{PlaneSetup, Start};
 use crate::nearby::{Cells, Query, Search};
 use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
-use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
+use staya_controller::agent::{Goals, WAYPOINTS};
 
 pub(in super::super) fn norm(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
@@ -25,30 +27,32 @@ fn start_velocity(at: &Section<'_>, name: &str, start: Place, most_mps: f64) -> 
     Err(at.error(name, what, format!("give at most {} m/s in all", short(most_mps))))
 }
 
-pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
-    match guidance {
-        GuidanceKind::Waypoint | GuidanceKind::Lattice => 1,
-        GuidanceKind::GoalFlock => GOALS as u8,
-        GuidanceKind::Boids | GuidanceKind::Route | GuidanceKind::Formation => 0,
-    }
-}
-
-/// A robot on the grid starts with one goal, which an operator's order cannot move.
+/// A robot over cells starts with one goal, which an operator's order cannot move.
 fn goal_count(group: &Group<'_>, at: &Section<'_>, name: &str, count: usize) -> Checked {
-    let guidance = group.body.guidance;
-    let most = if guidance == GuidanceKind::Route { 1 } else { goals(guidance) };
-    if count <= usize::from(most) {
+    let most = match group.kind.goals() {
+        Goals::None => 0,
+        Goals::Cell | Goals::Waypoints => 1,
+        Goals::Shared(most) => usize::from(most),
+    };
+    if count <= most {
         return Ok(());
     }
-    let what = format!("{count} goals are too many for guidance \"{}\"", guidance.name());
-    Err(at.error(name, what, format!("give at most {most}, or another guidance")))
+    let law = group.kind.name();
+    let (what, remedy) = match most {
+        0 => (format!("the law \"{law}\" takes no goal"), "leave it out, or give another law".to_owned()),
+        _ => (
+            format!("{count} goals are too many for the law \"{law}\""),
+            format!("give at most {most}, or another law"),
+        ),
+    };
+    Err(at.error(name, what, remedy))
 }
 
 /// The terrain for a law that moves from cell to cell; an error if there is none.
 pub(super) fn land<'a>(group: &Group<'_>, terrain: Option<&'a Terrain>) -> Checked<Option<&'a Terrain>> {
-    let is_on_grid = group.body.guidance.is_on_grid();
-    let (what, remedy) = ("this guidance goes from cell to cell", "give [terrain], or another guidance");
-    group.at.require(!is_on_grid || terrain.is_some(), "guidance", what, remedy)?;
+    let is_on_grid = group.kind.is_on_grid();
+    let (what, remedy) = ("this law goes from cell to cell", "give [terrain], or another law");
+    group.at.require(!is_on_grid || terrain.is_some(), "law", what, remedy)?;
     Ok(terrain.filter(|_| is_on_grid))
 }
 
@@ -83,17 +87,17 @@ pub(super) fn list(group: &Group<'_>, list: &[PlaneRobotEntry]) -> Checked {
             goal_count(group, &at, "goal_m", 1)?;
         }
         if !robot.via_m.is_empty() {
-            via(group.body.guidance, &at, robot)?;
+            via(&group.kind, &at, robot)?;
         }
     }
     Ok(())
 }
 
-fn via(guidance: GuidanceKind, at: &Section<'_>, robot: &PlaneRobotEntry) -> Checked {
+fn via(law: &LawSetup, at: &Section<'_>, robot: &PlaneRobotEntry) -> Checked {
     let (count, most) = (robot.via_m.len(), WAYPOINTS - 1);
-    let what = format!("robots with guidance \"{}\" go by no places", guidance.name());
-    let remedy = "give guidance \"waypoint\", or leave it out";
-    at.require(guidance == GuidanceKind::Waypoint, "via_m", what, remedy)?;
+    let what = format!("robots with the law \"{}\" go by no places", law.name());
+    let remedy = "give law = \"waypoint\", or leave it out";
+    at.require(law.goals() == Goals::Waypoints, "via_m", what, remedy)?;
     at.require(robot.goal_m.is_some(), "via_m", "a way needs an end", "give goal_m too")?;
     let what = format!("{count} places on the way are too many");
     at.require(count <= most, "via_m", what, format!("give at most {most}"))
@@ -152,4 +156,16 @@ pub(super) fn outside(draft: &Draft<'_>, setup: &PlaneSetup) -> Checked {
         return Err(draft.error("plane.robots", what, remedy));
     }
     Ok(())
+}
+
+/// Refuses a law that these bodies cannot have, or values of it that have no meaning for them.
+pub(super) fn law(group: &Group<'_>, law: &LawSetup) -> Checked {
+    let what = format!("the law \"{}\" goes from cell to cell", law.name());
+    let is_on_grid_alone = matches!(law, LawSetup::Published(_) | LawSetup::Lookahead(_));
+    group.at.require(!is_on_grid_alone, "law", what, "give law = \"formation\", or leave [plane] out")?;
+    let name = law.name();
+    let what = "robots in the plane do not wait; the slowest sets the pace";
+    let is_free = !(law.keeps_formation() && group.body.law.given("waits"));
+    group.at.require(is_free, &format!("{name}.waits"), what, "leave it out")?;
+    routes(&group.at, &group.body.law, law)
 }

@@ -1,18 +1,17 @@
 //! Groups of identical robots: body, law and safety layer.
 
-use super::super::params;
+use super::super::law::LawSetup;
 use super::super::ranges::{duration, micros, short};
 use super::super::source::Checked;
 use super::body::Group;
-use super::flocks;
+use super::checks;
 use super::table::OrcaTable;
 use crate::world::plane::Abilities;
-use staya_controller::agent::{ContactLossPolicy, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
+use staya_controller::agent::{ContactLossPolicy, Goals, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::TOLERANCE;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
-use staya_controller::template::Template;
 use staya_controller::time::Duration;
 
 /// Properties that the robots of a group have in common.
@@ -28,10 +27,12 @@ pub struct RobotGroup {
     pub tolerance_m: f64,
     /// Range of obstacle detection, metres.
     pub sight_m: f64,
-    /// The guidance law.
-    pub guidance: GuidanceSetup,
+    /// The law; formations add the robot's place.
+    pub law: LawSetup,
     /// The safety layer.
     pub safety: SafetySetup,
+    /// Whether the ball around a silent robot grows as fast as the fastest robot moves.
+    grows_as_the_fastest: bool,
     /// Reaction to loss of contact.
     pub contact_loss: ContactLossPolicy<f32>,
     /// How long its robots listen before they move. `None`: as long as the radio needs.
@@ -69,15 +70,12 @@ impl RobotGroup {
     }
 }
 
-/// Raises the default growth rate to the speed of the fastest robot; explicit rates are kept.
+/// Sets the growth rates that are not given to the speed of the fastest robot.
 pub(super) fn grow_as_the_fastest(general: &mut RobotGroup, groups: &mut [RobotGroup]) {
     let speed = |group: &RobotGroup| group.abilities.max_speed_mps as f32;
     let fastest_mps = groups.iter().map(speed).fold(speed(general), f32::max);
-    for group in groups.iter_mut().chain([general]) {
-        let usual_mps = speed(group);
-        if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut group.safety
-            && inflation.growth_mps == usual_mps
-        {
+    for group in groups.iter_mut().chain([general]).filter(|group| group.grows_as_the_fastest) {
+        if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut group.safety {
             inflation.growth_mps = fastest_mps;
         }
     }
@@ -99,7 +97,8 @@ impl Group<'_> {
             tick_s: f64::from(micros(self.draft.file.tick_s)) / 1e6,
         };
         let orca = body.orca.clone().unwrap_or_default();
-        let guidance = self.guidance(cruise_mps, tolerance_m)?;
+        let law = self.law(cruise_mps, tolerance_m)?;
+        checks::law(self, &law)?;
         let safety = self.safety(&abilities, &orca)?;
         let has_orca = !matches!(body.safety, SafetyKind::None | SafetyKind::PushOut);
         let remedy = format!("give {}.safety = \"orca\", or leave this table out", self.at.path);
@@ -110,30 +109,14 @@ impl Group<'_> {
             cruise_mps,
             tolerance_m,
             sight_m: body.sight_m,
-            guidance,
+            law,
             safety,
+            grows_as_the_fastest: orca.inflation_mps.is_none(),
             contact_loss: contact_loss(&orca),
             listen: orca.listen_s.map(duration),
             expects_others: orca.expects_others,
             flock: self.flock,
         })
-    }
-
-    fn guidance(&self, cruise_mps: f64, tolerance_m: f64) -> Checked<GuidanceSetup> {
-        if let Some(flock) = flocks::guidance(self, cruise_mps)? {
-            return Ok(flock);
-        }
-        let speed_mps = cruise_mps as f32;
-        if self.body.guidance == GuidanceKind::Waypoint {
-            return Ok(GuidanceSetup::Waypoint { speed_mps, tolerance_m: tolerance_m as f32 });
-        }
-        let (route, speed_mps) = (params::routing(self.draft)?, Some(speed_mps));
-        if self.body.guidance == GuidanceKind::Route {
-            return Ok(GuidanceSetup::Route { route, speed_mps });
-        }
-        let formation = params::formation(self.draft)?;
-        // Templates differ by robot: see `Scenario::guidance`.
-        Ok(GuidanceSetup::Formation { route, formation, template: Template::default(), speed_mps })
     }
 
     fn safety(&self, abilities: &Abilities, table: &OrcaTable) -> Checked<SafetySetup> {
@@ -165,7 +148,7 @@ impl Group<'_> {
     /// A flock has the longest look-ahead: its members move together, and have no places of their
     /// own that they could be late at. So have flyers, which jam in a downwash with less.
     fn look_ahead(&self) -> AvoidParams<f32> {
-        if !self.body.guidance.has_goals() || self.body.safety == SafetyKind::Fly {
+        if !self.has_goals() || self.body.safety == SafetyKind::Fly {
             return AvoidParams::default();
         }
         AvoidParams::for_body(self.body.radius_m as f32, self.body.max_speed_mps as f32)
@@ -178,7 +161,7 @@ impl Group<'_> {
         let what = "safety \"push_out\" and its table go together";
         self.at.require(go_together, "push_out", what, "give both or none of them")?;
         let Some(given) = given else { return Ok(params) };
-        let jams = self.body.guidance == GuidanceKind::Waypoint && given.model == Model::Tangential;
+        let jams = self.kind.goals() == Goals::Waypoints && given.model == Model::Tangential;
         let what = "robots that go straight to a place jam for ever in each other's way";
         self.at.require(!jams, "push_out.model", what, "give \"radial\", or safety \"orca\"")?;
         given.params.store(&mut params);

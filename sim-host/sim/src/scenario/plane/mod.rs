@@ -2,7 +2,6 @@
 
 mod body;
 mod checks;
-mod flocks;
 mod grounds;
 mod group;
 mod inherit;
@@ -14,7 +13,6 @@ mod starts;
 mod table;
 mod torus;
 
-pub(crate) use checks::goals;
 pub(super) use checks::norm;
 pub(super) use inherit::inherit;
 pub(super) use remarks::remarks;
@@ -33,11 +31,11 @@ use super::robots;
 use super::source::{Checked, Section};
 use super::{Draft, Part, Placed, Robot, Scenario};
 use crate::nearby::Space;
+use crate::own_law::NEGOTIATION;
 use crate::terrain::Terrain;
 use crate::world::plane::{Sensing, Solid};
 use body::Group;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::GuidanceKind;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 
@@ -122,7 +120,7 @@ impl PlaneSetup {
     /// The cells of robots given in metres are valid only if their law moves from cell to cell.
     fn robots(&self, in_cells: &[Robot], terrain: Option<&Terrain>) -> Vec<Robot> {
         let cell = |index: usize, place_m: Option<[f64; 3]>| {
-            let land = terrain.filter(|_| self.group(index).guidance.kind().is_on_grid());
+            let land = terrain.filter(|_| self.group(index).law.is_on_grid());
             land.zip(place_m).map_or_else(Cell::default, |(land, [x, y, _])| land.nearest_cell([x, y]))
         };
         let last = in_cells.last().map_or(0, |robot| robot.id.0);
@@ -153,13 +151,15 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
         }
         (None, _) => None,
     };
-    let (has_cells, guidance) = (cells.is_some(), table.body.guidance);
-    let remedy = "give [terrain] and the top-level [robots], or another guidance";
-    let fits = has_cells || !guidance.is_on_grid();
-    draft.require(fits, "plane.guidance", "this guidance goes from cell to cell", remedy)?;
-    let go_together = !has_cells || (guidance == GuidanceKind::Formation) == file.cells_in_formation();
-    let what = "robots.formation and guidance \"formation\" go together";
-    draft.require(go_together, "plane.guidance", what, "give both or none of them")?;
+    let (kind, has_cells) = (Group::general(draft, &table.body), cells.is_some());
+    let what = "these robots have the laws of their bodies";
+    draft.require(file.grid.law.is_empty(), "grid", what, "give `law` and its table in [plane]")?;
+    let remedy = "give [terrain] and the top-level [robots], or another law";
+    let fits = has_cells || !kind.kind.is_on_grid() || table.robots.is_none();
+    draft.require(fits, "plane.law", "this law goes from cell to cell", remedy)?;
+    let go_together = !has_cells || kind.kind.keeps_formation() == file.cells_in_formation();
+    let what = "robots.formation and the law \"formation\" go together";
+    draft.require(go_together, "plane.law", what, "give both or none of them")?;
     let in_metres = table.robots.as_ref();
     let is_formation = in_metres.is_some_and(|given| matches!(given.robots, RobotsSource::Formation(_)));
     let remedy = "give it as the top-level robots.formation, or to a plane.group";
@@ -170,8 +170,6 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
     let remedy = "give either plane.robots in metres or the top-level robots in cells, with plane.group if you like";
     draft.require(is_defined, "plane.robots", what, remedy)?;
 
-    let places = flocks::places(file);
-    let kind = Group::general(draft, &table.body, places);
     let mut general = kind.build()?;
     let solids = solids(draft, table)?;
     let (cells, mut formations) = cells.unwrap_or_default();
@@ -189,11 +187,10 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
     }
     let mut parts = vec![Part { table: "plane".to_owned(), members: 0..placing.starts.len() }];
     for (index, entry) in table.group.iter().enumerate() {
-        let (group, before) = (Group::numbered(draft, index, entry, places), placing.starts.len());
+        let (group, before) = (Group::numbered(draft, index, entry), placing.starts.len());
         let land = checks::land(&group, terrain)?;
-        flocks::number(&group, entry.flock, places)?;
         let number = placing.add(&group)?;
-        match (group.body.guidance == GuidanceKind::Formation, &entry.robots.robots, land) {
+        match (group.kind.keeps_formation(), &entry.robots.robots, land) {
             (true, RobotsSource::Formation(formation), Some(land)) => {
                 let at = group.at.at("robots.formation");
                 let (robots, formation) = robots::of_group(draft, &at, formation, land)?;
@@ -204,8 +201,8 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
                 formations.push(formation.of(before, id));
             }
             (true, ..) | (false, RobotsSource::Formation(_), _) => {
-                let what = "guidance \"formation\" and robots.formation go together, without other robots";
-                return Err(group.at.error("guidance", what, "give both or none of them"));
+                let what = "the law \"formation\" and robots.formation go together, without other robots";
+                return Err(group.at.error("law", what, "give both or none of them"));
             }
             (false, _, land) => {
                 placing.place(&group, Some(number), &entry.robots)?;
@@ -216,6 +213,7 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
         }
         parts.push(Part { table: group.at.path, members: before..placing.starts.len() });
     }
+    fit_around_corners(draft, &general, &placing.groups, terrain)?;
     let starts::Placing { mut groups, starts, .. } = placing;
     parts.retain(|part| has_groups && !part.members.is_empty());
     group::grow_as_the_fastest(&mut general, &mut groups);
@@ -236,6 +234,28 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
     setup.orders = orders(draft, table, &setup)?;
     setup.sensing = sensing::sensing(draft, table, &setup)?;
     Ok((Placed { robots: setup.robots(&cells, terrain), formations, parts }, setup))
+}
+
+/// Largest radius of robots that negotiate, cells: two that follow each other around a corner pass
+/// at 0.7 cells.
+const WIDEST: f64 = 0.35;
+
+fn fit_around_corners(
+    draft: &Draft<'_>,
+    general: &RobotGroup,
+    groups: &[RobotGroup],
+    terrain: Option<&Terrain>,
+) -> Checked {
+    let Some(land) = terrain else { return Ok(()) };
+    let widest_m = land.cell_m * WIDEST;
+    let paths = (0..groups.len()).map(|index| format!("plane.group[{index}]"));
+    for (path, group) in paths.zip(groups).chain([("plane".to_owned(), general)]) {
+        let fits = group.law.name() != NEGOTIATION || group.radius_m <= widest_m;
+        let what = format!("{} m are more than {WIDEST} cells: robots touch at a corner", group.radius_m);
+        let remedy = format!("give at most {widest_m}, or a larger terrain.cell_m");
+        draft.at(path).require(fits, "radius_m", what, remedy)?;
+    }
+    Ok(())
 }
 
 fn intruders(draft: &Draft<'_>, table: &PlaneTable) -> Checked<Vec<Intruder>> {
@@ -290,14 +310,14 @@ fn solids(draft: &Draft<'_>, table: &PlaneTable) -> Checked<Vec<Solid>> {
 }
 
 fn orders(draft: &Draft<'_>, table: &PlaneTable, setup: &PlaneSetup) -> Checked<Vec<Order>> {
-    let mut guidances: Vec<_> = setup.kinds().map(|group| group.guidance.kind()).collect();
-    guidances.dedup();
-    let names: Vec<_> = guidances.iter().map(|guidance| format!("\"{}\"", guidance.name())).collect();
+    let mut laws: Vec<_> = setup.kinds().map(|group| (group.law.name(), group.law.goals())).collect();
+    laws.dedup();
+    let names: Vec<_> = laws.iter().map(|(name, _)| format!("\"{name}\"")).collect();
     let order = |(index, order): (usize, &OrderEntry)| {
         let at = draft.at(format!("plane.order[{index}]"));
-        let what = format!("robots with guidance {} have no goal {}", names.join(" or "), order.goal);
-        let has_goal = guidances.iter().any(|&guidance| order.goal < checks::goals(guidance));
-        at.require(has_goal, "goal", what, "give one that they have, from 0, or another guidance")?;
+        let what = format!("robots with the law {} have no goal {}", names.join(" or "), order.goal);
+        let has_goal = laws.iter().any(|(_, goals)| order.goal < goals.movable());
+        at.require(has_goal, "goal", what, "give one that they have, from 0, or another law")?;
         let target = Target { position_m: order.place_m.0, velocity_mps: order.velocity_mps.0 };
         Ok(Order { tick: draft.tick(order.at_s), index: order.goal, target })
     };

@@ -1,9 +1,12 @@
 //! Warnings about valid but probably unintended settings in `[plane]`.
 
 use super::super::Scenario;
-use super::{PlaneSetup, RobotGroup, Start, flocks};
+use super::super::law::LawSetup;
+use super::{PlaneSetup, RobotGroup, Start};
+use crate::radio::RadioParams;
 use crate::world::plane::{Solid, Solids, contains};
-use staya_controller::agent::{GuidanceKind, GuidanceSetup, SafetySetup};
+use staya_controller::agent::{GAMMA_OF_TWO, Goals, LawSettings, SafetySetup};
+use staya_controller::lattice::{Algorithm, LatticeParams};
 
 const NAMED: usize = 3;
 
@@ -12,8 +15,10 @@ type Loop = Vec<[f64; 2]>;
 /// O(robots x walls + sides of a closed wall squared).
 pub(in super::super) fn remarks(scenario: &Scenario, setup: &PlaneSetup) -> Vec<String> {
     let (loops, tick_s) = (loops(&setup.solids), scenario.tick_s());
-    let gains = |group: &RobotGroup| match &group.guidance {
-        GuidanceSetup::Lattice { params, .. } => flocks::remark(params, &scenario.radio, scenario.step_s()),
+    let gains = |group: &RobotGroup| match &group.law {
+        LawSetup::BuiltIn(LawSettings::Lattice(lattice)) => {
+            unstable(&lattice.params, &scenario.radio, scenario.step_s())
+        }
         _ => None,
     };
     let mut remarks: Vec<_> = setup.kinds().filter_map(gains).collect();
@@ -55,10 +60,31 @@ pub(in super::super) fn remarks(scenario: &Scenario, setup: &PlaneSetup) -> Vec<
     remarks
 }
 
+/// Warns of a flock whose gains are too high for its radio, or squeeze it.
+fn unstable(params: &LatticeParams<f32>, radio: &RadioParams, step_s: f64) -> Option<String> {
+    let (delay_s, rate_hz) = radio.news(step_s);
+    let news_s = delay_s + 1.0 / rate_hz;
+    let (gain, pull) = (f64::from(params.alpha.position), f64::from(params.gamma.position));
+    if news_s > 1.001 * f64::from(params.oldest_news_s()) {
+        let bearable = params.stable_for(delay_s as f32, rate_hz as f32).alpha.position;
+        return Some(format!(
+            "plane.lattice.c1_alpha = {gain}: the flock will shake itself apart, since robots hear of each other up to \
+             {news_s:.2} s late; at most {bearable:.2} bears that, and is taken if you leave the field out"
+        ));
+    }
+    (params.algorithm == Algorithm::Two && gain < 0.99 * f64::from(GAMMA_OF_TWO) * pull).then(|| {
+        format!(
+            "plane.lattice.c1_gamma = {pull}: in algorithm 2 it squeezes a large flock until robots coincide; give at most \
+             c1_alpha / {GAMMA_OF_TWO} = {:.3}",
+            gain / f64::from(GAMMA_OF_TWO)
+        )
+    })
+}
+
 /// Final position of a robot that goes straight to a stationary goal.
 fn goal(group: &RobotGroup, start: &Start) -> Option<[f64; 3]> {
     let last = start.places.last()?;
-    (group.guidance.kind() == GuidanceKind::Waypoint && last.velocity_mps == [0.0; 3]).then_some(last.position_m)
+    (group.law.goals() == Goals::Waypoints && last.velocity_mps == [0.0; 3]).then_some(last.position_m)
 }
 
 fn named(robots: impl Iterator<Item = usize>) -> Option<String> {

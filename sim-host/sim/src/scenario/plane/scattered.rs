@@ -7,7 +7,7 @@ use super::grounds::Surroundings;
 use super::place::{Start, Target};
 use super::table::{BallsEntry, Place, ScatteredDiscs};
 use crate::world::plane::Solid;
-use staya_controller::agent::GuidanceKind;
+use staya_controller::agent::Goals;
 use staya_controller::rand::Rng;
 use std::collections::HashMap;
 
@@ -83,9 +83,9 @@ pub(super) fn starts(
     surroundings: &Surroundings<'_>,
 ) -> Checked<Vec<Start>> {
     let (body, at) = (&group.body, group.at.at("robots.scattered"));
-    if !matches!(body.guidance, GuidanceKind::Waypoint | GuidanceKind::Lattice | GuidanceKind::GoalFlock) {
-        let what = format!("robots with guidance \"{}\" have no goals", body.guidance.name());
-        return Err(at.unfit(what, "give a cloud, or guidance \"waypoint\""));
+    if matches!(group.kind.goals(), Goals::None | Goals::Cell) {
+        let what = format!("robots with the law \"{}\" have no goals in metres", group.kind.name());
+        return Err(at.unfit(what, "give a cloud, or law = \"waypoint\""));
     }
     let (least_m, spacing_m) = (2.0 * body.radius_m, entry.spacing_m.unwrap_or(3.0 * body.radius_m));
     at.within("spacing_m", spacing_m, least_m..=1e6, "metres")?;

@@ -16,10 +16,10 @@ pub(super) fn sensing(draft: &Draft<'_>, table: &PlaneTable, setup: &PlaneSetup)
     let Some(sensing) = table.sensing else { return Ok(None) };
     let (field, what) = ("plane.sensing", "sensors do not see across the edges of a torus");
     draft.require(setup.torus_m.is_none(), field, what, "leave out plane.sensing or plane.torus_m")?;
-    if let Some(group) = setup.kinds().find(|group| group.guidance.kind().is_on_grid()) {
-        let name = group.guidance.kind().name();
-        let what = format!("guidance \"{name}\" moves between cells, which sensors do not observe");
-        return Err(draft.error(field, what, "give a guidance that goes by velocities, or leave it out"));
+    if let Some(group) = setup.kinds().find(|group| group.law.is_on_grid()) {
+        let name = group.law.name();
+        let what = format!("the law \"{name}\" moves between cells, which sensors do not observe");
+        return Err(draft.error(field, what, "give a law that goes by velocities, or leave it out"));
     }
     // At least the age at which a beacon is stale, and at least three detections, of which a robot
     // takes one in a step at most.

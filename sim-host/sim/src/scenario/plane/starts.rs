@@ -67,7 +67,7 @@ impl Placing<'_> {
             RobotsSource::Cloud(cloud) => {
                 checks::cloud(group, cloud)?;
                 // Laws that go from cell to cell need a free cell, not free land around the body.
-                let least_m = if group.body.guidance.is_on_grid() { 0.0 } else { 2.0 * group.body.radius_m };
+                let least_m = if group.kind.is_on_grid() { 0.0 } else { 2.0 * group.body.radius_m };
                 let is_open = |place| self.surroundings.is_open(place, least_m);
                 let (others, radius_m) = (self.others(), group.body.radius_m);
                 let is_free = |place| is_clear(place, radius_m, &others) && is_open(place);

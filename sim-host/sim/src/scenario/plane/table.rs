@@ -2,12 +2,10 @@
 
 use super::super::formation::FormationEntry;
 use super::super::given::Given;
+use super::super::law::LawPart;
 use super::super::read::{Field, Node, Wrong};
 use crate::{defaults, names, one_of, table};
-use staya_controller::agent::{GuidanceKind, SafetyKind};
-use staya_controller::boids::BoidsParams;
-use staya_controller::goal_flock::GoalParams;
-use staya_controller::lattice::LatticeParams;
+use staya_controller::agent::SafetyKind;
 use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::{RADIUS, TOLERANCE};
 use staya_controller::push_out::{Model, PushOutParams};
@@ -28,6 +26,7 @@ table! {
     /// Fields of `[plane]` and `[[plane.group]]`. A group inherits those of `[plane]` that it
     /// lacks, and the tables of a law or a safety layer if it has the same one.
     pub struct BodyTable {
+        part law: LawPart;
         /// Radius of each body, metres.
         pub radius_m: f64, RADIUS;
         /// Highest speed on easy land, m/s.
@@ -45,20 +44,12 @@ table! {
         /// Time of the first decision, a whole number of ticks below a step. Default: by
         /// `clocks.phases`.
         pub phase_s: Option<f64>, 0.0..=60.0, "seconds";
-        /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs a formation too.
-        pub guidance: GuidanceKind = GuidanceKind::Waypoint;
         /// Safety layer.
         pub safety: SafetyKind = SafetyKind::Orca;
         /// Parameters of ORCA.
         pub orca: Option<OrcaTable>;
         /// Parameters of push-out; required for it.
         pub push_out: Option<PushOutTable>;
-        /// Parameters of the alpha flock; required for it.
-        pub lattice: Option<LatticeTable>;
-        /// Parameters of the goal flock; required for it.
-        pub goal_flock: Option<GoalFlockTable>;
-        /// Parameters of boids; required for them.
-        pub boids: Option<BoidsTable>;
     }
 }
 
@@ -133,7 +124,7 @@ one_of! {
         Cloud(CloudEntry) = "cloud";
         /// Robots at random places with individual goals.
         Scattered(ScatteredDiscs) = "scattered";
-        /// A formation, in cells of the terrain; only in a group with guidance `"formation"`.
+        /// A formation, in cells of the terrain; only in a group with `law = "formation"`.
         Formation(FormationEntry) = "formation";
     }
 }
@@ -174,8 +165,7 @@ table! {
         part body: BodyTable;
         /// The robots of the group.
         pub robots: PlaneRobots;
-        /// Flock number; 0 is the flock of the robots of `[plane]`. If there are formations, at
-        /// least the number of places of the largest. Default: a flock of its own.
+        /// Flock number; 0 is the flock of the robots of `[plane]`. Default: a flock of its own.
         pub flock: Option<u8>;
     }
 }
@@ -366,41 +356,5 @@ table! {
     }
 }
 
-table! {
-    /// `[plane.lattice]` (OLF).
-    pub struct LatticeTable {
-        // Distances and gains. Default of `c_alpha`: stable with the delay of the radio.
-        part params: Given<LatticeParams<f32>>;
-        /// Algorithm 1: other robots only; 2: also the goal; 3: also obstacles. Default: 3.
-        pub algorithm: u8 = 3, 1.0..=3.0, "";
-        /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays. Default:
-        /// true.
-        pub goal_moves: bool = true;
-        /// Distance behind a stationary goal over which its velocity fades, metres. Default: never.
-        pub goal_rest_m: Option<f64>, 0.01..=1e6, "metres";
-        /// Whether robots in algorithm 3 do not push neighbours that are nearer to the goal, so
-        /// that they pass gaps one by one. Default: false.
-        pub takes_turns: bool = false;
-    }
-}
-
-table! {
-    /// `[plane.goal_flock]` (PAV).
-    pub struct GoalFlockTable {
-        // Distances and gains. Default of `neighborhood_m`: four times `min_distance_m`.
-        part params: Given<GoalParams<f32>>;
-        /// Distance at which a goal counts as reached, metres. Default: `neighborhood_m`.
-        pub arrival_m: Option<f64>, TOLERANCE;
-    }
-}
-
-table! {
-    /// `[plane.boids]` (STA).
-    pub struct BoidsTable {
-        // Distances and turns.
-        part params: Given<BoidsParams<f32>>;
-    }
-}
-
 defaults!(OrcaTable);
-names!(GuidanceKind, SafetyKind, Model);
+names!(SafetyKind, Model);

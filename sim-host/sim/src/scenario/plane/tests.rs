@@ -6,9 +6,12 @@ mod sensing;
 
 use super::super::Overrides;
 use super::super::ScenarioError;
+use super::super::law::LawSetup;
 use super::*;
 use proptest::prelude::*;
-use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceSetup, SafetyKind, SafetySetup};
+use staya_controller::agent::{
+    AnyHalfPlanes, ContactLossPolicy, FormationSettings, LawSettings, SafetyKind, SafetySetup, WaypointSettings,
+};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::time::Duration;
@@ -66,7 +69,8 @@ fn the_smallest_plane_has_the_documented_defaults() {
     assert!((group.tolerance_m - 0.02).abs() < 1e-12);
     let (params, inflation) = (AvoidParams::for_body(0.2, 1.0), StalenessInflation { growth_mps: 1.0, max_m: 0.2 });
     assert!((0.7399..0.7401).contains(&params.horizon_s), "0.5 s and 1.2 radii");
-    assert_eq!(group.guidance, GuidanceSetup::Waypoint { speed_mps: 1.0, tolerance_m: 0.02 });
+    let waypoint = LawSettings::Waypoint(WaypointSettings { speed_mps: 1.0, tolerance_m: 0.02 });
+    assert_eq!(group.law, LawSetup::BuiltIn(waypoint));
     assert_eq!(group.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
     assert!(!plane.has_terrain);
     let [one, two] = &plane.starts[..] else { panic!("two robots") };
@@ -182,8 +186,7 @@ fn orders_are_sorted_by_time() {
 
 #[test]
 fn robots_of_the_grid_start_at_cell_centres() {
-    let text =
-        format!("{HEAD}{LAND}[robots]\nlist = [{{ start = [0, 1], goal = [3, 8] }}]\n{PLANE}guidance = \"route\"\n");
+    let text = format!("{HEAD}{LAND}[robots]\nlist = [{{ start = [0, 1], goal = [3, 8] }}]\n{PLANE}law = \"route\"\n");
     let plane = setup(&text);
     assert!(plane.has_terrain);
     assert_eq!(plane.starts[0].position_m, [1.0, 3.0, 0.0]);
@@ -224,13 +227,15 @@ proptest! {
 
 fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
     let text = format!(
-        "{HEAD}tick_s = 0.1\n{PLANE}guidance = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\
+        "{HEAD}tick_s = 0.1\n{PLANE}law = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\
          [plane.lattice]\nspacing_m = 1\n{gains}\n[radio]\n{radio}\n"
     );
     let scenario = Scenario::parse(&text, Path::new("s.toml"), &Overrides::default()).unwrap();
     let remarks = scenario.remarks();
-    match &scenario.plane().unwrap().general.guidance {
-        GuidanceSetup::Lattice { params, .. } => (params.alpha.position, params.gamma.position, remarks),
+    match &scenario.plane().unwrap().general.law {
+        LawSetup::BuiltIn(LawSettings::Lattice(lattice)) => {
+            (lattice.params.alpha.position, lattice.params.gamma.position, remarks)
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -244,14 +249,14 @@ fn default_gains_are_stable_and_unstable_ones_cause_a_warning() {
     assert!((late - 1.0).abs() < 1e-3 && said.is_empty());
     let (lossy, _, _) = gains("delay_ms = 100\nloss = 0.5", "");
     assert!((lossy - 4.0 / 9.0).abs() < 1e-3);
-    let (alpha, gamma, said) = gains("delay_ms = 100", "c_alpha = 10");
+    let (alpha, gamma, said) = gains("delay_ms = 100", "c1_alpha = 10");
     assert_eq!((alpha, gamma), (10.0, 2.0));
-    assert!(said[0].contains("c_alpha = 10") && said[0].contains("at most 1.00"), "{said:?}");
+    assert!(said[0].contains("c1_alpha = 10") && said[0].contains("at most 1.00"), "{said:?}");
     // In algorithm 2 the goal compresses the flock.
     let (alpha, gamma, said) = gains("", "algorithm = 2");
     assert!((alpha / gamma - 50.0).abs() < 1e-3 && said.is_empty());
-    let (_, _, said) = gains("", "algorithm = 2\nc_gamma = 1");
-    assert!(said[0].contains("c_gamma = 1: in algorithm 2"), "{said:?}");
+    let (_, _, said) = gains("", "algorithm = 2\nc1_gamma = 1");
+    assert!(said[0].contains("c1_gamma = 1: in algorithm 2"), "{said:?}");
 }
 
 #[test]

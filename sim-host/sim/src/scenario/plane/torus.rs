@@ -1,11 +1,12 @@
 //! `plane.torus_m`: a plane with periodic borders.
 
 use super::super::Draft;
+use super::super::law::LawSetup;
 use super::super::source::Checked;
 use super::PlaneSetup;
 use super::table::PlaneTable;
 use crate::nearby::Space;
-use staya_controller::agent::{GuidanceKind, GuidanceSetup};
+use staya_controller::agent::LawSettings;
 
 /// Height of the space, metres. A minimal height keeps the spatial index to one layer.
 const HIGH_M: f64 = 0.001;
@@ -26,14 +27,14 @@ pub(super) fn check(draft: &Draft<'_>, table: &PlaneTable, setup: &PlaneSetup) -
     }
     let shortest_m = sides[0].min(sides[1]);
     for group in setup.kinds() {
-        let GuidanceSetup::Boids { params, .. } = &group.guidance else {
-            let what = format!("robots with guidance \"{}\" know of no torus", group.guidance.kind().name());
-            let remedy = format!("give all of them guidance \"{}\", or leave it out", GuidanceKind::Boids.name());
+        let LawSetup::BuiltIn(LawSettings::Boids(boids)) = &group.law else {
+            let what = format!("robots with the law \"{}\" know of no torus", group.law.name());
+            let remedy = "give all of them law = \"boids\", or leave it out";
             return Err(at.error(field, what, remedy));
         };
-        let what = format!("boids that see {} m see others twice on a side of {shortest_m} m", params.closest_m);
+        let what = format!("boids that see {} m see others twice on a side of {shortest_m} m", boids.closest_m);
         let remedy = "give sides of twice plane.boids.closest_m at least";
-        at.require(f64::from(params.closest_m) <= shortest_m / 2.0, field, what, remedy)?;
+        at.require(f64::from(boids.closest_m) <= shortest_m / 2.0, field, what, remedy)?;
     }
     let has_obstacles = !(setup.solids.is_empty() && setup.intruders.is_empty() && table.balls.is_empty());
     let is_empty = !has_obstacles && !setup.has_terrain && draft.file.attack.is_empty();

@@ -10,12 +10,12 @@ fn parse(rest: &str) -> Result<Scenario, String> {
 
 #[test]
 fn scouting_extends_planning_but_not_sight() {
-    let scenario = parse(&format!("{LAND}[route]\nradius = 4\n[scouting]\nradius = 9\n")).expect("good");
+    let scenario = parse(&format!("{LAND}[grid]\nradius = 4\n[scouting]\nradius = 9\n")).expect("good");
     let scouting = scenario.land.scouting.as_ref().expect("scouted");
-    assert_eq!((scouting.sight, scenario.laws.route.params.radius), (4, 9));
+    assert_eq!((scouting.sight, scenario.laws.radius), (4, 9));
     assert_eq!(*scouting.map, scenario.land.terrain, "nothing is unknown or wrong unless said");
     let scenario = parse(&format!("{LAND}[scouting]\n")).expect("good");
-    assert_eq!((scenario.land.scouting.map(|known| known.sight), scenario.laws.route.params.radius), (Some(5), 16));
+    assert_eq!((scenario.land.scouting.map(|known| known.sight), scenario.laws.radius), (Some(5), 16));
     assert!(parse(LAND).expect("good").land.scouting.is_none());
 }
 

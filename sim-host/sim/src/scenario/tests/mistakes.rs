@@ -37,7 +37,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (&format!("{HEAD}{robots}[grid]\nmoves = 6\n"), "s.toml:8:9: grid.moves: a cell has 4 or 8 neighbours; give 4"),
         (
             &format!("{HEAD}{robots}[grid]\nmoves = 4\n"),
-            "s.toml:8:9: grid.moves: routes and formations use eight neighbours; give law.name = \"negotiation\"",
+            "s.toml:8:9: grid.moves: routes and formations use eight neighbours; give law = \"negotiation\"",
         ),
         (
             &format!("{HEAD}{robots}[grid]\nmoves = 4\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n"),

@@ -60,9 +60,13 @@ fn row_of(field: &str) -> &'static str {
 
 #[test]
 fn the_ranges_in_the_readme_are_those_of_the_parameters() {
-    for (field, name) in
-        [("radius_m", "radius_m"), ("horizon_s", "horizon_s"), ("share", "share"), ("a0", "a0"), ("gain", "place_gain")]
-    {
+    for (field, name) in [
+        ("radius_m", "radius_m"),
+        ("horizon_s", "horizon_s"),
+        ("share", "share"),
+        ("a0", "a0"),
+        ("place_gain", "place_gain"),
+    ] {
         let parameter = parameters().find(|row| row.name == name).expect("a parameter");
         let [least, greatest] = parameter.range;
         assert!(row_of(field).contains(&format!("{least} to {greatest}")), "{field}");
@@ -89,18 +93,18 @@ fn the_defaults_in_the_readme_match_the_controller() {
     };
     let number = |gain: Gain| f64::from(gain.sixteenths()) / 16.0;
     let cells = |units: u16| format!("{:.2}", f64::from(units) / f64::from(UNIT));
-    let (route, formation) = (RouteSetup::default(), FormationParams::default());
+    let (route, formation) = (RouteSettings::default(), FormationParams::default());
     let gains = [route.params.a0, route.params.a1, route.params.a2, route.params.a3];
     assert_eq!(last_column("a0"), gains.map(|gain| number(gain).to_string()).join(", "));
     assert_eq!(last_column("radius"), route.params.radius.to_string());
     assert_eq!((route.params.exit, route.replan), (ExitRule::Best, Replan::EachCell));
     assert_eq!((last_column("exit"), last_column("replan")), ("\"best\"".into(), "\"each_cell\"".into()));
     assert_eq!((last_column("halved_per_ticks"), route.sharpness), ("0".into(), Sharpness::Greedy));
-    assert_eq!(last_column("eps"), formation.eps.to_string());
-    assert_eq!(last_column("gain"), number(formation.gain).to_string());
+    assert_eq!(last_column("eps_cells"), formation.eps.to_string());
+    assert_eq!(last_column("place_gain"), number(formation.gain).to_string());
     assert_eq!(last_column("halt_cells"), format!("{}, halt_cells", cells(formation.halt_lag)));
     assert_eq!(formation.resume_lag, formation.halt_lag);
-    assert_eq!(last_column("lead"), formation.lead.to_string());
+    assert_eq!(last_column("lead_cells"), formation.lead.to_string());
     let footprint = f64::from(formation.footprint) / 16.0;
     assert_eq!(last_column("footprint"), footprint.to_string());
     let orca = AvoidParams::<f32>::default();

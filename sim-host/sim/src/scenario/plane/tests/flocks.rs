@@ -5,14 +5,14 @@ use staya_controller::lattice::{Algorithm, ReferenceMotion};
 fn only_a_stationary_goal_may_have_a_rest_distance() {
     let motion = |fields: &str| {
         let text = format!(
-            "{HEAD}tick_s = 0.02\n{PLANE}guidance = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\
+            "{HEAD}tick_s = 0.02\n{PLANE}law = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\
              [plane.lattice]\nspacing_m = 1\n{fields}\n"
         );
         let scenario = Scenario::parse(&text, Path::new("s.toml"), &Overrides::default());
-        scenario.map(|scenario| match &scenario.plane().unwrap().general.guidance {
-            GuidanceSetup::Lattice { params, motion } => {
-                assert_eq!(params.algorithm == Algorithm::ThreeInTurn, fields.contains("takes_turns = true"));
-                (params.obstacle_ratio, *motion)
+        scenario.map(|scenario| match &scenario.plane().unwrap().general.law {
+            LawSetup::BuiltIn(LawSettings::Lattice(lattice)) => {
+                assert_eq!(lattice.params.algorithm == Algorithm::ThreeInTurn, fields.contains("takes_turns = true"));
+                (lattice.params.obstacle_ratio, lattice.motion())
             }
             other => panic!("{other:?}"),
         })
@@ -35,7 +35,7 @@ fn only_a_stationary_goal_may_have_a_rest_distance() {
 
 #[test]
 fn a_torus_is_only_for_boids_and_in_whole_millimetres() {
-    let plane = "[plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"boids\"\n";
+    let plane = "[plane]\nradius_m = 0.2\nmax_speed_mps = 1\nlaw = \"boids\"\n";
     let boids = "[plane.boids]\ncrowded_m = 1\nclosest_m = 4\n";
     let text = |fields: &str, starts: &str, more: &str| {
         format!("{HEAD}{plane}{fields}\n{boids}[plane.robots]\nlist = [{starts}]\n{more}")
@@ -54,7 +54,7 @@ fn a_torus_is_only_for_boids_and_in_whole_millimetres() {
         (text("torus_m = [9, 8]", "{ start_m = [0, 0, 1] }", ""), "at height 0"),
         (text("torus_m = [9, 8]", two, "[[plane.ball]]\ncenter_m = [4, 4]\nradius_m = 1\n"), "know of no torus"),
         (text("torus_m = [9, 8]", "{ start_m = [0, 0] }, { start_m = [8.8, 0] }", ""), "robots 1 and 2 overlap"),
-        (lattice, "plane.torus_m: robots with guidance \"waypoint\" know of no torus"),
+        (lattice, "plane.torus_m: robots with the law \"waypoint\" know of no torus"),
     ] {
         let error = parse(&text).unwrap_err().to_string();
         assert!(error.contains(said), "{error}");

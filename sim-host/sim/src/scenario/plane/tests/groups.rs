@@ -1,12 +1,12 @@
 use super::*;
 
 fn by_route(list: &str) -> String {
-    format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{list}]\n")
+    format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nlaw = \"route\"\nrobots.list = [{list}]\n")
 }
 
 fn in_formation(fields: &str) -> String {
     let formation = format!("{{ rows = 1, columns = 2, spacing = [2, 2], {fields} }}");
-    format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"formation\"\nrobots.formation = {formation}\n")
+    format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nlaw = \"formation\"\nrobots.formation = {formation}\n")
 }
 
 #[test]
@@ -17,9 +17,9 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
     let cases = [
         (
             format!(
-                "{HEAD}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{{ start_m = [1, 1], goal_m = [9, 1] }}]\n"
+                "{HEAD}{PLANE}[[plane.group]]\nlaw = \"route\"\nrobots.list = [{{ start_m = [1, 1], goal_m = [9, 1] }}]\n"
             ),
-            "s.toml:7:12: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
+            "s.toml:7:7: plane.group[0].law: this law goes from cell to cell; give [terrain]",
         ),
         (
             by_route("{ start_m = [1, 1] }"),
@@ -35,11 +35,11 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             by_route("{ start_m = [1, 1], goal_m = [9, 1] }").replace("\"route\"", "\"formation\""),
-            "s.toml:10:12: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
+            "s.toml:10:7: plane.group[0].law: the law \"formation\" and robots.formation go together, without other",
         ),
         (
             in_formation("start = [0, 0], goal = [0, 8]").replace("\"formation\"", "\"route\""),
-            "s.toml:10:12: plane.group[0].guidance: guidance \"formation\" and robots.formation go together, without other",
+            "s.toml:10:7: plane.group[0].law: the law \"formation\" and robots.formation go together, without other",
         ),
         (
             in_formation("goal = [0, 8]"),
@@ -48,17 +48,6 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         (
             in_formation("start = [0, 0], goal = [99, 9]"),
             "s.toml:11:86: plane.group[0].robots.formation.goal: the goal (99, 9) of robot 1 is not on the map",
-        ),
-        (
-            in_formation("start = [0, 0], goal = [0, 8]").replace("guidance", "flock = 9\nguidance"),
-            "s.toml:10:9: plane.group[0].flock: robots in formation are in no flock; leave it out",
-        ),
-        (
-            format!(
-                "{}[[plane.group]]\nflock = 1\nrobots.list = [{{ start_m = [9, 9] }}]\n",
-                in_formation("start = [0, 0], goal = [0, 8]")
-            ),
-            "s.toml:13:9: plane.group[1].flock: 1 is also the number of a place in a formation, and robots cannot tell these apart; give 2 or",
         ),
         (
             format!(
@@ -72,11 +61,11 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
             "s.toml:10:14: plane.group[0].cruise_mps: 0.6 is out of range",
         ),
         (group("colour = 1"), "s.toml:9:1: plane.group[0].colour: unknown field `colour`"),
-        (group("guidance = \"lattice\""), "s.toml:8:1: plane.group[0].lattice: this guidance needs distances"),
         (
-            group("guidance = \"route\""),
-            "s.toml:9:12: plane.group[0].guidance: this guidance goes from cell to cell; give [terrain]",
+            group("law = \"lattice\""),
+            "s.toml:8:1: plane.group[0].lattice: the law \"lattice\" needs `spacing_m`: distance of neighbours in the lattice (d); give spacing_m, 0.01 to 100 metres, in [plane.group[0].lattice]",
         ),
+        (group("law = \"route\""), "s.toml:9:7: plane.group[0].law: this law goes from cell to cell; give [terrain]"),
         (group("orca = { share = 2 }"), "s.toml:9:18: plane.group[0].orca.share: 2 is out of range; give 0 to 1"),
         (
             group("safety = \"none\"\norca = { share = 0.5 }"),
@@ -84,7 +73,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             group("boids = { crowded_m = 1, closest_m = 2 }"),
-            "s.toml:9:9: plane.group[0].boids: these robots have another guidance; give plane.group[0].guidance",
+            "s.toml:9:9: plane.group[0].boids: these robots have the law \"waypoint\"; give law = \"boids\", or leave",
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots = {{ }}\n"),
@@ -120,10 +109,10 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             format!(
-                "{HEAD}{PLANE}guidance = \"lattice\"\nlattice = {{ spacing_m = 1 }}\n[plane.robots]\n\
+                "{HEAD}{PLANE}law = \"lattice\"\nlattice = {{ spacing_m = 1 }}\n[plane.robots]\n\
                  list = [{{ start_m = [0, 0], goal_m = [9, 9], via_m = [[1, 0]] }}]\n"
             ),
-            "s.toml:9:54: plane.robots.list[0].via_m: robots with guidance \"lattice\" go by no places",
+            "s.toml:9:54: plane.robots.list[0].via_m: robots with the law \"lattice\" go by no places",
         ),
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [33, 0]\nradius_m = 1\n"),
@@ -158,7 +147,7 @@ fn groups_and_robots_override_fields_and_inherit_the_rest() {
         "{HEAD}{PLANE}sight_m = 5\nsafety = \"template_2k\"\norca = {{ share = 0.6 }}\n{}\
          [[plane.group]]\nradius_m = 0.5\nmax_speed_mps = 2\nrobots.list = [{{ start_m = [9, 9], goal_m = [0, 9] }}, \
          {{ start_m = [6, 9], radius_m = 1 }}]\n\
-         [[plane.group]]\nguidance = \"boids\"\nboids = {{ crowded_m = 1, closest_m = 2 }}\nsafety = \"none\"\n\
+         [[plane.group]]\nlaw = \"boids\"\nboids = {{ crowded_m = 1, closest_m = 2 }}\nsafety = \"none\"\n\
          robots.cloud = {{ count = 9, from_m = [0, 0], to_m = [4, 4] }}\n",
         TWO.replace(
             "start_m = [3, 0, 1]",
@@ -180,46 +169,41 @@ fn groups_and_robots_override_fields_and_inherit_the_rest() {
     assert_eq!((large.cruise_mps, large.tolerance_m, large.sight_m), (2.0, 0.05, 5.0));
     let ways: Vec<_> = plane.starts[1].places.iter().map(|target| target.position_m).collect();
     assert_eq!(ways, [[3.0, 3.0, 0.0], [2.0, 2.0, 0.0], [0.0; 3]]);
-    assert_eq!((plane.starts.len(), plane.group(12).guidance.kind()), (13, GuidanceKind::Boids));
+    assert_eq!((plane.starts.len(), plane.group(12).law.name()), (13, "boids"));
     assert_eq!(plane.group(12).safety, SafetySetup::None);
 }
 
 #[test]
 fn groups_in_metres_mix_with_robots_in_cells_and_may_use_routes() {
-    let text =
-        by_route("{ start_m = [1, 1], goal_m = [9, 5] }").replace("[plane]\n", "[plane]\nguidance = \"route\"\n");
+    let text = by_route("{ start_m = [1, 1], goal_m = [9, 5] }").replace("[plane]\n", "[plane]\nlaw = \"route\"\n");
     let text = format!(
-        "{text}[[plane.group]]\nguidance = \"waypoint\"\nsafety = \"none\"\nrobots.list = [{{ start_m = [17, 17] }}]\n"
+        "{text}[[plane.group]]\nlaw = \"waypoint\"\nsafety = \"none\"\nrobots.list = [{{ start_m = [17, 17] }}]\n"
     );
     let text = format!("{text}[robots]\nlist = [{{ id = 4, start = [3, 3], goal = [5, 5] }}]\n");
     let scenario = parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let robots: Vec<_> = scenario.robots.iter().map(|robot| (robot.id.0, robot.start, robot.goal)).collect();
     let cell = Cell::new;
     assert_eq!(robots, [(4, cell(3, 3), cell(5, 5)), (5, cell(0, 0), cell(4, 2)), (6, cell(0, 0), cell(0, 0))]);
-    let kinds: Vec<_> = (0..3).map(|index| (scenario.guidance(index).kind(), scenario.safety(index).kind())).collect();
-    let expected = [
-        (GuidanceKind::Route, SafetyKind::Orca),
-        (GuidanceKind::Route, SafetyKind::Orca),
-        (GuidanceKind::Waypoint, SafetyKind::None),
-    ];
+    let kinds: Vec<_> = (0..3).map(|index| (scenario.law_of(index).name(), scenario.safety(index).kind())).collect();
+    let expected = [("route", SafetyKind::Orca), ("route", SafetyKind::Orca), ("waypoint", SafetyKind::None)];
     assert_eq!(kinds, expected);
 }
 
 #[test]
-fn formations_differ_by_ids_and_flock_numbers_are_not_places() {
+fn formations_differ_by_ids_and_groups_by_flocks() {
     let one = in_formation("start = [0, 0], goal = [0, 8]");
     let text = format!(
-        "{one}[[plane.group]]\nguidance = \"formation\"\nsafety = \"none\"\nradius_m = 0.3\n\
+        "{one}[[plane.group]]\nlaw = \"formation\"\nsafety = \"none\"\nradius_m = 0.3\n\
          robots.formation = {{ rows = 1, columns = 3, spacing = [2, 2], start = [0, 4], goal = [3, 4] }}\n\
-         [[plane.group]]\nguidance = \"waypoint\"\nrobots.list = [{{ start_m = [13, 17] }}]\n\
+         [[plane.group]]\nlaw = \"waypoint\"\nrobots.list = [{{ start_m = [13, 17] }}]\n\
          [robots]\nlist = [{{ id = 4, start = [8, 8], goal = [5, 5] }}]\n"
     );
-    let text = text.replace("[plane]\n", "[plane]\nguidance = \"route\"\n");
+    let text = text.replace("[plane]\n", "[plane]\nlaw = \"route\"\n");
     let scenario = parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let members: Vec<_> = scenario.formations.iter().map(|formation| formation.members()).collect();
     assert_eq!(members, [1..3, 3..6]);
-    let named = |index: usize| match scenario.guidance(index) {
-        GuidanceSetup::Formation { template, .. } => {
+    let named = |index: usize| match scenario.law(index) {
+        LawSetup::BuiltIn(LawSettings::Formation(FormationSettings { template, .. })) => {
             (template.slot, template.entries.iter().map(|entry| entry.id.0).collect::<Vec<_>>())
         }
         other => panic!("{other:?}"),
@@ -230,7 +214,7 @@ fn formations_differ_by_ids_and_flock_numbers_are_not_places() {
     assert_eq!(templates, expected.map(|(slot, ids)| (slot, ids.to_vec())));
     let plane = scenario.plane().expect("a plane");
     let flocks: Vec<_> = (0..7).map(|index| plane.group(index).flock).collect();
-    assert_eq!(flocks, [3, 0, 0, 0, 0, 0, 6], "no number below 3 is a flock's");
+    assert_eq!(flocks, [0, 1, 1, 2, 2, 2, 3], "a flock for each group");
     let safety: Vec<_> = (0..7).map(|index| scenario.safety(index).kind()).collect();
     assert_eq!((safety[1], safety[4], plane.group(4).radius_m), (SafetyKind::Orca, SafetyKind::None, 0.3));
     let parts: Vec<_> = scenario.origin.parts.iter().map(|part| (part.table.as_str(), part.members.clone())).collect();

@@ -9,7 +9,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
     let robots = |robots: &str| format!("{HEAD}{PLANE}[plane.robots]\n{robots}\n");
     let flock = |name: &str, table: &str, goals: &str| {
         format!(
-            "{HEAD}{PLANE}guidance = \"{name}\"\n[plane.robots]\n\
+            "{HEAD}{PLANE}law = \"{name}\"\n[plane.robots]\n\
              cloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9]{goals} }}\n[plane.{name}]\n{table}\n"
         )
     };
@@ -27,7 +27,10 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (with("cruise_mps = 0\n"), "s.toml:6:14: plane.cruise_mps: 0 is out of range; give 0.001 to 1 m/s"),
         (with("tolerance_m = 0\n"), "s.toml:6:15: plane.tolerance_m: 0 is out of range"),
         (with("sight_m = inf\n"), "s.toml:6:11: plane.sight_m: inf is out of range"),
-        (with("guidance = \"sheep\"\n"), "s.toml:6:12: plane.guidance: unknown value `sheep`"),
+        (
+            with("law = \"sheep\"\n"),
+            "s.toml:6:7: plane.law: this program has no law \"sheep\"; it has waypoint, lattice",
+        ),
         (with("safety = \"luck\"\n"), "s.toml:6:10: plane.safety: unknown value `luck`"),
         (with("colour = 1\n"), "s.toml:6:1: plane.colour: unknown field `colour`"),
         (
@@ -95,7 +98,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             robots("cloud = { count = 1, from_m = [0, 0], to_m = [1, 1], goals_m = [[1, 2], [3, 4]] }"),
-            "s.toml:7:64: plane.robots.cloud.goals_m: 2 goals are too many for guidance \"waypoint\"",
+            "s.toml:7:64: plane.robots.cloud.goals_m: 2 goals are too many for the law \"waypoint\"",
         ),
         (
             format!("{HEAD}{LAND}{PLANE}{TWO}[robots]\nscattered = {{ count = 2 }}\n"),
@@ -125,18 +128,15 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             robots("circle = { count = 40, radius_m = 2 }"),
             "s.toml:6:1: plane.robots: robots 1 and 2 overlap at the start",
         ),
+        (with("law = \"route\"\n"), "s.toml:6:7: plane.law: this law goes from cell to cell; give [terrain]"),
         (
-            with("guidance = \"route\"\n"),
-            "s.toml:6:12: plane.guidance: this guidance goes from cell to cell; give [terrain]",
+            format!("{HEAD}{LAND}[robots]\nscattered = {{ count = 2 }}\n{PLANE}law = \"formation\"\n"),
+            "s.toml:11:7: plane.law: robots.formation and the law \"formation\" go together",
         ),
-        (
-            format!("{HEAD}{LAND}[robots]\nscattered = {{ count = 2 }}\n{PLANE}guidance = \"formation\"\n"),
-            "s.toml:11:12: plane.guidance: robots.formation and guidance \"formation\" go together",
-        ),
-        (with("guidance = \"lattice\"\n"), "s.toml:3:1: plane.lattice: this guidance needs distances"),
+        (with("law = \"lattice\"\n"), "s.toml:3:1: plane.lattice: the law \"lattice\" needs `spacing_m`"),
         (
             after("[plane.boids]\ncrowded_m = 1\nclosest_m = 2\n"),
-            "s.toml:8:1: plane.boids: these robots have another guidance",
+            "s.toml:8:1: plane.boids: these robots have the law \"waypoint\"",
         ),
         (with("safety = \"push_out\"\n"), "s.toml:3:1: plane.push_out: safety \"push_out\" and its table go together"),
         (
@@ -221,11 +221,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (flock("lattice", "spacing_m = nan", ""), "s.toml:10:13: plane.lattice.spacing_m: NaN is out of range"),
         (
             flock("goal_flock", "min_distance_m = 1\nneighborhood_m = 1", ""),
-            "s.toml:11:18: plane.goal_flock.neighborhood_m: 1 is out of range; give 2 to",
+            "s.toml:11:18: plane.goal_flock.neighborhood_m: less than 2 min_distance_m; give more",
         ),
         (
             flock("goal_flock", "min_distance_m = 1", ", goals_m = [[1, 1], [2, 2], [3, 3], [4, 4], [5, 5]]"),
-            "s.toml:8:64: plane.robots.cloud.goals_m: 5 goals are too many for guidance \"goal_flock\"",
+            "s.toml:8:64: plane.robots.cloud.goals_m: 5 goals are too many for the law \"goal_flock\"",
         ),
         (
             flock("goal_flock", "min_distance_m = 1", ", goals_m = [[1, 1]], goal_velocity_mps = [33, 0]"),
@@ -233,7 +233,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             flock("boids", "crowded_m = 1\nclosest_m = 3", ", goals_m = [[1, 1]]"),
-            "s.toml:8:64: plane.robots.cloud.goals_m: 1 goals are too many for guidance \"boids\"",
+            "s.toml:8:64: plane.robots.cloud.goals_m: the law \"boids\" takes no goal; leave it out",
         ),
         (
             flock("boids", "crowded_m = 1\nclosest_m = 3\nmax_turn = 4", ""),
@@ -245,7 +245,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             after("[[plane.order]]\nat_s = 1\ngoal = 1\nplace_m = [1, 1]\n"),
-            "s.toml:10:8: plane.order[0].goal: robots with guidance \"waypoint\" have no goal 1",
+            "s.toml:10:8: plane.order[0].goal: robots with the law \"waypoint\" have no goal 1",
         ),
         (
             after("[[plane.order]]\nat_s = 1\nplace_m = [1, 9e6]\n"),
@@ -257,7 +257,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             flock("boids", "crowded_m = 1\nclosest_m = 3\n[[plane.order]]\nat_s = 1\nplace_m = [1, 1]", ""),
-            "s.toml:12:1: plane.order[0].goal: robots with guidance \"boids\" have no goal 0",
+            "s.toml:12:1: plane.order[0].goal: robots with the law \"boids\" have no goal 0",
         ),
     ];
     refused(&cases);

@@ -37,14 +37,12 @@ fn invalid_sensors_are_refused_with_a_remedy() {
         (format!("{PLANE}{SENSING}forget_s = 0\n{TWO}"), "plane.sensing.forget_s"),
         (format!("{PLANE}{SENSING}acceleration_mps2 = 0\n{TWO}"), "plane.sensing.acceleration_mps2"),
         (
-            format!(
-                "{LAND}{PLANE}guidance = \"route\"\n{SENSING}[robots]\nlist = [{{ start = [1, 1], goal = [5, 5] }}]\n"
-            ),
+            format!("{LAND}{PLANE}law = \"route\"\n{SENSING}[robots]\nlist = [{{ start = [1, 1], goal = [5, 5] }}]\n"),
             "moves between cells",
         ),
         (
             format!(
-                "{PLANE}guidance = \"boids\"\nsafety = \"none\"\ntorus_m = [50, 50]\n{SENSING}[plane.boids]\ncrowded_m = 1\n\
+                "{PLANE}law = \"boids\"\nsafety = \"none\"\ntorus_m = [50, 50]\n{SENSING}[plane.boids]\ncrowded_m = 1\n\
                  closest_m = 5\n[plane.robots]\nlist = [{{ start_m = [1, 1] }}]\n"
             ),
             "torus",

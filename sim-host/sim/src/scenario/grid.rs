@@ -1,0 +1,100 @@
+//! `[grid]`: rules of cells, and the law of robots that move from cell to cell.
+
+use super::law::{LawPart, LawSetup};
+use super::source::Checked;
+use super::{Draft, check};
+use crate::{defaults, names, table};
+use staya_controller::agent::{Around, FormationSettings, LawSettings, RouteSettings, Settings as _};
+use staya_controller::grid::Norm;
+use staya_controller::negotiation::Moves;
+use staya_controller::route::{ExitRule, Replan};
+
+table! {
+    /// `[grid]`: rules of cells. With `[plane]`, `law` and its table are in that one.
+    pub struct GridTable {
+        part law: LawPart;
+        /// Sight of a robot in each direction, cells.
+        pub radius: u8 = 5, 1.0..=16.0, "cells";
+        /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
+        pub norm: Norm = Default::default();
+        /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
+        pub corner_cutting: bool = false;
+        /// Number of neighbours of a cell to which robots move, 4 or 8. Default: 8.
+        pub moves: u8 = 8;
+        /// Whether all robots move at once, as in POGEMA; for 4 neighbours. Default: false.
+        pub simultaneous: bool = false;
+    }
+}
+
+names!(Norm, ExitRule, Replan);
+defaults!(GridTable);
+
+const MAX_RADIUS: u8 = 16;
+
+/// Sight of the robots in each direction, cells: that of a map which they know before they see it.
+pub(super) fn radius(draft: &Draft<'_>) -> Checked<u8> {
+    let Some(scouting) = &draft.file.scouting else { return Ok(draft.file.grid.radius) };
+    let wide = scouting.radius.unwrap_or(MAX_RADIUS);
+    draft.within("scouting.radius", wide.into(), draft.file.grid.radius.into()..=MAX_RADIUS.into(), "cells")?;
+    Ok(wide)
+}
+
+/// Moves of bodies from cell to cell.
+pub(super) const fn moves(grid: &GridTable) -> Moves {
+    Moves { diagonals: grid.moves == 8, circles: grid.simultaneous }
+}
+
+/// Properties on which the laws of bodies with this cruising speed depend; `None`: they move from
+/// cell to cell.
+pub(super) fn around(draft: &Draft<'_>, cruise_mps: Option<f64>, tolerance_m: f64) -> Checked<Around> {
+    let (delay_s, rate_hz) = draft.file.radio.news(draft.step_s());
+    Ok(Around {
+        cruise_mps: cruise_mps.map(|speed| speed as f32),
+        tolerance_m: tolerance_m as f32,
+        delay_s: delay_s as f32,
+        rate_hz: rate_hz as f32,
+        seed: draft.file.seed,
+        radius: radius(draft)?,
+        norm: draft.file.grid.norm,
+        corner_cutting: draft.file.grid.corner_cutting,
+    })
+}
+
+/// Routes of robots whose law does not say otherwise.
+pub(super) fn usual_route(draft: &Draft<'_>) -> Checked<RouteSettings> {
+    let mut route = RouteSettings::default();
+    let _ = route.adapt(&|_| false, &around(draft, None, 0.0)?);
+    Ok(route)
+}
+
+/// The law of robots that move from cell to cell.
+pub(super) fn law(draft: &Draft<'_>) -> Checked<LawSetup> {
+    let (grid, in_formation) = (&draft.file.grid, draft.file.cells_in_formation());
+    let usual = if in_formation { FormationSettings::NAME } else { RouteSettings::NAME };
+    let at = draft.at("grid");
+    let kind = LawSetup::by_name(grid.law.name_or(usual), moves(grid), None);
+    if let Some(law) = kind.filter(|law| !law.is_on_grid()) {
+        let what = format!("the law \"{}\" goes by velocities, and these robots from cell to cell", law.name());
+        return Err(at.error("law", what, "give [plane] with this law, or another law"));
+    }
+    let law = grid.law.build(&at, usual, moves(grid), &around(draft, None, 0.0)?)?;
+    let what = format!("robots.formation and the law \"{}\" do not go together", law.name());
+    let remedy = if in_formation { "give law = \"formation\", or leave it out" } else { "give robots.formation" };
+    at.require(law.keeps_formation() == in_formation || is_free(&law), "law", what, remedy)?;
+    check::routes(&at, &grid.law, &law)?;
+    if !grid.law.given("waits") {
+        return Ok(law);
+    }
+    let waits = !matches!(&law, LawSetup::BuiltIn(LawSettings::Formation(FormationSettings { waits: false, .. })));
+    let named = ["halt_cells", "resume_cells"].into_iter().find(|name| grid.law.given(name));
+    if let Some(name) = named.filter(|_| !waits) {
+        let what = "with waits = false no robot waits";
+        return Err(at.error(&format!("{}.{name}", law.name()), what, "leave out one of the two"));
+    }
+    Ok(law)
+}
+
+/// Whether robots may have a place in a formation of which the law does not know.
+const fn is_free(law: &LawSetup) -> bool {
+    matches!(law, LawSetup::Added(_))
+}
