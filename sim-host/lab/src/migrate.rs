@@ -212,6 +212,23 @@ mod tests {
     }
 
     #[test]
+    fn the_files_of_this_project_are_of_today() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let mut count = 0;
+        for folder in ["scenarios", "companions", "papers/olf/flock", "papers/kuz/figure-6"] {
+            for file in std::fs::read_dir(root.join(folder)).expect("a folder") {
+                let path = file.expect("a file").path();
+                if path.extension().is_some_and(|extension| extension == "toml") {
+                    let text = std::fs::read_to_string(&path).expect("a text");
+                    assert_eq!(migrated(&text).expect("TOML"), None, "{}", path.display());
+                    count += 1;
+                }
+            }
+        }
+        assert!(count > 40, "{count} files");
+    }
+
+    #[test]
     fn a_law_keeps_its_place_and_its_comment() {
         let old = "[plane]\nradius_m = 1\nguidance = \"lattice\" # a flock\nsafety = \"none\"\n\n# Gains.\n[plane.lattice]\n\
                    spacing_m = 1\nc_alpha = 3 # soft\n";

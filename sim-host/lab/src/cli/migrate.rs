@@ -4,6 +4,7 @@ use crate::migrate::migrated;
 use anyhow::{Context as _, Result};
 use clap::Args;
 use staya_console::{Ended, Global, say};
+use staya_sim::scenario::{ScenarioError, Source};
 use staya_sim::shown::Shown as _;
 use std::fs;
 use std::path::PathBuf;
@@ -29,7 +30,10 @@ impl MigrateArgs {
     pub fn run(&self, _: &Global) -> Result<Ended> {
         for path in &self.files {
             let shown = path.shown();
-            let text = fs::read_to_string(path).with_context(|| format!("cannot read {shown}"))?;
+            let read = fs::read_to_string(path);
+            let text = read.map_err(|source| ScenarioError::Io { path: path.clone(), source })?;
+            // Its errors name the place and the remedy.
+            Source::new(path, &text)?;
             let changed = migrated(&text).with_context(|| format!("{shown} is not TOML"))?;
             match changed {
                 Some(new) if self.print => print!("{new}"),
