@@ -4,11 +4,12 @@ use crate::engine::{End, EndBody, Outcome};
 use crate::nearby::{Cells, Found, Query, Search as _, Space};
 use crate::scenario::Scenario;
 use crate::world::plane::Barrier;
-use staya_controller::agent::Wait;
+use staya_controller::agent::{Goals, Wait};
 use staya_controller::robot::Mode;
 
 /// States at the end of a run, and the places of bodies.
 pub(super) struct Reasons<'a> {
+    scenario: &'a Scenario,
     ends: &'a [End],
     has_intruders: bool,
     bodies: Cells<f64, 3>,
@@ -17,7 +18,7 @@ pub(super) struct Reasons<'a> {
 
 impl<'a> Reasons<'a> {
     /// Finds bodies in O(1) each if any robot waits for others.
-    pub fn new(scenario: &Scenario, outcome: &'a Outcome) -> Self {
+    pub fn new(scenario: &'a Scenario, outcome: &'a Outcome) -> Self {
         let ends = outcome.ends.as_slice();
         let bodies = || ends.iter().filter_map(|end| end.body);
         let widest = |of: fn(&EndBody) -> f64| bodies().map(|body| of(&body)).fold(0.0, f64::max);
@@ -29,7 +30,7 @@ impl<'a> Reasons<'a> {
             cells.rebuild(&ends.iter().map(place).collect::<Vec<_>>());
         }
         let has_intruders = scenario.plane().is_some_and(|plane| !plane.intruders.is_empty());
-        Self { ends, has_intruders, bodies: cells, widest_m }
+        Self { scenario, ends, has_intruders, bodies: cells, widest_m }
     }
 
     /// Why robot `index` has not arrived.
@@ -48,7 +49,11 @@ impl<'a> Reasons<'a> {
             (None, Some(Wait::Robots), _) if self.has_company(index) => "other robots in its way",
             (None, Some(Wait::Route | Wait::Robots), _) => "no way to its goal in sight",
             (None, Some(Wait::GoalTaken), _) => "its goal is taken",
-            (None, None, _) => "still on its way",
+            (None, None, _) => match self.scenario.law_of(index).goals() {
+                Goals::None => "its law has no goal",
+                Goals::Shared(_) => "moves with its flock",
+                Goals::Cell | Goals::Waypoints => "still on its way",
+            },
         }
     }
 
