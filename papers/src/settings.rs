@@ -6,9 +6,10 @@ use staya_controller::agent::{
     Around, Contradiction, FarMap, FormationGuidance, FormationSettings, Goals, Motion, RouteSettings, Settings,
     TEMPLATE,
 };
-use staya_controller::formation::{FormationParams, Prediction};
+use staya_controller::formation::{FormationParams, NO_SEARCH, Prediction};
 use staya_controller::grid::UNIT;
 use staya_controller::parameters::{Parameters, choice, row};
+use staya_controller::route::Replan;
 use staya_controller::template::Template;
 
 /// Settings of [`PublishedFormation`].
@@ -61,6 +62,9 @@ impl Settings for PublishedSettings {
 
     fn adapt(&mut self, is_given: &dyn Fn(&str) -> bool, around: &Around) -> Result<(), Contradiction> {
         self.route.adapt(is_given, around)?;
+        if self.route.replan == Replan::UntilChanged {
+            return Err(NO_SEARCH);
+        }
         if !is_given("resume_cells") {
             self.params.resume = self.params.resume.min(self.params.halt);
         }

@@ -83,14 +83,21 @@ fn rewrite(root: &mut Table) {
 
 /// Gives a group its law, with the values of its table. `usual`: the law of a group without one.
 fn group(group: &mut dyn TableLike, old: &Old, usual: &str) {
-    rename(group, "guidance", "law");
-    if let Some(Own { name, parameters, comment }) = old.own.as_ref().filter(|_| !usual.is_empty()) {
+    if let Some(Own { name, parameters, comment }) = &old.own {
+        // It was the law of all robots, whatever their guidance; groups inherit it.
+        for field in ["guidance", "lattice", "goal_flock", "boids"] {
+            let _ = group.remove(field);
+        }
+        if usual.is_empty() {
+            return;
+        }
         put(group, &Key::new("law").with_leaf_decor(Decor::new(comment, " ")), value(name));
         if let Some(parameters) = parameters {
             let _ = group.insert(name, parameters.clone());
         }
         return;
     }
+    rename(group, "guidance", "law");
     for table in ["lattice", "goal_flock"] {
         if let Some(values) = group.get_mut(table).and_then(Item::as_table_like_mut) {
             let names: Vec<String> = values.iter().map(|(name, _)| name.to_owned()).collect();
@@ -246,11 +253,10 @@ mod tests {
     }
 
     #[test]
-    fn an_own_law_replaces_the_guidance() {
-        let old = "law.name = \"convoy\"\nlaw.parameters.gap_m = 2\n[plane]\nguidance = \"boids\"\n[[plane.group]]\n\
-                   guidance = \"route\"\n[route]\na3 = 2\n";
-        let expected =
-            "[plane]\nlaw = \"convoy\"\nconvoy = { gap_m = 2 }\n[[plane.group]]\nlaw = \"route\"\nroute = { a3 = 2 }\n";
+    fn an_own_law_replaces_the_guidance_of_all_robots() {
+        let old = "law.name = \"convoy\"\nlaw.parameters.gap_m = 2\n[plane]\nguidance = \"boids\"\n[plane.boids]\ncrowded_m = 1\n\
+                   [[plane.group]]\nguidance = \"route\"\nradius_m = 1\n";
+        let expected = "[plane]\nlaw = \"convoy\"\nconvoy = { gap_m = 2 }\n[[plane.group]]\nradius_m = 1\n";
         assert_eq!(same(&new(old)), same(expected));
     }
 }

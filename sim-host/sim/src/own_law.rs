@@ -125,12 +125,21 @@ impl Own {
         self.0.parameters(visit);
     }
 
-    /// The first row of a table whose values do not go together.
-    pub(crate) fn contradiction(&mut self) -> Option<&'static str> {
+    /// Whether it takes a second waypoint, behind the first.
+    pub(crate) fn takes_ways(&self) -> bool {
+        let mut law = self.clone();
+        let first = WaypointOrder::first(Waypoint::fixed(Position::ORIGIN));
+        let mut takes = |index| law.0.order(&AnyOrder::Waypoint(WaypointOrder { index, ..first }));
+        takes(0) && takes(1)
+    }
+
+    /// A given row of a table whose values do not go together.
+    pub(crate) fn contradiction(&mut self, is_given: &dyn Fn(&str) -> bool) -> Option<&'static str> {
         let mut wrong = None;
         self.tables(&mut |table| {
             if !table.is_sound() {
-                wrong = wrong.or_else(|| table.table().first().map(|row| row.name));
+                let rows = || table.table().iter().map(|row| row.name);
+                wrong = wrong.or_else(|| rows().find(|row| is_given(row)).or_else(|| rows().next()));
             }
         });
         wrong

@@ -53,7 +53,7 @@ pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 pub(crate) use places::scaled;
 pub use places::{Drive, behind, is_straight};
 #[cfg(feature = "agent")]
-pub use settings::FormationSettings;
+pub use settings::{FormationSettings, NO_SEARCH};
 pub use steering::{Anchor, Footprint, PaceControl, aim, blended, def, deviation, distances, lag, should_stay};
 
 use crate::cost::Gain;

@@ -3,7 +3,7 @@
 use super::{FormationGuidance, FormationParams, NEVER, Prediction, Recovery, Steering};
 use crate::law::{Around, Contradiction, Goals, Motion, Settings};
 use crate::parameters::{Parameters, choice, switch, worded};
-use crate::route::RouteSettings;
+use crate::route::{Replan, RouteSettings};
 use crate::template::{TEMPLATE, Template};
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +22,13 @@ pub struct FormationSettings {
 }
 
 worded!(Prediction, Recovery);
+
+/// A formation that would keep its plans.
+pub const NO_SEARCH: Contradiction = Contradiction {
+    row: "replan",
+    what: "robots in formation search in each cell",
+    remedy: "give \"each_cell\", or leave it out",
+};
 
 crate::parameters! {
     impl[] FormationSettings {
@@ -72,6 +79,14 @@ impl Settings for FormationSettings {
 
     fn adapt(&mut self, is_given: &dyn Fn(&str) -> bool, around: &Around) -> Result<(), Contradiction> {
         self.route.adapt(is_given, around)?;
+        let lags = ["halt_cells", "resume_cells"];
+        if let Some(row) = lags.into_iter().find(|row| !self.waits && is_given(row)) {
+            let (what, remedy) = ("with waits = false no robot waits", "leave out one of the two");
+            return Err(Contradiction { row, what, remedy });
+        }
+        if self.route.replan == Replan::UntilChanged {
+            return Err(NO_SEARCH);
+        }
         let params = &mut self.params;
         if !is_given("resume_cells") {
             params.resume_lag = params.resume_lag.min(params.halt_lag);

@@ -33,7 +33,7 @@ pub use law::RouteGuidance;
 pub use learned::LearnedCosts;
 pub use router::{PLAN, Replan, Router};
 #[cfg(feature = "agent")]
-pub use settings::RouteSettings;
+pub use settings::{RouteSettings, SIGHT};
 pub use visits::VisitMemory;
 
 use crate::cost::Gain;

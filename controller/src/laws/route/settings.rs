@@ -2,7 +2,7 @@
 
 use super::{ExitRule, Replan, RouteGuidance, RouteParams};
 use crate::law::{Around, Contradiction, Goals, Motion, Settings};
-use crate::parameters::{Parameters, Value, choice, row, worded};
+use crate::parameters::{Parameter, Parameters, Value, choice, row, worded};
 use crate::shuffle::Sharpness;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,10 @@ pub struct RouteSettings {
 }
 
 worded!(ExitRule, Replan);
+
+/// Sight of a robot over cells.
+pub const SIGHT: Parameter =
+    row("radius", "ROUTE_RADIUS", "cells", [1.0, 16.0], "sight in each direction").of_body("grid.radius");
 
 /// Ticks that halve the probability of a move; 0: the cheapest first.
 impl Value for Sharpness {
@@ -41,8 +45,7 @@ impl Value for Sharpness {
 
 crate::parameters! {
     impl[] RouteSettings {
-        row("radius", "ROUTE_RADIUS", "cells", [1.0, 16.0], "sight in each direction")
-            .of_body("grid.radius") => params.radius,
+        SIGHT => params.radius,
         choice("exit", "ROUTE_EXIT", ExitRule::WORDS, "border cells that end a route: eq. 10, or algorithm 3")
             => params.exit,
         choice("replan", "ROUTE_REPLAN", Replan::WORDS, "when to plan; in formations in each cell")

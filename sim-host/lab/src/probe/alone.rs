@@ -1,7 +1,6 @@
 //! Time of a formation over that of its robots without formation on the same land.
 
 use super::{Kind, Probe};
-use staya_controller::shuffle::Sharpness;
 use staya_sim::engine::{Outcome, simulate};
 use staya_sim::radio::RadioParams;
 use staya_sim::scenario::Scenario;
@@ -23,7 +22,7 @@ impl Probe for Alone {
         let mut alone = scenario.clone();
         alone.formations.clear();
         alone.laws.maps = None;
-        alone.change_routes(|route| route.sharpness = Sharpness::Greedy);
+        alone.set_in_laws("halved_per_ticks", 0.0);
         alone.radio = RadioParams { range_m: scenario.radio.range_m, ..RadioParams::default() };
         let other = simulate(&alone, |_, _| ControlFlow::Continue(())).ok();
         let ratio = last(outcome).zip(other.as_ref().and_then(last)).map(|(own, other)| own as f64 / other as f64);

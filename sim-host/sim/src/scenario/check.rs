@@ -1,8 +1,7 @@
 //! Checks that involve more than one field.
 
-use super::law::{LawPart, LawSetup};
 use super::ranges::{micros, short};
-use super::source::{Checked, Section};
+use super::source::Checked;
 use super::{Crop, Draft, Fault, LandSource, PlaneSetup, Robot, ScenarioError, TerrainTable, UniformTable};
 use crate::file::has_memory;
 use crate::radio::{self, LAST_START};
@@ -10,7 +9,6 @@ use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::agent::LawSettings;
 use staya_controller::robot::RobotId;
-use staya_controller::route::Replan;
 use staya_controller::wire::Format;
 use staya_mavlink::any::max_robot;
 use std::collections::HashMap;
@@ -200,14 +198,6 @@ fn terrain_error(draft: &Draft<'_>, field: &str, error: &TerrainError) -> Scenar
         _ => "see maps/README.md",
     };
     draft.error(field, error.to_string(), remedy)
-}
-
-/// Routes that their laws cannot use as they are given.
-pub(super) fn routes(at: &Section<'_>, part: &LawPart, law: &LawSetup) -> Checked {
-    let Some(route) = law.route().filter(|_| law.keeps_formation()) else { return Ok(()) };
-    let searches = route.replan != Replan::UntilChanged || !part.given("replan");
-    let what = "robots in formation search in each cell";
-    at.require(searches, &format!("{}.replan", law.name()), what, "give \"each_cell\", or leave it out")
 }
 
 /// Refuses a robot that is not in the scenario.

@@ -1,20 +1,20 @@
 //! `[grid]`: rules of cells, and the law of robots that move from cell to cell.
 
+use super::Draft;
 use super::law::{LawPart, LawSetup};
 use super::source::Checked;
-use super::{Draft, check};
 use crate::{defaults, names, table};
-use staya_controller::agent::{Around, FormationSettings, LawSettings, RouteSettings, Settings as _};
+use staya_controller::agent::{Around, FormationSettings, RouteSettings, Settings as _};
 use staya_controller::grid::Norm;
 use staya_controller::negotiation::Moves;
-use staya_controller::route::{ExitRule, Replan};
+use staya_controller::route::{ExitRule, Replan, SIGHT};
 
 table! {
     /// `[grid]`: rules of cells. With `[plane]`, `law` and its table are in that one.
     pub struct GridTable {
         part law: LawPart;
         /// Sight of a robot in each direction, cells.
-        pub radius: u8 = 5, 1.0..=16.0, "cells";
+        pub radius: u8 = 5, SIGHT;
         /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).
         pub norm: Norm = Default::default();
         /// Whether a diagonal move may pass a blocked orthogonal neighbour. Default: false.
@@ -29,7 +29,7 @@ table! {
 names!(Norm, ExitRule, Replan);
 defaults!(GridTable);
 
-const MAX_RADIUS: u8 = 16;
+const MAX_RADIUS: u8 = SIGHT.range[1] as u8;
 
 /// Sight of the robots in each direction, cells: that of a map which they know before they see it.
 pub(super) fn radius(draft: &Draft<'_>) -> Checked<u8> {
@@ -72,6 +72,9 @@ pub(super) fn law(draft: &Draft<'_>) -> Checked<LawSetup> {
     let (grid, in_formation) = (&draft.file.grid, draft.file.cells_in_formation());
     let usual = if in_formation { FormationSettings::NAME } else { RouteSettings::NAME };
     let at = draft.at("grid");
+    let (is_free, what) =
+        (draft.file.plane.is_none() || grid.law.is_empty(), "bodies in the plane have their own laws");
+    draft.require(is_free, "grid", what, "give `law` and its table in [plane]")?;
     let kind = LawSetup::by_name(grid.law.name_or(usual), moves(grid), None);
     if let Some(law) = kind.filter(|law| !law.is_on_grid()) {
         let what = format!("the law \"{}\" goes by velocities, and these robots from cell to cell", law.name());
@@ -80,21 +83,6 @@ pub(super) fn law(draft: &Draft<'_>) -> Checked<LawSetup> {
     let law = grid.law.build(&at, usual, moves(grid), &around(draft, None, 0.0)?)?;
     let what = format!("robots.formation and the law \"{}\" do not go together", law.name());
     let remedy = if in_formation { "give law = \"formation\", or leave it out" } else { "give robots.formation" };
-    at.require(law.keeps_formation() == in_formation || is_free(&law), "law", what, remedy)?;
-    check::routes(&at, &grid.law, &law)?;
-    if !grid.law.given("waits") {
-        return Ok(law);
-    }
-    let waits = !matches!(&law, LawSetup::BuiltIn(LawSettings::Formation(FormationSettings { waits: false, .. })));
-    let named = ["halt_cells", "resume_cells"].into_iter().find(|name| grid.law.given(name));
-    if let Some(name) = named.filter(|_| !waits) {
-        let what = "with waits = false no robot waits";
-        return Err(at.error(&format!("{}.{name}", law.name()), what, "leave out one of the two"));
-    }
+    at.require(law.fits_robots(in_formation), "law", what, remedy)?;
     Ok(law)
-}
-
-/// Whether robots may have a place in a formation of which the law does not know.
-const fn is_free(law: &LawSetup) -> bool {
-    matches!(law, LawSetup::Added(_))
 }

@@ -42,13 +42,15 @@ pub struct AddedLaw {
     pub motion: Motion,
     /// The goals that it takes.
     pub goals: Goals,
+    /// Whether it goes through waypoints to its goal.
+    pub takes_ways: bool,
 }
 
 impl AddedLaw {
     fn new(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Option<Self> {
         let law = own(name, moves, cruise_mps)?;
-        let (motion, goals) = (law.motion(), law.goals());
-        Some(Self { name: name.to_owned(), values: Vec::new(), moves, cruise_mps, motion, goals })
+        let (motion, goals, takes_ways) = (law.motion(), law.goals(), law.takes_ways());
+        Some(Self { name: name.to_owned(), values: Vec::new(), moves, cruise_mps, motion, goals, takes_ways })
     }
 
     /// Creates the law of one robot.
@@ -143,14 +145,27 @@ impl LawSetup {
         }
     }
 
-    /// See [`route`](Self::route).
-    pub const fn route_mut(&mut self) -> Option<&mut RouteSettings> {
+    /// Whether robots with or without places in a formation can have it; laws of the program may know
+    /// of no places.
+    #[must_use]
+    pub const fn fits_robots(&self, in_formation: bool) -> bool {
+        self.keeps_formation() == in_formation || matches!(self, Self::Added(_))
+    }
+
+    /// Whether a robot may go through other waypoints to its goal.
+    #[must_use]
+    pub fn takes_ways(&self) -> bool {
         match self {
-            Self::BuiltIn(LawSettings::Route(route)) => Some(route),
-            Self::BuiltIn(LawSettings::Formation(FormationSettings { route, .. }))
-            | Self::Published(PublishedSettings { route, .. })
-            | Self::Lookahead(LookaheadSettings(FormationSettings { route, .. })) => Some(route),
-            _ => None,
+            Self::Added(law) => law.takes_ways,
+            law => law.goals() == Goals::Waypoints,
+        }
+    }
+
+    /// Stores a value in each table that has the row.
+    pub(super) fn set(&mut self, row: &str, value: f32) {
+        match self {
+            Self::Added(law) => law.values.push((row.to_owned(), value)),
+            law => law.tables(&mut |table| store(table, &[(row.to_owned(), value)])),
         }
     }
 
@@ -214,7 +229,7 @@ impl LawSetup {
             Self::BuiltIn(settings) => settings.adapt(is_given, around),
             Self::Published(settings) => settings.adapt(is_given, around),
             Self::Lookahead(settings) => settings.adapt(is_given, around),
-            Self::Added(law) => match law.law().contradiction() {
+            Self::Added(law) => match law.law().contradiction(is_given) {
                 None => Ok(()),
                 Some(row) => {
                     let (what, remedy) = ("contradicts the other values of the law", "change it or leave it out");

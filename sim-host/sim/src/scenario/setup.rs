@@ -34,14 +34,12 @@ impl Scenario {
         self.laws().find_map(LawSetup::route).copied().unwrap_or(self.laws.usual_route)
     }
 
-    /// Changes the routes of each law that plans them.
-    pub fn change_routes(&mut self, change: impl Fn(&mut RouteSettings)) {
-        let groups = match &mut self.movement {
-            Movement::Cells(_) => None,
-            Movement::Plane(setup) => Some(setup.groups.iter_mut().chain([&mut setup.general])),
-        };
-        let laws = groups.into_iter().flatten().map(|group| &mut group.law).chain([&mut self.laws.on_grid]);
-        laws.filter_map(LawSetup::route_mut).for_each(change);
+    /// Stores a value in each law that has the row, unchecked.
+    pub fn set_in_laws(&mut self, row: &str, value: f32) {
+        self.laws.on_grid.set(row, value);
+        if let Movement::Plane(setup) = &mut self.movement {
+            setup.groups.iter_mut().chain([&mut setup.general]).for_each(|group| group.law.set(row, value));
+        }
     }
 
     /// Formation of robot `index`, if it is in one. O(formations).

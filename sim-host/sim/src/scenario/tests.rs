@@ -303,6 +303,12 @@ fn a_formation_has_the_law_of_its_file() {
     assert!(matches!(low, LawSetup::Published(settings) if settings.params.resume == 70), "resume is at most halt");
     for (law, rest, expected) in [
         ("formation_paper", "lead_cells = 2\n", "grid.formation_paper.lead_cells: unknown field `lead_cells`"),
+        (
+            "formation_lookahead",
+            "waits = false\nresume_cells = 2\n",
+            "grid.formation_lookahead.resume_cells: with waits = false no robot waits",
+        ),
+        ("formation_paper", "replan = \"until_changed\"\n", "grid.formation_paper.replan: robots in formation search"),
         ("formation_lookahead", "crowd = 2\n", "grid.formation_lookahead.crowd: unknown field `crowd`"),
         ("formation_lookahead", "resume_cells = 3.1\n", "grid.formation_lookahead.resume_cells: more than halt_cells"),
         ("", "waits = false\nhalt_cells = 3\n", "grid.formation.halt_cells: with waits = false no robot waits"),

@@ -1,6 +1,7 @@
 use super::*;
 use staya_controller::agent::Wait;
 use staya_controller::grid::{BLOCKED, UNIT};
+use staya_controller::parameters::Value as _;
 use staya_controller::route::Replan;
 
 fn parse(text: &str) -> Scenario {
@@ -253,7 +254,7 @@ fn a_wrong_map_only_costs_time() {
     for replan in [Replan::EachCell, Replan::UntilChanged] {
         let [right, wrong] = [&WALL, &NO_DOOR_IN_THE_NORTH].map(|old| {
             let mut scenario = with_maps(&WALL, old, "[scouting]\nmap = \"old.map\"\n");
-            scenario.change_routes(|route| route.replan = replan);
+            scenario.set_in_laws("replan", replan.number());
             run(&scenario).0
         });
         assert_eq!((right.arrived, wrong.arrived), (1, 1), "{replan:?}");

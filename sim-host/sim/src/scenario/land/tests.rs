@@ -67,7 +67,8 @@ fn invalid_changes_are_refused_with_place_and_remedy() {
         ("class = 0\ncells = [[1, 1]]\nat_s = -1", ".at_s", "seconds"),
         ("class = 0\ncells = [[1, 1]]\nfor_s = 0.1", ".for_s", "a tick at least"),
         ("drift = { share = 1.5 }", ".drift.share", "share"),
-        ("drift = { share = 0.5, step = 0 }", ".drift.step", "1 to 255"),
+        ("drift = { share = 0.5, step = 0 }", ".drift.step", "1 to 254"),
+        ("drift = { share = 0.5, step = 255 }", ".drift.step", "1 to 254"),
         ("drift = { share = 0.5, classes = 0 }", ".drift.classes", "1 to 255"),
         ("drift = { share = 0.5 }\nfor_s = 1", ".for_s", "leave it out"),
     ] {

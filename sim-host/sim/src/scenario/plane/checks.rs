@@ -1,7 +1,6 @@
 //! Checks of `[plane]`: positions, speeds, and combinations of tables.
 
 use super::super::Draft;
-use super::super::check::routes;
 use super::super::law::LawSetup;
 use super::super::ranges::short;
 use super::super::source::{Checked, Section};
@@ -97,7 +96,7 @@ fn via(law: &LawSetup, at: &Section<'_>, robot: &PlaneRobotEntry) -> Checked {
     let (count, most) = (robot.via_m.len(), WAYPOINTS - 1);
     let what = format!("robots with the law \"{}\" go by no places", law.name());
     let remedy = "give law = \"waypoint\", or leave it out";
-    at.require(law.goals() == Goals::Waypoints, "via_m", what, remedy)?;
+    at.require(law.takes_ways(), "via_m", what, remedy)?;
     at.require(robot.goal_m.is_some(), "via_m", "a way needs an end", "give goal_m too")?;
     let what = format!("{count} places on the way are too many");
     at.require(count <= most, "via_m", what, format!("give at most {most}"))
@@ -166,6 +165,5 @@ pub(super) fn law(group: &Group<'_>, law: &LawSetup) -> Checked {
     let name = law.name();
     let what = "robots in the plane do not wait; the slowest sets the pace";
     let is_free = !(law.keeps_formation() && group.body.law.given("waits"));
-    group.at.require(is_free, &format!("{name}.waits"), what, "leave it out")?;
-    routes(&group.at, &group.body.law, law)
+    group.at.require(is_free, &format!("{name}.waits"), what, "leave it out")
 }

@@ -151,13 +151,11 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
         }
         (None, _) => None,
     };
-    let (kind, has_cells) = (Group::general(draft, &table.body), cells.is_some());
-    let what = "these robots have the laws of their bodies";
-    draft.require(file.grid.law.is_empty(), "grid", what, "give `law` and its table in [plane]")?;
+    let (group, has_cells) = (Group::general(draft, &table.body), cells.is_some());
     let remedy = "give [terrain] and the top-level [robots], or another law";
-    let fits = has_cells || !kind.kind.is_on_grid() || table.robots.is_none();
+    let fits = has_cells || !group.kind.is_on_grid() || table.robots.is_none();
     draft.require(fits, "plane.law", "this law goes from cell to cell", remedy)?;
-    let go_together = !has_cells || kind.kind.keeps_formation() == file.cells_in_formation();
+    let go_together = !has_cells || group.kind.fits_robots(file.cells_in_formation());
     let what = "robots.formation and the law \"formation\" go together";
     draft.require(go_together, "plane.law", what, "give both or none of them")?;
     let in_metres = table.robots.as_ref();
@@ -170,11 +168,11 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
     let remedy = "give either plane.robots in metres or the top-level robots in cells, with plane.group if you like";
     draft.require(is_defined, "plane.robots", what, remedy)?;
 
-    let mut general = kind.build()?;
+    let mut general = group.build()?;
     let solids = solids(draft, table)?;
     let (cells, mut formations) = cells.unwrap_or_default();
     let last = cells.last().map_or(0, |robot| robot.id.0);
-    let phase = phase_ticks(draft, &kind.at, kind.body.phase_s)?;
+    let phase = phase_ticks(draft, &group.at, group.body.phase_s)?;
     let mut placing = starts::Placing {
         draft,
         general_m: general.radius_m,
@@ -183,7 +181,7 @@ pub(super) fn build(draft: &Draft<'_>, table: &PlaneTable, terrain: Option<&Terr
         starts: terrain.map_or_else(Vec::new, |land| starts::on_land(&cells, land, phase)),
     };
     if let Some(robots) = in_metres {
-        placing.place(&kind, None, robots)?;
+        placing.place(&group, None, robots)?;
     }
     let mut parts = vec![Part { table: "plane".to_owned(), members: 0..placing.starts.len() }];
     for (index, entry) in table.group.iter().enumerate() {

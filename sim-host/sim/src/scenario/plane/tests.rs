@@ -43,6 +43,21 @@ fn staleness_inflation_accepts_its_former_names() {
 }
 
 #[test]
+fn a_given_growth_is_kept_and_others_are_those_of_the_fastest() {
+    let growth = |own: &str| {
+        let fast = "[[plane.group]]\nmax_speed_mps = 3\nrobots.list = [{ start_m = [9, 9] }]\n";
+        let plane = setup(&format!("{HEAD}{PLANE}{own}{TWO}{fast}"));
+        [0, 2].map(|index| match plane.group(index).safety {
+            SafetySetup::Orca { inflation, .. } => inflation.growth_mps,
+            other => panic!("{other:?}"),
+        })
+    };
+    assert_eq!(growth(""), [3.0, 3.0]);
+    // The speed of the slow robots, which is also the default of one group alone.
+    assert_eq!(growth("orca = { inflation_mps = 1 }\n"), [1.0, 1.0]);
+}
+
+#[test]
 fn a_raised_lag_is_as_one_in_the_file() {
     for safety in ["orca", "push_out", "fly"] {
         let table = if safety == "push_out" { "[plane.push_out]\nmin_distance_m = 1\n" } else { "" };

@@ -24,6 +24,8 @@ fn every_field_is_in_the_table_of_the_readme() {
     let pages = [include_str!("../../../../../scenarios/README.md"), include_str!("../../../../../maps/README.md")];
     let mut fields = Vec::new();
     paths(ScenarioFile::lines(), "", &mut fields);
+    // Other tests of this process add a law.
+    fields.retain(|(path, _)| !path.contains(".convoy"));
     for (path, line) in &fields {
         let name = line.name;
         let words = [format!("`{name}`"), format!("`[{path}]`"), format!("`[[{path}]]`")];
