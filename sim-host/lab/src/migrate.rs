@@ -2,15 +2,21 @@
 //! `guidance`, `[law]`, `[route]` and `[formation]`. Comments and the order of fields stay.
 
 use staya_sim::scenario::{formation_law, renamed_value};
+use std::cell::Cell;
 use toml_edit::{Decor, DocumentMut, Item, Key, Table, TableLike, TomlError, value};
 
-/// The text in today's terms; `None`: it is already.
+/// The text in today's terms; `None`: it is already, or it is no scenario. Values that no robot has
+/// a use for stay where they are.
 ///
 /// # Errors
 /// The text is not TOML.
 pub fn migrated(text: &str) -> Result<Option<String>, TomlError> {
     let mut file: DocumentMut = text.parse()?;
-    rewrite(file.as_table_mut());
+    let root = file.as_table_mut();
+    let are_tables = ["grid", "plane"].iter().all(|name| root.get(name).is_none_or(Item::is_table_like));
+    if are_tables {
+        rewrite(root);
+    }
     let changed = file.to_string();
     Ok((changed != text).then_some(changed))
 }
@@ -18,10 +24,39 @@ pub fn migrated(text: &str) -> Result<Option<String>, TomlError> {
 /// Tables of earlier versions that concern all robots.
 struct Old {
     own: Option<Own>,
-    route: Option<Item>,
-    formation: Option<Item>,
+    route: Given,
+    formation: Given,
     /// The law of formations.
     sort: &'static str,
+}
+
+/// A table whose values become those of laws.
+struct Given {
+    table: Option<Item>,
+    is_used: Cell<bool>,
+}
+
+impl Given {
+    /// Takes the table from the file.
+    fn take(root: &mut Table, name: &str) -> Self {
+        let is_table = root.get(name).is_some_and(Item::is_table_like);
+        Self { table: if is_table { root.remove(name) } else { None }, is_used: Cell::new(false) }
+    }
+
+    /// Takes a field, with its key.
+    fn field(&mut self, name: &str) -> Option<(Key, Item)> {
+        let table = self.table.as_mut()?.as_table_like_mut()?;
+        Some((table.key(name)?.clone(), table.remove(name)?))
+    }
+
+    /// Puts values back that no law has taken.
+    fn put_back(self, root: &mut Table, name: &str) {
+        let is_left =
+            |table: &Item| !self.is_used.get() && table.as_table_like().is_some_and(|table| !table.is_empty());
+        if let Some(table) = self.table.filter(is_left) {
+            root.insert(name, table);
+        }
+    }
 }
 
 /// A law that the program adds.
@@ -45,18 +80,17 @@ impl Own {
 }
 
 fn rewrite(root: &mut Table) {
-    let own = root.remove("law").as_ref().and_then(Own::of);
-    let (mut route, mut formation) = (root.remove("route"), root.remove("formation"));
-    let take = |table: &mut Option<Item>, name: &str| {
-        let table = table.as_mut()?.as_table_like_mut()?;
-        Some((table.key(name)?.clone(), table.remove(name)?))
-    };
-    let sort = take(&mut formation, "law");
+    let own = root.get("law").and_then(Own::of);
+    if own.is_some() {
+        root.remove("law");
+    }
+    let (mut route, mut formation) = (Given::take(root, "route"), Given::take(root, "formation"));
+    let sort = formation.field("law");
     let sort = formation_law(sort.as_ref().and_then(|(_, law)| law.as_str()).unwrap_or_default());
-    if let Some((key, radius)) = take(&mut route, "radius") {
+    if let Some((key, radius)) = route.field("radius") {
         put(part(root, "grid"), &key, radius);
     }
-    if let Some((key, rho)) = take(&mut formation, "rho") {
+    if let Some((key, rho)) = formation.field("rho") {
         for_shapes(root, &mut |shape| put(shape, &key, rho.clone()));
     }
     let old = Old { own, route, formation, sort };
@@ -79,6 +113,8 @@ fn rewrite(root: &mut Table) {
             }
         }
     }
+    old.route.put_back(root, "route");
+    old.formation.put_back(root, "formation");
 }
 
 /// Gives a group its law, with the values of its table. `usual`: the law of a group without one.
@@ -105,15 +141,17 @@ fn group(group: &mut dyn TableLike, old: &Old, usual: &str) {
         }
     }
     let law = group.get("law").and_then(Item::as_str).unwrap_or(usual).to_owned();
-    let tables: &[&Option<Item>] = match law.as_str() {
+    let tables: &[&Given] = match law.as_str() {
         "route" => &[&old.route],
         "formation" | "formation_paper" | "formation_lookahead" => &[&old.formation, &old.route],
         _ => &[],
     };
-    for given in tables.iter().copied().flatten() {
-        let Some(values) = given.as_table_like().filter(|values| !values.is_empty()) else { continue };
+    for given in tables {
+        given.is_used.set(true);
+        let values = given.table.as_ref().and_then(Item::as_table_like).filter(|values| !values.is_empty());
+        let Some(values) = values else { continue };
         if group.get(&law).is_none()
-            && let Item::Table(table) = given
+            && let Some(Item::Table(table)) = &given.table
         {
             // With the place and the comments of its header.
             let mut header = table.clone();
@@ -250,6 +288,15 @@ mod tests {
         let expected = "[robots.formation]\nrows = 2\nrho = 1\n\n# The paper's.\n[grid.formation_paper]\neps_cells = 3\n\
                         halved_per_ticks = 0.5\n\n[grid]\nradius = 4\nlaw = \"formation_paper\"\n";
         assert_eq!(same(&new(old)), same(expected));
+    }
+
+    #[test]
+    fn nothing_is_lost_that_has_no_place_today() {
+        for text in ["grid = 3\n[route]\na3 = 2\n", "law = 3\n", "route = 3\n", "[law]\nparameters = { a = 1 }\n"] {
+            assert_eq!(migrated(text).expect("TOML"), None, "{text}");
+        }
+        let unused = "[plane]\nlaw = \"boids\"\n[route]\na3 = 2\n";
+        assert_eq!(same(&migrated(unused).expect("TOML").unwrap_or(unused.to_owned())), same(unused));
     }
 
     #[test]

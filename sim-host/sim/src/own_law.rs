@@ -4,10 +4,11 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use staya_controller::agent::{
-    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, Decision, Goals, GridOrder, InPlane,
-    Known, Law, MessageOf, Motion, OrderOf, Protocol, Radio, Report, Tools, View, Waypoint, WaypointOrder,
+    AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, CellState, Decision, Goals, GridOrder,
+    InCell, InCells, InPlane, Known, Law, MessageOf, Motion, OnGrid, OrderOf, Protocol, Radio, Report, Tools, View,
+    Waypoint, WaypointOrder,
 };
-use staya_controller::geom::Position;
+use staya_controller::geom::{Position, Vec2};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::negotiation::{Moves, NegotiationGuidance, NegotiationInPlane};
 use staya_controller::neighbor::Neighbor;
@@ -88,6 +89,31 @@ pub(crate) fn own(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Option<O
     }
 }
 
+/// Where robots move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Site {
+    /// From cell to cell.
+    Cells,
+    /// In the plane or in space.
+    Plane,
+    /// In the plane, over cells.
+    PlaneOverCells,
+}
+
+impl Site {
+    /// Surroundings of this kind.
+    pub(crate) fn surroundings(self) -> AnySurroundings<'static, f32> {
+        let grid = OnGrid { cell: CellState::default(), window: None };
+        let plane = InPlane { max_speed_mps: 0.0, obstacles: &[] };
+        let in_cell = InCell { offset_m: Vec2::ZERO, cell_m: 1.0 };
+        match self {
+            Self::Cells => AnySurroundings::OnGrid(grid),
+            Self::Plane => AnySurroundings::InPlane(plane),
+            Self::PlaneOverCells => AnySurroundings::InCells(InCells { grid, plane, in_cell }),
+        }
+    }
+}
+
 impl Own {
     /// Wraps a law.
     pub fn new<L: OwnLaw>(law: L) -> Self {
@@ -96,15 +122,14 @@ impl Own {
         Self(Box::new(Held { law, workspace: L::Workspace::default() }))
     }
 
-    /// Whether the law can use these surroundings.
-    pub(crate) fn fits(&self, here: &AnySurroundings<'_, f32>) -> bool {
-        self.0.fits(here)
+    /// Whether the law can decide there.
+    pub(crate) fn fits(&self, site: Site) -> bool {
+        self.0.fits(&site.surroundings())
     }
 
     /// The bodies that it moves.
     pub(crate) fn motion(&self) -> Motion {
-        let plane = AnySurroundings::InPlane(InPlane { max_speed_mps: 0.0, obstacles: &[] });
-        if self.fits(&plane) { Motion::Velocities } else { Motion::Cells }
+        if self.fits(Site::Plane) { Motion::Velocities } else { Motion::Cells }
     }
 
     /// The goals that it takes, as its answers to orders show.

@@ -1,14 +1,13 @@
 //! The laws of robots in a scenario: Staya's, those of papers, and one of the caller.
 
 use super::witness::Witness;
-use crate::own_law::{Own, OwnLaw};
+use crate::own_law::{Own, OwnLaw, Site};
 use crate::scenario::{LawSetup, Scenario};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, AnySafety, AnySurroundings, CellState, FormationGuidance, GridWorkspace, Guided, HALF_PLANES, InCell,
-    InCells, InPlane, LEARNED, MAP_TILES, OnGrid, SharedMap, TEMPLATE, VISITS,
+    AnyLaw, AnySafety, FormationGuidance, GridWorkspace, Guided, HALF_PLANES, LEARNED, MAP_TILES, SharedMap, TEMPLATE,
+    VISITS,
 };
-use staya_controller::geom::Vec2;
 use staya_controller::laws;
 use staya_papers::{Course, PublishedFormation};
 use std::collections::HashMap;
@@ -101,15 +100,12 @@ pub fn own_agents<L: OwnLaw>(
 }
 
 fn fits<L: OwnLaw>(scenario: &Scenario) -> Result<(), WrongWorld> {
-    let grid = OnGrid { cell: CellState::default(), window: None };
-    let plane = InPlane { max_speed_mps: 0.0, obstacles: &[] };
-    let in_cell = InCell { offset_m: Vec2::ZERO, cell_m: 1.0 };
-    let (surroundings, wrong) = match scenario.plane() {
-        None => (AnySurroundings::OnGrid(grid), WrongWorld::Grid),
-        Some(setup) if !setup.has_terrain => (AnySurroundings::InPlane(plane), WrongWorld::Plane),
-        Some(_) => (AnySurroundings::InCells(InCells { grid, plane, in_cell }), WrongWorld::Land),
+    let (site, wrong) = match scenario.plane() {
+        None => (Site::Cells, WrongWorld::Grid),
+        Some(setup) if !setup.has_terrain => (Site::Plane, WrongWorld::Plane),
+        Some(_) => (Site::PlaneOverCells, WrongWorld::Land),
     };
-    L::Surroundings::try_from(surroundings).map(|_| ()).map_err(|_| wrong)
+    L::Surroundings::try_from(site.surroundings()).map(|_| ()).map_err(|_| wrong)
 }
 
 /// The law needs other surroundings than the scenario's robots have.

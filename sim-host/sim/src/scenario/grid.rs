@@ -3,6 +3,7 @@
 use super::Draft;
 use super::law::{LawPart, LawSetup};
 use super::source::Checked;
+use crate::own_law::Site;
 use crate::{defaults, names, table};
 use staya_controller::agent::{Around, FormationSettings, RouteSettings, Settings as _};
 use staya_controller::grid::Norm;
@@ -76,7 +77,7 @@ pub(super) fn law(draft: &Draft<'_>) -> Checked<LawSetup> {
         (draft.file.plane.is_none() || grid.law.is_empty(), "bodies in the plane have their own laws");
     draft.require(is_free, "grid", what, "give `law` and its table in [plane]")?;
     let kind = LawSetup::by_name(grid.law.name_or(usual), moves(grid), None);
-    if let Some(law) = kind.filter(|law| !law.is_on_grid()) {
+    if let Some(law) = kind.filter(|law| !law.fits(Site::Cells)) {
         let what = format!("the law \"{}\" goes by velocities, and these robots from cell to cell", law.name());
         return Err(at.error("law", what, "give [plane] with this law, or another law"));
     }

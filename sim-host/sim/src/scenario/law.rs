@@ -3,7 +3,7 @@
 use super::read::{Field as _, Limits, Line, Node, Table, Wrong, nearest};
 use super::source::{Checked, Section};
 use super::table::Fields;
-use crate::own_law::{NEGOTIATION, Own, added, own};
+use crate::own_law::{NEGOTIATION, Own, Site, added, own};
 use staya_controller::agent::{
     Around, Contradiction, FormationSettings, Goals, LawSettings, Motion, RouteSettings, Settings, TEMPLATE,
     WaypointSettings,
@@ -158,6 +158,15 @@ impl LawSetup {
         match self {
             Self::Added(law) => law.takes_ways,
             law => law.goals() == Goals::Waypoints,
+        }
+    }
+
+    /// Whether it can decide there.
+    pub(super) fn fits(&self, site: Site) -> bool {
+        match self {
+            Self::BuiltIn(settings) => settings.motion() == Motion::Cells || site != Site::Cells,
+            Self::Published(_) | Self::Lookahead(_) => site == Site::Cells,
+            Self::Added(law) => law.law().fits(site),
         }
     }
 

@@ -8,6 +8,7 @@ use super::body::Group;
 use super::table::{CloudEntry, MAX_ROBOTS, Place, PlaneRobotEntry};
 use super::{PlaneSetup, Start};
 use crate::nearby::{Cells, Query, Search};
+use crate::own_law::Site;
 use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{Goals, WAYPOINTS};
@@ -160,8 +161,10 @@ pub(super) fn outside(draft: &Draft<'_>, setup: &PlaneSetup) -> Checked {
 /// Refuses a law that these bodies cannot have, or values of it that have no meaning for them.
 pub(super) fn law(group: &Group<'_>, law: &LawSetup) -> Checked {
     let what = format!("the law \"{}\" goes from cell to cell", law.name());
-    let is_on_grid_alone = matches!(law, LawSetup::Published(_) | LawSetup::Lookahead(_));
-    group.at.require(!is_on_grid_alone, "law", what, "give law = \"formation\", or leave [plane] out")?;
+    // Whether there are cells for a law over cells is asked where its robots are placed.
+    let has_cells = group.draft.file.terrain.is_some() || law.is_on_grid();
+    let site = if has_cells { Site::PlaneOverCells } else { Site::Plane };
+    group.at.require(law.fits(site), "law", what, "give a law that goes by velocities, or leave [plane] out")?;
     let name = law.name();
     let what = "robots in the plane do not wait; the slowest sets the pace";
     let is_free = !(law.keeps_formation() && group.body.law.given("waits"));
