@@ -145,8 +145,8 @@ impl LawSetup {
         }
     }
 
-    /// Whether robots with or without places in a formation can have it; laws of the program may know
-    /// of no places.
+    /// Whether robots with or without places in a formation can have it; laws of the program may
+    /// know of no places.
     #[must_use]
     pub const fn fits_robots(&self, in_formation: bool) -> bool {
         self.keeps_formation() == in_formation || matches!(self, Self::Added(_))
