@@ -64,6 +64,9 @@ pub enum Absent {
     Needed,
 }
 
+/// Words for a value that depends on the body.
+pub const BY_BODY: &str = "by the body";
+
 /// The words of a switch.
 pub const SWITCH: &[&str] = &["false", "true"];
 

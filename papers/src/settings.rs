@@ -31,11 +31,11 @@ staya_controller::parameters! {
             => params.gain,
         row("halt_cells", "FORM_HALT", "cells", [0.0, 937.0], "sum of deviations at which the formation is lost")
             => params.halt / UNIT as f32,
-        row("resume_cells", "FORM_RESUME", "cells", [0.0, 937.0], "sum at which the formation is kept again")
+        row("resume_cells", "FORM_RESUME", "cells", [0.0, 937.0], "sum at which it is kept again")
             .depends("9, at most `halt_cells`") => params.resume / UNIT as f32,
         row("crowd", "FORM_CROWD", "robots", [0.0, 255.0], "missing or surplus robots above which others are asked to turn")
             => params.crowd,
-        choice("prediction", "FORM_PREDICTION", Prediction::WORDS, "others move as announced, or as this robot would")
+        choice("prediction", "FORM_PREDICTION", Prediction::WORDS, "others act as announced, or as this robot")
             => params.prediction,
     }
 }

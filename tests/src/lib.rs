@@ -67,8 +67,31 @@ pub fn run(scenario: &Scenario) -> (Outcome, Vec<(TickRow, Vec<RobotRow>)>) {
 /// # Panics
 /// If they differ, a gap has no reason or a reason no gap, or the file cannot be read or written.
 pub fn golden(name: &str, actual: &str, gaps: &[String]) {
-    let actual = format!("{actual}{}", story::exceptions(name, gaps));
-    let path = root().join("tests/golden").join(format!("{name}.txt"));
+    printed(&format!("tests/golden/{name}.txt"), &format!("{actual}{}", story::exceptions(name, gaps)));
+}
+
+/// Like [`printed`], for the part `part` of a page between its marks.
+///
+/// # Panics
+/// See [`printed`]; also if the page lacks the marks.
+pub fn printed_part(page: &str, part: &str, actual: &str) {
+    let path = root().join(page);
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let begin = format!("<!-- {part}: written by cargo xtask bless -->\n");
+    let parts = text.split_once(&begin).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+    let (before, after) = parts.unwrap_or_else(|| panic!("{page} needs the lines {begin}and {END}"));
+    printed(page, &format!("{before}{begin}\n{actual}\n{END}{after}"));
+}
+
+/// The end of a part of a page that is printed.
+pub const END: &str = "<!-- end -->\n";
+
+/// Compares `actual` with the file `name` of the repository, or writes it for `cargo xtask bless`.
+///
+/// # Panics
+/// If they differ, or the file cannot be read or written.
+pub fn printed(name: &str, actual: &str) {
+    let path = root().join(name);
     if std::env::var_os(BLESS).is_some() {
         fs::write(&path, actual).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         return;
@@ -79,8 +102,7 @@ pub fn golden(name: &str, actual: &str, gaps: &[String]) {
     let at = first.unwrap_or(wanted.lines().count().min(actual.lines().count()));
     assert!(
         wanted == actual,
-        "{name} differs from {} in line {}\nwanted: {}\n   got: {}\nif the change is meant: cargo xtask bless golden",
-        path.display(),
+        "{name} differs in line {}\nwanted: {}\n   got: {}\nif the change is meant: cargo xtask bless golden",
         at + 1,
         wanted.lines().nth(at).unwrap_or("(end)"),
         actual.lines().nth(at).unwrap_or("(end)"),

@@ -16,6 +16,7 @@ mod matrix;
 mod movingai;
 mod negotiation;
 mod parameters;
+mod printed;
 mod programs;
 mod scenes;
 mod threads;

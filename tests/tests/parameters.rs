@@ -9,7 +9,7 @@ use staya_controller::orca::AvoidParams;
 use staya_controller::parameters::{Parameter, Parameters};
 use staya_controller::route::RouteParams;
 use staya_sim::engine::operated;
-use staya_sim::scenario::{Line, Overrides, Read as _, Scenario, ScenarioFile};
+use staya_sim::scenario::{Line, Overrides, Read as _, Scenario, ScenarioFile, Usual};
 use staya_tests::{golden, root};
 use std::fs;
 
@@ -98,10 +98,12 @@ fn golden_list_of_parameters() {
 }
 
 fn list_fields(lines: Vec<Line>, table: &str, list: &mut String) {
-    for Line { name, doc, kind, limits, default, inner } in lines {
+    for Line { name, doc, kind, limits, words, default, inner, .. } in lines {
         let limits = limits.map_or_else(String::new, |limits| format!(", {limits}"));
-        let default = if default.is_empty() { String::new() } else { format!(", default {default}") };
-        *list += &format!("{table}{name}: {kind}{limits}{default}; {}\n", doc.trim());
+        let words = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
+        let words = if words.is_empty() { words } else { format!(", {words}") };
+        let default = if default == Usual::None { String::new() } else { format!(", default {default}") };
+        *list += &format!("{table}{name}: {kind}{limits}{words}{default}; {}\n", doc.trim());
         list_fields(inner, &format!("{table}{name}."), list);
     }
 }

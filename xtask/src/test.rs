@@ -74,7 +74,8 @@ pub fn bless(s: &mut Session, name: &str) {
     let tests = || s.repo.cargo(&format!("test --workspace --no-fail-fast {name}"));
     s.report.step("rewrite golden files", || execute(tests().env(BLESS, "1")));
     s.report.command("compare again", &mut tests());
-    match output_of(s.repo.command("git").args(["status", "--short", "--", "*golden*"])) {
+    let files = ["*golden*", "*.md", "*/settings.py", "*/staya.h"];
+    match output_of(s.repo.command("git").args(["status", "--short", "--"]).args(files)) {
         Some(changed) if changed.is_empty() => println!("\nNo golden file changed."),
         Some(changed) => {
             println!("\nGolden files that differ from the last commit; look at each, and commit them apart:");

@@ -77,7 +77,7 @@ impl<S: Scalar> Turn<S> {
 const CROWDED: Parameter =
     row("crowded_m", "BOID_CROWDED_M", "m", [0.0, 1000.0], "nearer than this a boid turns away").needed();
 const CLOSEST: Parameter =
-    row("closest_m", "BOID_CLOSEST_M", "m", [0.0, 10_000.0], "largest distance of a neighbour that counts").needed();
+    row("closest_m", "BOID_CLOSEST_M", "m", [0.0, 10_000.0], "farthest neighbour that counts").needed();
 const TURN: Parameter = row("max_turn", "BOID_TURN", "rad", [0.0, 3.15], "largest turn towards the others in a step");
 const TURN_AWAY: Parameter =
     row("max_turn_away", "BOID_TURN_AWAY", "rad", [0.0, 3.15], "largest turn away from a too near boid in a step");

@@ -146,7 +146,7 @@ crate::parameters! {
         row("halt_cells", "FORM_HALT", "cells", [0.0, 937.0], "lag of a robot at which the leader waits")
             => halt_lag / UNIT as f32,
         row("resume_cells", "FORM_RESUME", "cells", [0.0, 937.0], "lag at which the waiting leader continues")
-            .depends("that of the law, at most `halt_cells`") => resume_lag / UNIT as f32,
+            .depends("`halt_cells`") => resume_lag / UNIT as f32,
         row("lead_cells", "FORM_LEAD", "cells", [0.0, 255.0], "how far ahead of the leader the others aim") => lead,
         row("footprint", "FORM_FOOTPRINT", "", [0.0, 1.0], "share of the others' land in the leader's price")
             => footprint / 16.0,

@@ -34,9 +34,9 @@ crate::parameters! {
     impl[] FormationSettings {
         switch("waits", "FORM_WAITS", "whether the top leader waits for followers") => waits,
         switch("closes_ranks", "FORM_CLOSES", "whether robots behind a dead one move up a place") => params.closes_ranks,
-        choice("prediction", "FORM_PREDICTION", Prediction::WORDS, "others move as announced, or as this robot would")
+        choice("prediction", "FORM_PREDICTION", Prediction::WORDS, "others act as announced, or as this robot")
             => params.prediction,
-        choice("recovery", "FORM_RECOVERY", Recovery::WORDS, "a leader of lagging robots waits, or heads to where they head")
+        choice("recovery", "FORM_RECOVERY", Recovery::WORDS, "a leader of late robots waits, or heads where they head")
             => params.recovery,
     }
 }

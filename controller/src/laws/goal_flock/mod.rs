@@ -98,7 +98,7 @@ crate::parameters! {
     impl[S: Scalar] GoalParams<S>, where is_sound {
         SPEED => speed_mps,
         MIN_DISTANCE => min_distance_m,
-        row("neighborhood_m", "GOAL_NBH_M", "m", [0.002, 10_000.0], "largest distance of a neighbour that counts")
+        row("neighborhood_m", "GOAL_NBH_M", "m", [0.002, 10_000.0], "farthest neighbour that counts")
             .depends("4 `min_distance_m`") => neighborhood_m,
         row("k1", "GOAL_K1", "", [-1000.0, 1000.0], "pull of the goal (K1)") => goal_gain,
         row("k2", "GOAL_K2", "", [-1000.0, 1000.0], "pull of the middle of the neighbours (K2)") => center_gain,

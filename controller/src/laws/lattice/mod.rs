@@ -232,14 +232,14 @@ crate::parameters! {
         row("attraction", "LAT_A", "", [0.001, 1000.0], "bound of the attraction (a)") => attraction,
         row("repulsion", "LAT_B", "", [0.001, 1000.0], "bound of the repulsion (b), not less than a") => repulsion,
         row("c1_alpha", "LAT_C1_ALPHA", "1/s^2", [0.0, 1000.0], "robots among each other, on places")
-            .depends("stable with the delay of the radio") => alpha.position,
+            .depends("by the delay of the radio") => alpha.position,
         row("c2_alpha", "LAT_C2_ALPHA", "1/s", [0.0, 1000.0], "robots among each other, on velocities")
             .depends("2 sqrt(`c1_alpha`)") => alpha.velocity,
         row("c1_beta", "LAT_C1_BETA", "1/s^2", [0.0, 10_000.0], "obstacles, on places") => beta.position,
         row("c2_beta", "LAT_C2_BETA", "1/s", [0.0, 1000.0], "obstacles, on velocities")
             .depends("2 sqrt(`c1_beta`)") => beta.velocity,
         row("c1_gamma", "LAT_C1_GAMMA", "1/s^2", [0.0, 1000.0], "the reference, on places")
-            .depends("stable with the delay of the radio") => gamma.position,
+            .depends("by the delay of the radio") => gamma.position,
         row("c2_gamma", "LAT_C2_GAMMA", "1/s", [0.0, 1000.0], "the reference, on velocities")
             .depends("2 sqrt(`c1_gamma`)") => gamma.velocity,
     }

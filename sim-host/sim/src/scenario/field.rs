@@ -25,6 +25,11 @@ impl Field {
         name.split('.').all(is_step).then(|| Self(name.to_owned()))
     }
 
+    /// The path through these tables to a field.
+    pub(super) fn of(steps: &[&str]) -> Self {
+        Self(steps.join("."))
+    }
+
     /// The path as text.
     pub fn name(&self) -> &str {
         &self.0

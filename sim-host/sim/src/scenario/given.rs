@@ -103,15 +103,7 @@ impl<P: Rows> Fields for Given<P> {
             let (index, parameter) = parameter(&usual, row);
             // Beside a required field, other lengths depend on it.
             let depends = parameter.unit == "m" && P::ROWS.iter().any(|row| row.is_needed);
-            let default = usual.get(index).filter(|_| !row.is_needed && !depends);
-            Line {
-                name: row.name,
-                doc: parameter.what.into(),
-                kind: <f64 as super::Read>::KIND,
-                limits: Some(Limits::of(parameter)),
-                default: default.map(|value| value.to_string()).unwrap_or_default().into(),
-                inner: Vec::new(),
-            }
+            super::law::line(parameter, usual.get(index).filter(|_| !row.is_needed && !depends))
         };
         P::ROWS.iter().map(line).collect()
     }

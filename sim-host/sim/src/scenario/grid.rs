@@ -13,7 +13,7 @@ use staya_controller::route::{ExitRule, Replan, SIGHT};
 table! {
     /// `[grid]`: rules of cells. With `[plane]`, `law` and its table are in that one.
     pub struct GridTable {
-        part law: LawPart;
+        part law: LawPart<true>;
         /// Sight of a robot in each direction, cells.
         pub radius: u8 = 5, SIGHT;
         /// `"euclidean"` (a diagonal move is sqrt 2 long; the default) or `"chebyshev"` (1).

@@ -1,7 +1,7 @@
 //! `law = "NAME"` of a group of robots, and the table `NAME` beside it with the law's values.
 
-use super::read::{Field as _, Limits, Line, Node, Table, Wrong, nearest};
-use super::source::{Checked, Section};
+use super::read::{Field as _, Limits, Line, Node, Table, Usual, Wrong, nearest};
+use super::source::{Checked, Section, Source};
 use super::table::Fields;
 use crate::own_law::{NEGOTIATION, Own, Site, added, own};
 use staya_controller::agent::{
@@ -9,9 +9,10 @@ use staya_controller::agent::{
     WaypointSettings,
 };
 use staya_controller::negotiation::Moves;
-use staya_controller::parameters::{Absent, Parameter, Parameters};
+use staya_controller::parameters::{Absent, BY_BODY, Parameter, Parameters};
 use staya_controller::template::Template;
 use staya_papers::{LookaheadSettings, PublishedSettings};
+use std::path::Path;
 use toml::de::DeValue;
 
 /// A law of robots, with the values that it is made from.
@@ -258,26 +259,70 @@ fn store(table: &mut dyn Parameters, values: &[(String, f32)]) {
     }
 }
 
-/// The first value that is not a whole number although the law stores one, with the stored number.
-fn rounded(law: &mut LawSetup, values: &[(String, f32)]) -> Option<(&'static str, f32, f32)> {
+/// Calls a function with each table of a law, a layer or a behaviour.
+pub type Tables<'a> = dyn FnMut(&mut dyn FnMut(&mut dyn Parameters)) + 'a;
+
+/// A row, the fault of its value, and how to correct it.
+type Fault = (&'static str, String, String);
+
+/// The first value that is not a whole number although its row stores one.
+fn rounded(tables: &mut Tables<'_>, values: &[(String, f32)]) -> Option<Fault> {
     /// Gains are rounded to sixteenths, lengths to parts of a cell.
     const FINE: f32 = 0.04;
     let mut found = None;
-    law.tables(&mut |table| {
+    tables(&mut |table| {
         for (name, value) in values {
             let Some(index) = table.index(name) else { continue };
             let stored = table.get(index).unwrap_or(*value);
             if value.fract() != 0.0 && stored.fract() == 0.0 && (stored - value).abs() > FINE {
-                found = found.or(Some((table.table()[index].name, *value, stored)));
+                let what = format!("{value} is not a whole number");
+                let remedy = format!("give {stored}, or another whole number");
+                found.get_or_insert((table.table()[index].name, what, remedy));
             }
         }
     });
     found
 }
 
-/// `law` and the tables of laws among the fields of a group.
+/// Reads the values of these rows from a table.
+fn read_values(node: &Node<'_>, rows: &[&'static Parameter]) -> Result<Vec<(String, f32)>, Wrong> {
+    let names: Vec<_> = rows.iter().map(|row| row.name).collect();
+    let table = Table::new(node, &names)?;
+    let value = |row: &&'static Parameter| Ok(value(&table, row)?.map(|value| (row.name.to_owned(), value)));
+    rows.iter().filter_map(|row| value(row).transpose()).collect()
+}
+
+/// Stores the values of `text`, a table in TOML, in tables, by the rules of scenario files. Returns
+/// the names of the values. Rows of `needed` must be given, too.
+///
+/// # Errors
+/// The field, the cause and the remedy; `list` is where all fields are documented.
+pub fn store_given(
+    text: &str,
+    list: &str,
+    needed: &[&str],
+    tables: &mut Tables<'_>,
+) -> Result<Vec<&'static str>, String> {
+    let mut rows: Vec<&'static Parameter> = Vec::new();
+    tables(&mut |table| rows.extend(table.table()));
+    let source = Source::new(Path::new(""), text).map_err(|error| error.without_place())?;
+    let values = source.read_by(|node| read_values(node, &rows), list).map_err(|error| error.without_place())?;
+    let (given, others): (Vec<_>, Vec<_>) =
+        rows.into_iter().partition(|row| values.iter().any(|(name, _)| name == row.name));
+    let is_needed = |row: &&&Parameter| row.absent == Absent::Needed || needed.contains(&row.name);
+    if let Some(row) = others.iter().find(is_needed) {
+        return Err(format!("missing `{}`: {}; give {}", row.name, row.what, Limits::of(row)));
+    }
+    tables(&mut |table| store(table, &values));
+    match rounded(tables, &values) {
+        None => Ok(given.into_iter().map(|row| row.name).collect()),
+        Some((row, what, remedy)) => Err(format!("{row}: {what}; {remedy}")),
+    }
+}
+
+/// `law` and the tables of laws among the fields of robots in cells, or else of a group in the plane.
 #[derive(Clone, Debug, Default)]
-pub struct LawPart {
+pub struct LawPart<const CELLS: bool> {
     /// The name, if it is given.
     pub name: Option<String>,
     /// The tables of laws that are given, with their values.
@@ -299,7 +344,12 @@ fn usual(name: &str) -> Option<LawSetup> {
     LawSetup::by_name(name, Moves::EIGHT, Some(1.0))
 }
 
-impl LawPart {
+/// The names of a law's values in files; `None` for an unknown law.
+pub(super) fn names_of(law: &str) -> Option<Vec<&'static str>> {
+    Some(rows(&mut usual(law)?).into_iter().map(|(row, _)| row.name).collect())
+}
+
+impl<const CELLS: bool> LawPart<CELLS> {
     /// The name of the law, `otherwise` if none is given.
     pub(super) fn name_or<'a>(&'a self, otherwise: &'a str) -> &'a str {
         self.name.as_deref().unwrap_or(otherwise)
@@ -335,9 +385,8 @@ impl LawPart {
             LawSetup::Added(law) => law.values = values.to_vec(),
             law => law.tables(&mut |table| store(table, values)),
         }
-        if let Some((row, value, stored)) = rounded(&mut law, values) {
-            let remedy = format!("give {stored}, or another whole number");
-            return Err(at.error(&format!("{name}.{row}"), format!("{value} is not a whole number"), remedy));
+        if let Some((row, what, remedy)) = rounded(&mut |visit| law.tables(visit), values) {
+            return Err(at.error(&format!("{name}.{row}"), what, remedy));
         }
         law.adapt(&|row| self.given(row), around)
             .map_err(|wrong| at.error(&format!("{name}.{}", wrong.row), wrong.what, wrong.remedy))?;
@@ -385,7 +434,7 @@ impl super::Read for Word {
     }
 }
 
-impl Fields for LawPart {
+impl<const CELLS: bool> Fields for LawPart<CELLS> {
     fn names() -> Vec<&'static str> {
         ["law"].into_iter().chain(laws().into_iter().map(|(name, _)| name)).collect()
     }
@@ -400,45 +449,57 @@ impl Fields for LawPart {
         let mut tables = Vec::new();
         for (law, _) in laws() {
             let Some(mut setup) = table.has(law).then(|| usual(law)).flatten() else { continue };
-            let values = table.of(law, |node| {
-                let rows: Vec<_> = rows(&mut setup).into_iter().map(|(row, _)| row).collect();
-                let names: Vec<_> = rows.iter().map(|row| row.name).collect();
-                let table = Table::new(node, &names)?;
-                let value =
-                    |row: &&'static Parameter| Ok(value(&table, row)?.map(|value| (row.name.to_owned(), value)));
-                rows.iter().filter_map(|row| value(row).transpose()).collect::<Result<Vec<_>, Wrong>>()
-            })?;
-            tables.push((law, values));
+            let rows: Vec<_> = rows(&mut setup).into_iter().map(|(row, _)| row).collect();
+            tables.push((law, table.of(law, |node| read_values(node, &rows))?));
         }
         Ok(Self { name, tables })
     }
 
     fn part_lines() -> Vec<Line> {
-        let law = Line {
-            name: "law",
-            doc: "The law of the robots, by name.".into(),
-            kind: Word::KIND,
+        let line = |name, doc: &'static str, kind, inner| Line {
+            name,
+            doc: doc.into(),
+            kind,
             limits: None,
-            default: String::new().into(),
-            inner: Vec::new(),
+            words: Vec::new(),
+            default: Usual::None,
+            reads: |node| Word::read(node).map(drop),
+            inner,
         };
+        let sites: &[Site] = if CELLS { &[Site::Cells] } else { &[Site::Plane, Site::PlaneOverCells] };
         let tables = laws().into_iter().filter_map(|(name, what)| {
-            let rows = rows(&mut usual(name)?);
-            let inner: Vec<_> = rows.into_iter().map(|(row, default)| line(row, default)).collect();
-            let line =
-                Line { name, doc: what.into(), kind: "a table", limits: None, default: String::new().into(), inner };
-            (!line.inner.is_empty()).then_some(line)
+            let mut law = usual(name).filter(|law| sites.iter().any(|site| law.fits(*site)))?;
+            let rows: Vec<_> = rows(&mut law).into_iter().map(|(row, default)| self::line(row, default)).collect();
+            let reads = |node: &Node<'_>| Table::any(node).map(drop);
+            (!rows.is_empty()).then(|| Line { reads, ..line(name, what, "a table", rows) })
         });
-        [law].into_iter().chain(tables).collect()
+        [line("law", "The law of the robots, by name.", Word::KIND, Vec::new())].into_iter().chain(tables).collect()
     }
 }
 
+/// The documentation of the rows of tables, with the values of the tables as defaults, also of rows
+/// that in a run depend on the body.
+pub fn lines_of(tables: &mut Tables<'_>) -> Vec<Line> {
+    let mut all = Vec::new();
+    tables(&mut |table| {
+        for (index, row) in table.table().iter().enumerate() {
+            let mut line = line(row, table.get(index));
+            let of_body = matches!(row.absent, Absent::OfBody(_) | Absent::Depends(BY_BODY));
+            if let Some(value) = table.get(index).filter(|_| of_body) {
+                line.default = Usual::Value(value.to_string());
+            }
+            all.push(line);
+        }
+    });
+    all
+}
+
 /// The documentation of a row.
-fn line(row: &'static Parameter, default: Option<f32>) -> Line {
-    let (kind, limits) = match (row.is_switch(), row.words.is_empty()) {
-        (true, _) => (bool::KIND, None),
-        (_, true) => (f64::KIND, Some(Limits::of(row))),
-        _ => (Word::KIND, None),
+pub(super) fn line(row: &'static Parameter, default: Option<f32>) -> Line {
+    let (kind, limits, reads): (_, _, fn(&Node<'_>) -> _) = match (row.is_switch(), row.words.is_empty()) {
+        (true, _) => (bool::KIND, None, |node| bool::read(node).map(drop)),
+        (_, true) => (f64::KIND, Some(Limits::of(row)), |node| f64::read(node).map(drop)),
+        _ => (Word::KIND, None, |node| Word::read(node).map(drop)),
     };
     let shown = |value: f32| match row.words.get(value as usize) {
         Some(word) if row.is_switch() => (*word).to_owned(),
@@ -446,22 +507,11 @@ fn line(row: &'static Parameter, default: Option<f32>) -> Line {
         None => value.to_string(),
     };
     let default = match row.absent {
-        Absent::Default => default.map(shown).unwrap_or_default(),
-        Absent::Depends(on) => on.to_owned(),
-        Absent::OfBody(name) => format!("that of the body, `{name}`"),
-        Absent::Needed => String::new(),
+        Absent::Default => default.map_or(Usual::None, |value| Usual::Value(shown(value))),
+        Absent::Depends(on) => Usual::Words(on.into()),
+        Absent::OfBody(name) => Usual::Words(format!("that of the body, `{name}`").into()),
+        Absent::Needed => Usual::None,
     };
-    let words = if row.words.is_empty() || row.is_switch() {
-        String::new()
-    } else {
-        format!(" ({})", row.words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "))
-    };
-    Line {
-        name: row.name,
-        doc: format!("{}{words}", row.what).into(),
-        kind,
-        limits,
-        default: default.into(),
-        inner: Vec::new(),
-    }
+    let words = if row.is_switch() { Vec::new() } else { row.words.to_vec() };
+    Line { name: row.name, doc: row.what.into(), kind, limits, words, default, reads, inner: Vec::new() }
 }

@@ -35,7 +35,7 @@ pub use formation::{FormationEntry, FormationStarts};
 pub use given::{Given, Row, Rows};
 pub use grid::GridTable;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
-pub use law::{AddedLaw, LawPart, LawSetup, laws};
+pub use law::{AddedLaw, LawPart, LawSetup, Tables, laws, lines_of, store_given};
 pub use maps::MapsTable;
 pub use plane::{
     BallEntry, BallsEntry, CircleEntry, CloudEntry, GroupTable, HalfSpaceEntry, Intruder, IntruderEntry, OrcaTable,
@@ -43,7 +43,7 @@ pub use plane::{
     RobotsSource, ScatteredDiscs, SensingTable, Start, Target, WallEntry,
 };
 pub use plausibility::PlausibilityTable;
-pub use read::{AnyTable, Field as Read, Limits, Line, Node, Table, Wrong, nearest, word};
+pub use read::{AnyTable, Field as Read, Limits, Line, Node, Table, Usual, Wrong, documented, nearest, word};
 pub use renamed::{formation_law, value as renamed_value};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
@@ -51,7 +51,7 @@ pub use schema::{
     FaultTable, LandSource, Lie, MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, Secret,
     TerrainTable, UniformTable,
 };
-pub use setting::{Setting, text_with, with_settings};
+pub use setting::{Setting, named, text_with, with_settings};
 use source::{Checked, Section};
 pub use source::{Location, ScenarioError, Source};
 pub use table::{Fields, OneOf, empty, plain};

@@ -95,6 +95,49 @@ fn in_words(value: &DeValue<'_>) -> String {
     }
 }
 
+/// The value of a field that is absent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Usual {
+    /// None: the field is required, an alternative, or a table of defaults.
+    None,
+    /// This one, as in a file.
+    Value(String),
+    /// It depends on others, as these words say.
+    Words(Cow<'static, str>),
+}
+
+impl Display for Usual {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => Ok(()),
+            Self::Value(value) => f.write_str(value),
+            Self::Words(words) => f.write_str(words),
+        }
+    }
+}
+
+impl Usual {
+    /// The default `value` of a field of type `T`.
+    #[must_use]
+    pub fn of<T: Field>(value: &T) -> Self {
+        value.written().map_or(Self::None, Self::Value)
+    }
+}
+
+/// The documentation of a field and its default. The documentation of an optional field says what
+/// the default is: `Default: the highest speed.`
+#[must_use]
+pub fn documented(doc: &'static str, default: Usual) -> (Cow<'static, str>, Usual) {
+    const MARK: &str = " Default: ";
+    match doc.split_once(MARK) {
+        Some((doc, words)) if default == Usual::None => {
+            let (words, rest) = words.split_once(". ").unwrap_or((words.trim_end_matches('.'), ""));
+            (format!("{doc} {rest}").trim().to_owned().into(), Usual::Words(words.into()))
+        }
+        _ => (doc.trim().into(), default),
+    }
+}
+
 /// A documented field of a table.
 #[derive(Debug)]
 pub struct Line {
@@ -106,8 +149,12 @@ pub struct Line {
     pub kind: &'static str,
     /// Least and greatest value, and the unit.
     pub limits: Option<Limits>,
-    /// Value if the field is absent, as Rust code or a number; empty if there is none.
-    pub default: Cow<'static, str>,
+    /// The words, if the value is one of some.
+    pub words: Vec<&'static str>,
+    /// Value if the field is absent.
+    pub default: Usual,
+    /// Reads a value as the field does, without its limits.
+    pub reads: fn(&Node<'_>) -> Result<(), Wrong>,
     /// Fields of the table, or of the tables in the list.
     pub inner: Vec<Line>,
 }
@@ -133,6 +180,18 @@ pub trait Field: Sized {
     #[must_use]
     fn lines() -> Vec<Line> {
         Vec::new()
+    }
+
+    /// The words, if this is one of some.
+    #[must_use]
+    fn words() -> Vec<&'static str> {
+        Vec::new()
+    }
+
+    /// The value as in a file; `None` for a table.
+    #[must_use]
+    fn written(&self) -> Option<String> {
+        None
     }
 }
 
@@ -160,6 +219,12 @@ impl Limits {
         Self::new(low..=high, unit)
     }
 
+    /// The least and the greatest value.
+    #[must_use]
+    pub const fn ends(&self) -> (f64, f64) {
+        (*self.range.start(), *self.range.end())
+    }
+
     /// Cause and remedy, if the value is out of range.
     pub(super) fn check(&self, value: f64) -> Result<(), [String; 2]> {
         match (self.range.contains(&value), short(value), self.unit) {
@@ -173,7 +238,7 @@ impl Limits {
     }
 
     /// Checks a number, or the numbers of a list.
-    fn check_node(&self, node: &Node<'_>) -> Result<(), Wrong> {
+    pub(super) fn check_node(&self, node: &Node<'_>) -> Result<(), Wrong> {
         if let DeValue::Array(list) = node.get_ref() {
             let mut elements = list.iter().enumerate();
             return elements.try_for_each(|(at, element)| {
@@ -221,6 +286,10 @@ macro_rules! whole_numbers {
                 let value = integer(node).and_then(|value| Self::try_from(value).ok());
                 value.ok_or_else(|| Wrong::not(node, concat!("a whole number", $range)))
             }
+
+            fn written(&self) -> Option<String> {
+                Some(self.to_string())
+            }
         }
     )* };
 }
@@ -235,7 +304,7 @@ whole_numbers! {
 }
 
 macro_rules! values {
-    ($($type:ty, $kind:literal, $value:pat => $read:expr;)*) => { $(
+    ($($type:ty, $kind:literal, $value:pat => $read:expr, $shown:literal;)*) => { $(
         impl Field for $type {
             const KIND: &'static str = $kind;
 
@@ -245,13 +314,17 @@ macro_rules! values {
                     _ => Err(Wrong::not(node, $kind)),
                 }
             }
+
+            fn written(&self) -> Option<String> {
+                Some(format!($shown, self))
+            }
         }
     )* };
 }
 values! {
-    bool, "true or false", DeValue::Boolean(value) => *value;
-    String, "a text in quotes", DeValue::String(text) => text.clone().into_owned();
-    PathBuf, "a file name in quotes", DeValue::String(text) => PathBuf::from(text.as_ref());
+    bool, "true or false", DeValue::Boolean(value) => *value, "{}";
+    String, "a text in quotes", DeValue::String(text) => text.clone().into_owned(), "{:?}";
+    PathBuf, "a file name in quotes", DeValue::String(text) => PathBuf::from(text.as_ref()), "{:?}";
 }
 
 impl Field for f64 {
@@ -260,6 +333,10 @@ impl Field for f64 {
     fn read(node: &Node<'_>) -> Result<Self, Wrong> {
         number(node).ok_or_else(|| Wrong::not(node, Self::KIND))
     }
+
+    fn written(&self) -> Option<String> {
+        Some(self.to_string())
+    }
 }
 
 impl Field for f32 {
@@ -267,6 +344,10 @@ impl Field for f32 {
 
     fn read(node: &Node<'_>) -> Result<Self, Wrong> {
         f64::read(node).map(|value| value as Self)
+    }
+
+    fn written(&self) -> Option<String> {
+        Some(self.to_string())
     }
 }
 
@@ -284,6 +365,10 @@ impl<T: Field> Field for Option<T> {
     fn lines() -> Vec<Line> {
         T::lines()
     }
+
+    fn words() -> Vec<&'static str> {
+        T::words()
+    }
 }
 
 impl<T: Field> Field for Vec<T> {
@@ -297,6 +382,15 @@ impl<T: Field> Field for Vec<T> {
 
     fn lines() -> Vec<Line> {
         T::lines()
+    }
+
+    fn words() -> Vec<&'static str> {
+        T::words()
+    }
+
+    fn written(&self) -> Option<String> {
+        let elements: Option<Vec<String>> = self.iter().map(Field::written).collect();
+        elements.map(|elements| format!("[{}]", elements.join(", ")))
     }
 }
 
@@ -444,7 +538,25 @@ impl<'a> Table<'a> {
 }
 
 /// Earlier names of fields, each with the present one.
-const RENAMED: [(&str, &str); 3] = [("eyes", "sensing"), ("claims", "plausibility"), ("remember_s", "stands_after_s")];
+const RENAMED: [(&str, &str); 16] = [
+    ("eyes", "sensing"),
+    ("claims", "plausibility"),
+    ("remember_s", "stands_after_s"),
+    // Of behaviours alone.
+    ("margin", "margin_m"),
+    ("spacing", "spacing_m"),
+    ("alpha", "c1_alpha"),
+    ("beta", "c1_beta"),
+    ("gamma", "c1_gamma"),
+    ("min_distance", "min_distance_m"),
+    ("neighborhood", "neighborhood_m"),
+    ("goal_gain", "k1"),
+    ("center_gain", "k2"),
+    ("repulsion_gain", "k3"),
+    ("speed", "speed_mps"),
+    ("crowded", "crowded_m"),
+    ("closest", "closest_m"),
+];
 
 /// Present name of a field that has another one in older files.
 fn present(name: &str) -> &str {

@@ -90,7 +90,7 @@ table! {
     /// `[terrain]`.
     pub struct TerrainTable {
         part land: LandSource;
-        /// Conversion of the file to impassability; see [`LoadOptions`].
+        /// Conversion of the file to impassability.
         pub load: LoadOptions = Default::default();
         /// Part of the map to use. Default: all of it.
         pub crop: Option<Crop>;

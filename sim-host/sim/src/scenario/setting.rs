@@ -1,7 +1,12 @@
 //! Settings that replace fields of a scenario file: `radio.loss=0.3`.
 
-use super::{Field, Overrides, Read as _, Scenario, ScenarioError, Source};
+use super::law::names_of;
+use super::{
+    Field, Fields as _, OrcaTable, Overrides, PushOutTable, Read as _, Scenario, ScenarioError, ScenarioFile, Source,
+};
 use crate::file::{TEXT, read_text};
+use staya_controller::agent::SafetyKind;
+use staya_controller::names::Named as _;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -66,6 +71,73 @@ impl Scenario {
 pub fn text_with(path: &Path, settings: &[Setting]) -> Result<String, ScenarioError> {
     let text = read(path)?;
     if settings.is_empty() { Ok(text) } else { with_settings(&text, path, settings) }
+}
+
+/// Settings of a law and a safety layer by name, before those of `settings`. A setting with the name
+/// of a value alone, such as `k1`, is one of the law, or of the layer if only that has it.
+///
+/// # Errors
+/// See [`text_with`]; also a layer of robots without one, or a value that both have.
+pub fn named(
+    text: &str,
+    path: &Path,
+    law: Option<&str>,
+    layer: Option<&str>,
+    settings: Vec<Setting>,
+) -> Result<Vec<Setting>, ScenarioError> {
+    let source = Source::new(path, text)?;
+    let place = if source.has("plane") { "plane" } else { "grid" };
+    if layer.is_some() && place == "grid" {
+        let (what, remedy) =
+            ("robots that move from cell to cell have no safety layer", "give [plane], or leave it out");
+        return Err(source.error("safety", format!("{what} (by --set)"), remedy));
+    }
+    let (law_names, layer_table) = (law.map(names_of), layer.map(layer_table));
+    // The reader of files refuses an unknown name, whatever the values are.
+    let is_known = law_names != Some(None) && layer_table != Some(None);
+    let of_law = law.zip(law_names.flatten());
+    let of_layer = layer_table.flatten().flatten();
+    let table = |name: &str| {
+        let has = |of: &Option<(_, Vec<&str>)>| of.as_ref().is_some_and(|(_, names)| names.contains(&name));
+        match (&of_law, &of_layer) {
+            (Some((law, _)), Some((table, _))) if has(&of_law) && has(&of_layer) => {
+                let paths = [law, table].map(|table| format!("{place}.{table}.{name}")).join(" and ");
+                let what = "the law and the safety layer have such a value (by --set)";
+                Err(source.error(name, what, format!("give {paths}")))
+            }
+            (_, Some((table, _))) if has(&of_layer) => Ok(Some(*table)),
+            (Some((law, _)), _) => Ok(Some(*law)),
+            (None, of_layer) => Ok(of_layer.as_ref().map(|(table, _)| *table)),
+        }
+    };
+    let mut all = Vec::new();
+    for (field, name) in [("law", law), ("safety", layer)] {
+        let Some(name) = name else { continue };
+        all.push(Setting { field: Field::of(&[place, field]), value: format!("\"{name}\"") });
+    }
+    let top = ScenarioFile::names();
+    for mut setting in settings {
+        let name = setting.field.name();
+        let is_alone = !name.contains(['.', '[']) && !top.contains(&name);
+        if is_alone && !is_known {
+            continue;
+        }
+        if is_alone && let Some(table) = table(name)? {
+            setting.field = Field::of(&[place, table, name]);
+        }
+        all.push(setting);
+    }
+    Ok(all)
+}
+
+/// The table of a safety layer, if it has one, with its fields; `None` for an unknown layer.
+fn layer_table(name: &str) -> Option<Option<(&'static str, Vec<&'static str>)>> {
+    let (_, kind) = SafetyKind::NAMES.iter().find(|(known, _)| *known == name)?;
+    Some(match kind {
+        SafetyKind::None => None,
+        SafetyKind::PushOut => Some(("push_out", PushOutTable::names())),
+        _ => Some(("orca", OrcaTable::names())),
+    })
 }
 
 /// Applies settings to a scenario's text; comments are lost. `path` appears in errors.

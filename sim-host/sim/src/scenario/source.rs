@@ -39,6 +39,19 @@ pub enum ScenarioError {
     },
 }
 
+impl ScenarioError {
+    /// The error of a value that is in no file: field, cause and remedy.
+    #[must_use]
+    pub fn without_place(&self) -> String {
+        match self {
+            Self::Io { .. } => self.to_string(),
+            Self::Field { field, what, remedy, .. } => {
+                format!("{}{}; {}", one_line(&prefix(field)), one_line(what), one_line(remedy))
+            }
+        }
+    }
+}
+
 /// Result of a check.
 pub(super) type Checked<T = ()> = Result<T, ScenarioError>;
 
@@ -185,7 +198,16 @@ impl<'a> Source<'a> {
     /// # Errors
     /// A field is unknown, missing, of another type, or out of range.
     pub fn read<T: Read>(&self, list: &str) -> Result<T, ScenarioError> {
-        T::read(&self.root).map_err(|wrong| self.refuse(wrong, list))
+        self.read_by(T::read, list)
+    }
+
+    /// Like [`read`](Self::read), by a function.
+    pub(super) fn read_by<T>(
+        &self,
+        read: impl FnOnce(&Node<'_>) -> Result<T, Wrong>,
+        list: &str,
+    ) -> Result<T, ScenarioError> {
+        read(&self.root).map_err(|wrong| self.refuse(wrong, list))
     }
 
     /// Reads a table of the file, which may be absent, like [`read`](Self::read).

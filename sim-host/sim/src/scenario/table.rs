@@ -71,6 +71,14 @@ macro_rules! names {
             fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
                 $crate::scenario::word(node, <Self as staya_controller::names::Named>::NAMES)
             }
+
+            fn words() -> Vec<&'static str> {
+                <Self as staya_controller::names::Named>::NAMES.iter().map(|(word, _)| *word).collect()
+            }
+
+            fn written(&self) -> Option<String> {
+                Some(format!("{:?}", staya_controller::names::Named::name(*self)))
+            }
         }
     )* };
 }
@@ -100,6 +108,14 @@ macro_rules! choice {
 
             fn read(node: &$crate::scenario::Node<'_>) -> Result<Self, $crate::scenario::Wrong> {
                 $crate::scenario::word(node, &[$(($word, Self::$variant)),*])
+            }
+
+            fn words() -> Vec<&'static str> {
+                vec![$($word),*]
+            }
+
+            fn written(&self) -> Option<String> {
+                Some(format!("\"{self}\""))
             }
         }
     };
@@ -166,7 +182,7 @@ macro_rules! one_of {
             }
 
             fn part_lines() -> Vec<$crate::scenario::Line> {
-                vec![$($crate::table!(@line $field, concat!($($doc),*), $type, "" $(, $range, $unit)?)),*]
+                vec![$($crate::table!(@line $field, concat!($($doc),*), $type, (); $($range, $unit)?)),*]
             }
         }
 
@@ -217,7 +233,7 @@ macro_rules! table {
                 let parts: Vec<Vec<_>> = vec![$(<$part_type as $crate::scenario::Fields>::part_lines()),*];
                 let own = [$($crate::table!(
                     @line $crate::scenario::plain(stringify!($field)), concat!($($doc),*), $type,
-                    concat!($(stringify!($default))?) $(, $range $(, $unit)?)?
+                    ($($default)?); $($range $(, $unit)?)?
                 )),*];
                 parts.into_iter().flatten().chain(own).collect()
             }
@@ -242,14 +258,21 @@ macro_rules! table {
     (@limits) => { None::<$crate::scenario::Limits> };
     (@limits $row:expr) => { Some($crate::scenario::Limits::of(&$row)) };
     (@limits $range:expr, $unit:literal) => { Some($crate::scenario::Limits::new($range, $unit)) };
-    (@line $name:expr, $doc:expr, $type:ty, $default:expr $(, $range:expr $(, $unit:literal)?)?) => {
-        $crate::scenario::Line {
-            name: $name,
-            doc: $doc.into(),
-            kind: <$type as $crate::scenario::Read>::KIND,
-            limits: $crate::table!(@limits $($range $(, $unit)?)?),
-            default: $default.into(),
-            inner: <$type as $crate::scenario::Read>::lines(),
+    (@usual $type:ty,) => { $crate::scenario::Usual::None };
+    (@usual $type:ty, $default:expr) => { $crate::scenario::Usual::of::<$type>(&$default) };
+    (@line $name:expr, $doc:expr, $type:ty, ($($default:expr)?); $($range:expr $(, $unit:literal)?)?) => {
+        {
+            let (doc, default) = $crate::scenario::documented($doc, $crate::table!(@usual $type, $($default)?));
+            $crate::scenario::Line {
+                name: $name,
+                doc,
+                kind: <$type as $crate::scenario::Read>::KIND,
+                limits: $crate::table!(@limits $($range $(, $unit)?)?),
+                words: <$type as $crate::scenario::Read>::words(),
+                default,
+                reads: |node| <$type as $crate::scenario::Read>::read(node).map(drop),
+                inner: <$type as $crate::scenario::Read>::lines(),
+            }
         }
     };
     (@or $table:ident, $name:ident, $value:ident) => {

@@ -33,7 +33,7 @@ table! {
     /// Options for the conversion of files to impassability.
     #[derive(Copy, PartialEq, Serialize)]
     pub struct LoadOptions {
-        /// `.map`: impassability of swamp, 1..=255 (0: blocked).
+        /// `.map`: impassability of swamp, 1 to 255 (0: blocked).
         pub swamp: u8 = movingai::SWAMP;
         /// `.asc`: cells along each side that are combined before slopes are computed, 1 or more.
         pub downsample: u16 = 1;
@@ -41,7 +41,7 @@ table! {
         pub slope: SlopeRule = Default::default();
         /// `.yaml`: impassability of unknown cells in mode `trinary`; 0: blocked.
         pub unknown: u8 = BLOCKED;
-        /// `.yaml`: number of classes in mode `scale` if the file gives none, 1..=255.
+        /// `.yaml`: number of classes in mode `scale` if the file gives none, 1 to 255.
         pub classes: u8 = 9;
     }
 }

@@ -17,7 +17,7 @@ table! {
     /// blocked.
     #[derive(Copy, PartialEq, Serialize)]
     pub struct SlopeRule {
-        /// Number of classes l, 1..=255: the steepest passable land takes l times as long as flat
+        /// Number of classes l, 1 to 255: the steepest passable land takes l times as long as flat
         /// land.
         pub classes: u8 = 9;
         /// Steepest passable slope m, rise over run, more than 0: up to 0.6 for wheels, 1 for

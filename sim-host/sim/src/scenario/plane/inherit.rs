@@ -27,7 +27,7 @@ pub fn inherit(root: &mut DeTable<'_>) {
             let is_inherited = match key.get_ref().as_ref() {
                 "push_out" => has_layer,
                 "orca" => has_orca,
-                name => has_law || !LawPart::names().contains(&name),
+                name => has_law || !LawPart::<false>::names().contains(&name),
             };
             if is_inherited && !group.contains_key(key.get_ref().as_ref()) {
                 group.insert(key.clone(), value.clone());

@@ -6,7 +6,7 @@ use super::super::law::LawPart;
 use super::super::read::{Field, Node, Wrong};
 use crate::{defaults, names, one_of, table};
 use staya_controller::agent::SafetyKind;
-use staya_controller::orca::AvoidParams;
+use staya_controller::orca::{AvoidParams, DOWNWASH};
 use staya_controller::parameters::{RADIUS, TOLERANCE};
 use staya_controller::push_out::{Model, PushOutParams};
 use std::ops::RangeInclusive;
@@ -26,7 +26,7 @@ table! {
     /// Fields of `[plane]` and `[[plane.group]]`. A group inherits those of `[plane]` that it
     /// lacks, and the tables of a law or a safety layer if it has the same one.
     pub struct BodyTable {
-        part law: LawPart;
+        part law: LawPart<false>;
         /// Radius of each body, metres.
         pub radius_m: f64, RADIUS;
         /// Highest speed on easy land, m/s.
@@ -200,6 +200,10 @@ impl Field for Place {
             _ => Err(Wrong::new(node, "expected [x, y] or [x, y, z]")),
         }
     }
+
+    fn written(&self) -> Option<String> {
+        self.0.to_vec().written()
+    }
 }
 
 table! {
@@ -325,21 +329,19 @@ table! {
         // Parameters of the layer; `horizon_s` is at least twice the braking time, to which the
         // default grows.
         part params: Given<AvoidParams<f32>>;
-        /// Growth rate of the ball around a silent robot, m/s. Default: the highest speed.
+        /// Growth of the ball around a silent robot. Default: the highest speed.
         pub inflation_mps: Option<f64>, 0.0..=1000.0, "m/s";
-        /// Largest growth of the ball around a lost robot, metres. Default: the radius.
+        /// Largest growth of the ball around a lost robot. Default: the radius.
         pub inflation_m: Option<f64>, 0.0..=1000.0, "metres";
-        /// In space: ratio of the vertical to the horizontal separation. Default: 1.
-        pub downwash: Option<f64>, 1.0..=10.0, "";
-        /// Silence after which a lost robot counts as standing even if most are lost, seconds.
+        /// In space: vertical over horizontal separation, equal for all. Default: 1.
+        pub downwash: Option<f64>, DOWNWASH;
+        /// Silence until a lost robot stands even if most are lost. Default: 60.
         pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// How long a robot stands and listens after its start, seconds. Default: six steps, the
-        /// delay of the radio and the longest one of a late decision.
+        /// How long a robot stands and listens after its start. Default: six steps, delays.
         pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// Whether a robot that has not heard another one stands. Default: in the simulator whether
-        /// another one starts within radio range, in a companion false.
+        /// Whether a robot that has heard none stands. Default: if one starts within range.
         pub expects_others: Option<bool>;
-        /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
+        /// Speed of a robot that has lost all others; `inf`: unchanged. Default: 0.
         pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
     }
 }
@@ -349,9 +351,9 @@ table! {
     pub struct PushOutTable {
         // Parameters of the layer.
         part params: Given<PushOutParams<f32>>;
-        /// `"radial"` (model 1, along the radius; default) or `"tangential"` (2, along the border).
+        /// Steps along the radius (model 1) or the border (2).
         pub model: Model = Default::default();
-        /// Whether only the nearest robot in the way is avoided. Default: false, all are.
+        /// Whether only the nearest robot in the way is avoided.
         pub single: bool = false;
     }
 }

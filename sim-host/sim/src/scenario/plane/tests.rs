@@ -108,19 +108,14 @@ fn the_reaction_to_silence_is_read() {
 }
 
 #[test]
-fn the_defaults_of_orca_match_the_readme() {
-    let readme = include_str!("../../../../../scenarios/README.md");
-    let row = |field: &str| {
-        let mut rows = readme.lines().skip_while(|line| !line.contains("`[plane.orca]`"));
-        let row = rows.find(|line| line.starts_with(&format!("| `{field}`")));
-        let row = row.unwrap_or_else(|| panic!("no row of {field}"));
-        row.trim_end_matches(" |").rsplit(" | ").next().expect("a column")
+fn the_documented_reaction_to_silence_is_the_usual_one() {
+    let usual = |field: &str| {
+        let line = <OrcaTable as super::super::Read>::lines().into_iter().find(|line| line.name == field);
+        line.expect("a field").default.to_string().parse::<f64>().expect("a number")
     };
-    let params = AvoidParams::<f32>::default();
-    assert_eq!(row("horizon_s"), "by the body");
-    assert_eq!(row("wall_horizon_s"), params.wall_horizon_s.to_string());
-    assert_eq!(row("share"), params.share.to_string());
-    assert_eq!(row("margin_m"), params.margin_m.to_string());
+    let policy = ContactLossPolicy::<f32>::DEFAULT;
+    assert_eq!(usual("stands_after_s"), f64::from(policy.stands_after.as_micros()) / 1e6);
+    assert_eq!(usual("alone_mps"), f64::from(policy.alone_mps));
 }
 
 fn refused(cases: &[(String, &str)]) {

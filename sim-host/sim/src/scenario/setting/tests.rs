@@ -82,3 +82,54 @@ fn settings_are_parsed_as_toml_or_as_strings() {
     assert!(error("a").contains("FIELD=VALUE"));
     assert!(error("a..b=1").contains("names no field"));
 }
+
+const PLANE: &str = "name = 't'\nticks = 5\ntick_s = 0.1\n[plane]\nradius_m = 0.1\nmax_speed_mps = 1\n\
+    robots = { list = [{ start_m = [0, 0] }] }\n";
+
+/// The error of a law and a layer by name with these values, or none.
+fn by_name(text: &str, law: Option<&str>, layer: Option<&str>, settings: &[&str]) -> Result<Scenario, String> {
+    let settings = settings.iter().map(|text| text.parse().expect("a setting")).collect();
+    let (path, none) = (Path::new("t.toml"), Overrides::default());
+    let scenario = named(text, path, law, layer, settings);
+    scenario.and_then(|all| Scenario::parse_with(text, path, &none, &all)).map_err(|error| error.without_place())
+}
+
+#[test]
+fn values_alone_are_those_of_the_named_law_or_layer() {
+    let by = |law, layer, settings: &[&str]| by_name(PLANE, law, layer, settings);
+    let flock = by(Some("goal_flock"), Some("orca"), &["k1=2", "min_distance_m=0.5", "horizon_s=3", "seed=4"]);
+    let text = format!(
+        "{PLANE}law = 'goal_flock'\ngoal_flock = {{ k1 = 2, min_distance_m = 0.5 }}\norca = {{ horizon_s = 3 }}\n"
+    );
+    let wanted = Scenario::parse_with(&text, Path::new("t.toml"), &Overrides { seed: Some(4), ticks: None }, &[]);
+    let group = |scenario: Scenario| scenario.plane().map(|plane| plane.group(0).clone()).expect("a group");
+    let (flock, wanted) = (flock.expect("sound"), wanted.expect("sound"));
+    assert_eq!((flock.seed, group(flock)), (wanted.seed, group(wanted)));
+    let both = by(Some("goal_flock"), Some("push_out"), &["min_distance_m=1"]).expect_err("two tables");
+    assert_eq!(
+        both,
+        "min_distance_m: the law and the safety layer have such a value (by --set); \
+            give plane.goal_flock.min_distance_m and plane.push_out.min_distance_m"
+    );
+    let paths = ["plane.goal_flock.min_distance_m=1", "plane.push_out.min_distance_m=1"];
+    by(Some("goal_flock"), Some("push_out"), &paths).expect("by their paths");
+}
+
+#[test]
+fn wrong_names_are_refused_by_the_reader_of_files() {
+    let error = |text, law, layer, settings: &[&str]| by_name(text, law, layer, settings).expect_err("wrong");
+    for (law, layer, setting, wanted) in [
+        (Some("goal_flok"), None, "k1=1", "plane.law: this program has no law \"goal_flok\""),
+        (None, Some("orka"), "share=1", "plane.safety: unknown value `orka`"),
+        (Some("lattice"), Some("none"), "spacing=1", "plane.lattice.spacing: unknown field `spacing`"),
+        (None, Some("none"), "share=1", "share: unknown field `share`"),
+        (None, Some("fly"), "shares=1", "plane.orca.shares: unknown field `shares`"),
+        (Some("waypoint"), None, "k1=1", "plane.waypoint.k1: unknown field `k1`"),
+    ] {
+        let text = error(PLANE, law, layer, &[setting]);
+        assert!(text.starts_with(wanted), "{text}");
+    }
+    let cells = error(SCENARIO, None, Some("orca"), &[]);
+    assert!(cells.starts_with("safety: robots that move from cell to cell have no safety layer"), "{cells}");
+    by_name(SCENARIO, Some("route"), None, &["a1=5"]).expect("on the grid");
+}

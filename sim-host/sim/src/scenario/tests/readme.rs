@@ -1,13 +1,9 @@
 //! Compares scenarios/README.md with the code.
 
 use super::*;
+use crate::own_law::Site;
 use staya_controller::agent::parameters;
-use staya_controller::cost::Gain;
-use staya_controller::formation::{FormationParams, Prediction, Recovery};
-use staya_controller::grid::UNIT;
-use staya_controller::orca::AvoidParams;
-use staya_controller::route::{ExitRule, Replan};
-use staya_controller::shuffle::Sharpness;
+use staya_controller::negotiation::Moves;
 
 /// The paths of all fields.
 fn paths(lines: Vec<Line>, table: &str, all: &mut Vec<(String, Line)>) {
@@ -35,6 +31,68 @@ fn every_field_is_in_the_table_of_the_readme() {
     assert!(fields.len() > 200, "only {} were found", fields.len());
 }
 
+/// Why a default is not a value of its field.
+fn refused(line: &Line, value: &str) -> Option<String> {
+    let text = format!("value = {value}");
+    let table = match toml::de::DeTable::parse(&text) {
+        Ok(table) => table,
+        Err(error) => return Some(error.message().to_owned()),
+    };
+    let node = table.get_ref().get("value")?;
+    let out = line.limits.as_ref().and_then(|limits| limits.check_node(node).err());
+    let word = node.get_ref().as_str().filter(|word| !line.words.is_empty() && !line.words.contains(word));
+    let wrong = (line.reads)(node).err().or(out).map(|wrong| wrong.what);
+    wrong.or(word.map(|word| format!("{word} is none of {:?}", line.words)))
+}
+
+#[test]
+fn each_default_is_a_value_that_its_field_accepts() {
+    let mut fields = Vec::new();
+    paths(ScenarioFile::lines(), "", &mut fields);
+    let mut values = 0;
+    for (path, line) in &fields {
+        if let Usual::Value(value) = &line.default {
+            assert_eq!(refused(line, value), None, "{path} = {value}");
+            values += 1;
+        }
+        let shown = format!("{} {}", line.default, line.doc);
+        let rust = ["::", "()", "..=", "[`"].into_iter().find(|mark| shown.contains(mark));
+        assert_eq!(rust, None, "{path}: {shown} is Rust");
+    }
+    assert!(values > 100, "only {values}");
+    // What the list had once is refused.
+    let line = |of: &str| &fields.iter().find(|(path, _)| path == of).expect("a field").1;
+    for (field, value) in [
+        ("plane.safety", "SafetyKind::Orca"),
+        ("plane.safety", "\"orka\""),
+        ("fault", "Vec::new()"),
+        ("plane.lattice.algorithm", "4"),
+        ("plane.max_acceleration_mps2", "f64::INFINITY"),
+        ("grid.route.exit", "\"door\""),
+    ] {
+        assert!(refused(line(field), value).is_some(), "{field} = {value}");
+    }
+    for (field, value) in [("plane.safety", "\"orca\""), ("fault", "[]"), ("plane.max_acceleration_mps2", "inf")] {
+        assert_eq!(line(field).default, Usual::Value(value.to_owned()), "{field}");
+    }
+}
+
+#[test]
+fn only_laws_that_can_stand_there_are_listed() {
+    let mut fields = Vec::new();
+    paths(ScenarioFile::lines(), "", &mut fields);
+    for (law, _) in laws().iter().filter(|(law, _)| *law != "convoy") {
+        for (place, site) in
+            [("grid", Site::Cells), ("plane", Site::PlaneOverCells), ("plane.group", Site::PlaneOverCells)]
+        {
+            let setup = LawSetup::by_name(law, Moves::EIGHT, Some(1.0)).expect("a law");
+            let is_listed = fields.iter().any(|(path, _)| *path == format!("{place}.{law}"));
+            let has_rows = fields.iter().any(|(path, _)| path.ends_with(&format!(".{law}")));
+            assert_eq!(is_listed, has_rows && setup.fits(site), "{place}.{law}");
+        }
+    }
+}
+
 #[test]
 fn every_scenario_is_in_the_list_of_the_readme() {
     let readme = include_str!("../../../../../scenarios/README.md");
@@ -54,27 +112,6 @@ fn every_scenario_is_in_the_list_of_the_readme() {
     assert!(scenarios > 12, "only {scenarios} were found");
 }
 
-fn row_of(field: &str) -> &'static str {
-    let readme = include_str!("../../../../../scenarios/README.md");
-    let row = readme.lines().find(|line| line.starts_with(&format!("| `{field}`")));
-    row.unwrap_or_else(|| panic!("no row of {field}"))
-}
-
-#[test]
-fn the_ranges_in_the_readme_are_those_of_the_parameters() {
-    for (field, name) in [
-        ("radius_m", "radius_m"),
-        ("horizon_s", "horizon_s"),
-        ("share", "share"),
-        ("a0", "a0"),
-        ("place_gain", "place_gain"),
-    ] {
-        let parameter = parameters().find(|row| row.name == name).expect("a parameter");
-        let [least, greatest] = parameter.range;
-        assert!(row_of(field).contains(&format!("{least} to {greatest}")), "{field}");
-    }
-}
-
 #[test]
 fn the_range_of_bodies_is_that_of_the_parameter() {
     let mut fields = Vec::new();
@@ -85,33 +122,4 @@ fn the_range_of_bodies_is_that_of_the_parameter() {
         assert_eq!(line.limits, Some(Limits::new(0.001..=65.0, "metres")));
         assert_eq!(line.limits, Some(Limits::of(parameter)));
     }
-}
-
-#[test]
-fn the_defaults_in_the_readme_match_the_controller() {
-    let last_column = |field: &str| {
-        let column = row_of(field).trim_end_matches(" |").rsplit(" | ").next();
-        column.expect("a column").replace('`', "")
-    };
-    let number = |gain: Gain| f64::from(gain.sixteenths()) / 16.0;
-    let cells = |units: u16| format!("{:.2}", f64::from(units) / f64::from(UNIT));
-    let (route, formation) = (RouteSettings::default(), FormationParams::default());
-    let gains = [route.params.a0, route.params.a1, route.params.a2, route.params.a3];
-    assert_eq!(last_column("a0"), gains.map(|gain| number(gain).to_string()).join(", "));
-    assert_eq!(last_column("radius"), route.params.radius.to_string());
-    assert_eq!((route.params.exit, route.replan), (ExitRule::Best, Replan::EachCell));
-    assert_eq!((last_column("exit"), last_column("replan")), ("\"best\"".into(), "\"each_cell\"".into()));
-    assert_eq!((last_column("halved_per_ticks"), route.sharpness), ("0".into(), Sharpness::Greedy));
-    assert_eq!(last_column("eps_cells"), formation.eps.to_string());
-    assert_eq!(last_column("place_gain"), number(formation.gain).to_string());
-    assert_eq!(last_column("halt_cells"), format!("{}, halt_cells", cells(formation.halt_lag)));
-    assert_eq!(formation.resume_lag, formation.halt_lag);
-    assert_eq!(last_column("lead_cells"), formation.lead.to_string());
-    let footprint = f64::from(formation.footprint) / 16.0;
-    assert_eq!(last_column("footprint"), footprint.to_string());
-    let orca = AvoidParams::<f32>::default();
-    assert_eq!(last_column("wall_horizon_s"), orca.wall_horizon_s.to_string());
-    assert_eq!((last_column("share"), last_column("margin_m")), (orca.share.to_string(), orca.margin_m.to_string()));
-    assert_eq!((formation.prediction, formation.recovery), (Prediction::Constant, Recovery::Wait));
-    assert_eq!((last_column("prediction"), last_column("recovery")), ("\"constant\"".into(), "\"wait\"".into()));
 }
