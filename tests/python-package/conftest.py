@@ -9,6 +9,12 @@ TOP = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
+def top():
+    """The top of the repository."""
+    return TOP
+
+
+@pytest.fixture
 def scenario():
     """Path of a scenario by its name."""
     return lambda name: TOP / "scenarios" / f"{name}.toml"

@@ -66,8 +66,6 @@ def test_arrays_of_any_type_and_memory_order_are_accepted():
         ({"radii": [1, 2]}, r"radii has the shape \(2,\); give a number, or an array of shape \(4,\)"),
         ({"max_speeds": np.nan}, r"max_speeds\[0\] is nan"),
         ({"step_s": 0}, "step_s is 0.0; give more than 0"),
-        ({"horizon_s": -1}, "horizon_s is -1.0; give more than 0"),
-        ({"share": 2}, "share is 2.0; give 0 or more, up to 1"),
         ({"walls": [[0, 0, 1]]}, r"walls has the shape \(1, 3\); give an array of shape \(m, 4\): x, y to x, y"),
         ({"discs": "round"}, "discs is not an array of numbers"),
         ({"goals": np.full((4, 2), np.nan)}, r"goals\[0, 0\] is nan"),
@@ -104,9 +102,8 @@ def test_routes_avoid_walls_and_report_arrivals():
         ({"starts": [[9, 0]]}, r"starts\[0\] is \(9, 0\), off the map; give x below 3 and y below 2"),
         ({"goals": [[2, 1]]}, r"goals\[0\] is \(2, 1\), in a wall"),
         ({"goals": [[0, 0], [1, 1]]}, r"goals has the shape \(2, 2\) and .* of shape \(1, 2\)"),
-        ({"radius": 17}, "radius is 17; give 1 to 16"),
-        ({"a3": -1}, "a3 is -1.0; give 0 or more, up to 4095"),
-        ({"exit": "door"}, "exit is 'door'; give 'best' or 'ray'"),
+        ({"radius": 17}, "radius: 17 is out of range; give 1 to 16 cells"),
+        ({"norm": "round"}, "norm is 'round'; give 'euclidean' or 'chebyshev'"),
     ],
 )
 def test_invalid_arguments_of_routes_are_named(changed, message):
@@ -160,7 +157,7 @@ def test_a_lattice_settles_at_its_spacing():
     places = circle(7, radius=0.6)
     velocities = np.zeros_like(places)
     for _ in range(1500):
-        pull = flock.lattice(places, velocities, spacing=1.0, reference=[0, 0])
+        pull = flock.lattice(places, velocities, spacing_m=1.0, reference=[0, 0])
         velocities = velocities + 0.02 * pull
         places = places + 0.02 * velocities
     assert np.linalg.norm(velocities, axis=1).max() < 0.05
@@ -172,10 +169,10 @@ def test_a_goal_flock_reaches_its_goal_and_keeps_its_distances():
     places = np.stack(np.meshgrid(np.arange(4.0), np.arange(4.0)), axis=-1).reshape(-1, 2)
     start = places
     for _ in range(200):
-        places = places + 0.1 * flock.goal(places, [[20.0, 0.0]], min_distance=0.6, speed=1.0, step_s=0.1)
+        places = places + 0.1 * flock.goal(places, [[20.0, 0.0]], min_distance_m=0.6, speed_mps=1.0, step_s=0.1)
     assert np.linalg.norm(places.mean(axis=0) - [20, 0]) < 2 < np.linalg.norm(start.mean(axis=0) - [20, 0])
     assert least_distance(places) > 0.3
-    lone = flock.goal([[0.0, 0.0]], [[3.0, 4.0]], min_distance=1, speed=2, step_s=0.1)
+    lone = flock.goal([[0.0, 0.0]], [[3.0, 4.0]], min_distance_m=1, speed_mps=2, step_s=0.1)
     assert lone == pytest.approx(np.array([[1.2, 1.6]]), abs=1e-6)
 
 
@@ -185,7 +182,7 @@ def test_boids_on_a_torus_align():
     headings = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     order = [np.linalg.norm(headings.mean(axis=0))]
     for _ in range(1200):
-        headings = flock.boids(places, headings, crowded=5, closest=80, torus=(400, 400))
+        headings = flock.boids(places, headings, crowded_m=5, closest_m=80, torus=(400, 400))
         places = (places + 2 * headings) % 400
     order.append(np.linalg.norm(headings.mean(axis=0)))
     assert np.linalg.norm(headings, axis=1) == pytest.approx(1, abs=1e-4)
@@ -195,19 +192,15 @@ def test_boids_on_a_torus_align():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: flock.lattice(circle(4), circle(3), spacing=1), r"velocities has the shape \(3, 2\)"),
-        (lambda: flock.lattice(circle(4), circle(4), spacing=0), "spacing.* out of range; give a spacing of 0.01"),
-        (lambda: flock.lattice(circle(4), circle(4), spacing=1, algorithm=4), "algorithm is 4; give 1, 2 or 3"),
-        (lambda: flock.lattice(circle(4), circle(4), spacing=1, alpha=-1.0), "alpha is -1.0; give 0 or more"),
-        (lambda: flock.lattice(circle(4), circle(4), spacing=1, reference=[0, np.nan]), r"reference\[0, 1\] is nan"),
+        (lambda: flock.lattice(circle(4), circle(3), spacing_m=1), r"velocities has the shape \(3, 2\)"),
+        (lambda: flock.lattice(circle(4), circle(4), spacing_m=1, reference=[0, np.nan]), r"reference\[0, 1\] is nan"),
         (
-            lambda: flock.lattice(circle(4), circle(4), spacing=1, reference_velocity=[0, 0]),
+            lambda: flock.lattice(circle(4), circle(4), spacing_m=1, reference_velocity=[0, 0]),
             "reference_velocity is given without a reference",
         ),
-        (lambda: flock.goal(circle(4), circle(2), min_distance=1, speed=1, step_s=1), r"goals has the shape \(2, 2\)"),
-        (lambda: flock.goal(circle(4), circle(4), min_distance=1, speed=-1, step_s=1), "speed above 0"),
-        (lambda: flock.boids(np.zeros((4, 3)), circle(4)), r"positions has the shape \(4, 3\)"),
-        (lambda: flock.boids(circle(4), circle(4), torus=(1, -1)), r"torus\[1\] is -1.0; give more than 0"),
+        (lambda: flock.goal(circle(4), circle(2), min_distance_m=1, speed_mps=1, step_s=1), r"goals has the shape \(2, 2\)"),
+        (lambda: flock.boids(np.zeros((4, 3)), circle(4), crowded_m=1, closest_m=5), r"positions has the shape \(4, 3\)"),
+        (lambda: flock.boids(circle(4), circle(4), torus=(1, -1), crowded_m=1, closest_m=5), r"torus\[1\] is -1.0; give more than 0"),
     ],
 )
 def test_invalid_arguments_of_flocks_are_named(call, message):
@@ -218,4 +211,4 @@ def test_invalid_arguments_of_flocks_are_named(call, message):
 def test_empty_arrays_are_accepted():
     none = np.empty((0, 2))
     assert staya.orca(none, none, none, **ROBOT).shape == (0, 2)
-    assert flock.lattice(none, none, spacing=1).shape == (0, 2)
+    assert flock.lattice(none, none, spacing_m=1).shape == (0, 2)

@@ -40,6 +40,10 @@ def test_a_run_is_displayed_inline(executed):
     assert html.startswith("<iframe") and "id=&quot;recording&quot;" in html
 
 
+def test_a_law_by_name_keeps_robots_apart(executed):
+    assert shown(executed, '"law": "goal_flock"')["text/plain"] == "0"
+
+
 def test_an_own_law_keeps_robots_apart(executed):
     text = re.sub(r"\s+", " ", shown(executed, "def vortex")["text/plain"])
     assert text.startswith("(0, array([") and all(1.0 < float(r) < 3.0 for r in re.findall(r"\d\.\d+", text))

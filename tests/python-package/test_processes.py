@@ -14,7 +14,7 @@ import staya
 
 def total(seed):
     places = np.random.default_rng(seed).uniform(0, 300, (3000, 2))
-    return float(staya.flock.lattice(places, np.zeros_like(places), spacing=5.0).sum())
+    return float(staya.flock.lattice(places, np.zeros_like(places), spacing_m=5.0).sum())
 
 
 def finished(sim):

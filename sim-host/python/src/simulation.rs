@@ -16,7 +16,7 @@ use staya_record::page;
 use staya_record::recording::RunRecorder;
 use staya_sim::engine::{Engine, Moment, operated};
 use staya_sim::record::RobotRow;
-use staya_sim::scenario::{Intervention, Overrides, Scenario, Setting, with_interventions, with_settings};
+use staya_sim::scenario::{Intervention, Overrides, Scenario, Setting, named, with_interventions, with_settings};
 use staya_sim::summary::Summary;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -133,15 +133,19 @@ pub(crate) fn scenario_error(error: &impl ToString) -> PyErr {
 
 #[pymethods]
 impl Run {
-    /// Creates a scenario before its first tick from the text of the file `path`, with overrides
-    /// `settings` (`FIELD=VALUE`). With `record` every n-th tick is recorded.
+    /// Creates a scenario before its first tick from the text of the file `path`, with a law and a
+    /// safety layer by name, and overrides `settings` (`FIELD=VALUE`). With `record` every n-th tick
+    /// is recorded.
     #[new]
+    #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
     fn new(
         py: Python<'_>,
         text: &str,
         path: PathBuf,
         seed: Option<u64>,
         ticks: Option<u32>,
+        law: Option<&str>,
+        safety: Option<&str>,
         settings: Vec<String>,
         record: Option<u32>,
     ) -> PyResult<Self> {
@@ -149,6 +153,7 @@ impl Run {
         let settings = settings.map_err(ScenarioError::new_err)?;
         pool::detached(py, || {
             let overrides = Overrides { seed, ticks };
+            let settings = named(text, &path, law, safety, settings).map_err(|e| scenario_error(&e))?;
             let scenario = Scenario::parse_with(text, &path, &overrides, &settings).map_err(|e| scenario_error(&e))?;
             let text = match settings.is_empty() {
                 true => text.to_owned(),

@@ -3,6 +3,7 @@ and the remedy."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -136,6 +137,11 @@ def pairs(name: str, value: ArrayLike | None, default: NDArray[np.bool_]) -> NDA
         what = f"an array of true and false of shape {default.shape}"
         raise ValueError(f"{name} has the shape {array.shape} and the type {array.dtype}; give {what}")
     return np.ascontiguousarray(array & ~np.eye(len(default), dtype=bool))
+
+
+def settings(given: Mapping[str, Any]) -> str:
+    """Formats settings as TOML, a line each; the compiled module checks them."""
+    return "".join(f"{toml(name, name)} = {toml(name, value)}\n" for name, value in given.items())
 
 
 def toml(name: str, value: Any) -> str:

@@ -25,6 +25,8 @@ class Run:
         path: str | PathLike[str],
         seed: int | None,
         ticks: int | None,
+        law: str | None,
+        safety: str | None,
         settings: list[str],
         record: int | None,
     ) -> Run: ...
@@ -75,14 +77,8 @@ class Avoiders:
         cls,
         count: int,
         in_space: bool,
-        horizon_s: float,
-        wall_horizon_s: float,
-        share: float,
-        margin_m: float,
-        lean_rad: float,
-        patience_radii: float,
-        downwash: float,
         seed: int,
+        given: str,
     ) -> Avoiders: ...
     def velocities(
         self,
@@ -125,35 +121,26 @@ def lattice_acceleration(
     reference: tuple[list[float], list[float]] | None,
     walls_m: _Floats,
     discs_m: _Floats,
-    algorithm: int,
-    spacing_m: float,
-    ratios: list[float],
-    bounds: list[float],
-    gains: list[list[float]],
+    given: str,
 ) -> _Floats: ...
 def goal_wish(
     positions_m: _Floats,
     goals_m: _Floats,
-    gains: list[float],
-    neighborhood_m: float,
-    min_distance_m: float,
-    speed_mps: float,
     step_s: float,
+    given: str,
 ) -> _Floats: ...
 def boids_steer(
     positions_m: _Floats,
     headings: _Floats,
     torus_m: list[float] | None,
-    values: list[float],
-    radii_m: _Floats,
+    given: str,
 ) -> _Floats: ...
 def route(
     land: NDArray[np.uint8],
     starts: NDArray[np.int16],
     goals: NDArray[np.int16],
-    radius: int,
-    gains: list[float],
-    ray_exit: bool,
     chebyshev: bool,
     corner_cutting: bool,
+    seed: int,
+    given: str,
 ) -> tuple[list[NDArray[np.int16]], _Floats, NDArray[np.bool_]]: ...

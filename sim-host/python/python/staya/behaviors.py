@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from . import _check
 from ._staya import Avoiders, Negotiators
 from ._staya import route as _route
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from . import settings
 
 Floats = NDArray[np.float64]
 
@@ -19,47 +24,21 @@ class Orca:
     with the memory of each robot between steps.
 
     The memory resolves symmetric situations and jams; `orca` is a single step without memory. In
-    the plane, or in space with `in_space`.
-
-    - `horizon_s`, `wall_horizon_s`: time horizon without collisions with robots, with obstacles. A
-      longer horizon gives way earlier and slows dense swarms; one shorter than the stopping time is
-      unsafe.
-    - `share`: own share of a correction, 0.5 if all robots use the same value; less is unsafe.
-    - `margin`: extra distance beyond the radii, metres.
-    - `lean_rad`: rotation to the right of the preferred velocity while another robot is in the way;
-      0.4 to 0.6, 0 to disable.
-    - `patience_radii`: how long a gap is left to robots with the right of way; 4 to 16.
-    - `downwash`: in space, vertical distance of robots as a multiple of the horizontal one.
-    - `seed`: seed of the random numbers that break ties.
+    the plane, or in space with `in_space`. `staya.settings.Orca` describes the settings: a longer
+    horizon gives way earlier and slows dense swarms; one shorter than the stopping time, or a small
+    share, is unsafe. `seed` is that of the random numbers that break ties.
     """
 
     def __init__(
-        self,
-        count: int,
-        *,
-        in_space: bool = False,
-        horizon_s: float = 2.0,
-        wall_horizon_s: float = 1.0,
-        share: float = 0.5,
-        margin: float = 0.004,
-        lean_rad: float = 0.46,
-        patience_radii: float = 5.0,
-        downwash: float = 1.0,
-        seed: int = 0,
+        self, count: int, *, in_space: bool = False, seed: int = 0, **settings: Unpack[settings.Orca]
     ) -> None:
         self._count = _check.whole("count", count, 0, 2**31 - 2)
         self._axes = (3,) if in_space else (2,)
         self._avoiders = Avoiders(
             self._count,
             bool(in_space),
-            _check.number("horizon_s", horizon_s, 0.0, above=True),
-            _check.number("wall_horizon_s", wall_horizon_s, 0.0, above=True),
-            _check.number("share", share, 0.0, 1.0),
-            _check.number("margin", margin, 0.0),
-            _check.number("lean_rad", lean_rad, 0.0, np.pi),
-            _check.number("patience_radii", patience_radii, 0.0),
-            _check.number("downwash", downwash, 1.0),
             _check.whole("seed", seed, 0, 2**64 - 1),
+            _check.settings(settings),
         )
 
     def __len__(self) -> int:
@@ -114,25 +93,11 @@ def orca(
     walls: ArrayLike | None = None,
     discs: ArrayLike | None = None,
     in_space: bool = False,
-    horizon_s: float = 2.0,
-    wall_horizon_s: float = 1.0,
-    share: float = 0.5,
-    margin: float = 0.004,
-    lean_rad: float = 0.46,
-    downwash: float = 1.0,
+    **settings: Unpack[settings.Orca],
 ) -> Floats:
-    """One step of `Orca` without memory. `Orca` describes the parameters, its call the arrays."""
-    avoid = Orca(
-        len(_check.vectors("positions", positions, axes=(3,) if in_space else (2,))),
-        in_space=in_space,
-        horizon_s=horizon_s,
-        wall_horizon_s=wall_horizon_s,
-        share=share,
-        margin=margin,
-        lean_rad=lean_rad,
-        downwash=downwash,
-    )
-    return avoid(
+    """One step of `Orca` without memory. `Orca` describes the settings, its call the arrays."""
+    count = len(_check.vectors("positions", positions, axes=(3,) if in_space else (2,)))
+    return Orca(count, in_space=in_space, **settings)(
         positions,
         velocities,
         preferred,
@@ -219,23 +184,19 @@ def route(
     starts: ArrayLike,
     goals: ArrayLike,
     *,
-    radius: int = 5,
-    a0: float = 1.0,
-    a1: float = 2.0,
-    a2: float = 3.0,
-    a3: float = 3.0,
-    exit: Literal["best", "ray"] = "best",
     norm: Literal["euclidean", "chebyshev"] = "euclidean",
     corner_cutting: bool = False,
+    seed: int = 0,
+    **settings: Unpack[settings.Route],
 ) -> Routes:
     """Moves each robot from its start to its goal with limited knowledge of the map (A. V.
     Kuznetsov 2017), without other robots.
 
     `land[y, x]` is the number of ticks to cross a cell, 0 for a wall, row 0 in the south. `starts`
-    and `goals` are cells (x, y), shape (n, 2). A robot sees `radius` cells around it (1 to 16),
-    remembers its path, and learns from dead ends. `a0` to `a3` are the weights, from 0 to 4095, of
-    travel time, other robots, earlier visits, and the distance between goal and exit of the window.
-    At most 200 moves per cell of width + height. Runs on all cores, without the interpreter lock.
+    and `goals` are cells (x, y), shape (n, 2). A robot sees `radius` cells around it, remembers its
+    path, and learns from dead ends; `staya.settings.Route` describes the settings, `seed` is that
+    of the order of moves with `halved_per_ticks`. At most 200 moves per cell of width + height.
+    Runs on all cores, without the interpreter lock.
     """
     array = np.asarray(land)
     if array.ndim != 2 or not np.issubdtype(array.dtype, np.integer):
@@ -254,19 +215,16 @@ def route(
         if len(blocked):
             x, y = cells[blocked[0]]
             raise ValueError(f"{name}[{blocked[0]}] is ({x}, {y}), in a wall; give a cell that is not 0")
-    for name, value, known in [("exit", exit, ("best", "ray")), ("norm", norm, ("euclidean", "chebyshev"))]:
-        if value not in known:
-            raise ValueError(f"{name} is {value!r}; give {known[0]!r} or {known[1]!r}")
-    gains = [_check.number(name, gain, 0.0, 4095.0) for name, gain in [("a0", a0), ("a1", a1), ("a2", a2), ("a3", a3)]]
+    if norm not in ("euclidean", "chebyshev"):
+        raise ValueError(f"norm is {norm!r}; give 'euclidean' or 'chebyshev'")
     return Routes(
         *_route(
             np.ascontiguousarray(array, dtype=np.uint8),
             from_cells,
             to_cells,
-            _check.whole("radius", radius, 1, 16),
-            gains,
-            exit == "ray",
             norm == "chebyshev",
             bool(corner_cutting),
+            _check.whole("seed", seed, 0, 2**64 - 1),
+            _check.settings(settings),
         )
     )

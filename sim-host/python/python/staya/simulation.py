@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _check
 from ._staya import Run, ScenarioError
 from .result import Page, Result, figures
+from .settings import Law, Layer
 
 Guidance = Callable[["Simulation"], ArrayLike | tuple[ArrayLike, ArrayLike]]
 
@@ -34,8 +35,9 @@ class Simulation:
     """A scenario before its first tick: `Simulation("scenarios/six-robots.toml", seed=3,
     radio__loss=0.3)`.
 
-    Keyword arguments override scenario fields, with `__` for each dot; other names fit into
-    `overrides={"plane.group[0].count": 40}`. With `record=N` every N-th tick is kept for `page`.
+    `law` and `safety` choose the law and the safety layer of the robots, and keyword arguments their
+    values: `law="goal_flock", min_distance_m=0.6, k1=2`. Others override scenario fields, with `__`
+    for each dot; further names fit into `overrides={"plane.group[0].count": 40}`. With `record=N` every N-th tick is kept for `page`.
     Without commands the run equals that of `staya run`, bit for bit. Raises `ScenarioError` with
     file, line, field and remedy. A pickled copy continues at the same tick, with the same trace
     hash.
@@ -48,6 +50,8 @@ class Simulation:
         seed: int | None = None,
         ticks: int | None = None,
         record: int | None = None,
+        law: Law | None = None,
+        safety: Layer | None = None,
         overrides: dict[str, Any] | None = None,
         **fields: Any,
     ) -> None:
@@ -56,7 +60,7 @@ class Simulation:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ScenarioError(f"cannot read {path}: {error}; give the path of a scenario") from None
-        self._begin(text, path, seed, ticks, record, {**(overrides or {}), **_fields(fields)})
+        self._begin(text, path, seed, ticks, record, law, safety, {**(overrides or {}), **_fields(fields)})
 
     @classmethod
     def from_text(
@@ -67,22 +71,36 @@ class Simulation:
         seed: int | None = None,
         ticks: int | None = None,
         record: int | None = None,
+        law: Law | None = None,
+        safety: Layer | None = None,
         overrides: dict[str, Any] | None = None,
         **fields: Any,
     ) -> Simulation:
         """Creates a simulation from the text of a scenario; relative paths refer to `folder`."""
         self = cls.__new__(cls)
-        self._begin(text, Path(folder, "scenario.toml"), seed, ticks, record, {**(overrides or {}), **_fields(fields)})
+        path = Path(folder, "scenario.toml")
+        self._begin(text, path, seed, ticks, record, law, safety, {**(overrides or {}), **_fields(fields)})
         return self
 
     def _begin(
-        self, text: str, path: Path, seed: int | None, ticks: int | None, record: int | None, fields: dict[str, Any]
+        self,
+        text: str,
+        path: Path,
+        seed: int | None,
+        ticks: int | None,
+        record: int | None,
+        law: str | None,
+        safety: str | None,
+        fields: dict[str, Any],
     ) -> None:
         seed = None if seed is None else _check.whole("seed", seed, 0, 2**63 - 1)
         ticks = None if ticks is None else _check.whole("ticks", ticks, 1)
         record = None if record is None else _check.whole("record", record, 1)
         settings = [f"{name}={_check.toml(name, value)}" for name, value in fields.items()]
-        self._hold(Run(text, path, seed, ticks, settings, record))
+        for name, value in [("law", law), ("safety", safety)]:
+            if not isinstance(value, str | None):
+                raise ValueError(f"{name} is {value!r}; give a name in quotes")
+        self._hold(Run(text, path, seed, ticks, law, safety, settings, record))
 
     def _hold(self, run: Run) -> None:
         self._run = run

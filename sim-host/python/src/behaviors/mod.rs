@@ -91,6 +91,11 @@ impl Obstacles<'_> {
     }
 }
 
+/// Settings, or a `ValueError` with the reason of refusal.
+pub(super) fn refused<T>(settings: Result<T, String>) -> pyo3::PyResult<T> {
+    settings.map_err(pyo3::exceptions::PyValueError::new_err)
+}
+
 fn id(index: usize) -> RobotId {
     RobotId(u32::try_from(index).unwrap_or(u32::MAX >> 1).saturating_add(1))
 }

@@ -1,14 +1,14 @@
 //! ORCA (J. van den Berg and others 2011) of all robots at once.
 
-use super::{Neighborhood, Obstacles, Robots, array, rows, vector};
-use crate::pool;
-use crate::simulation;
+use super::{Neighborhood, Obstacles, Robots, array, refused, rows, vector};
+use crate::settings::{self, Fly};
+use crate::{pool, simulation};
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt as _;
 use rayon::prelude::*;
 use staya_controller::agent::HALF_PLANES;
-use staya_controller::orca::{AvoidParams, Avoider, DeadlockParams, InSpace};
+use staya_controller::orca::{Avoider, InSpace};
 use staya_controller::rand::Rng;
 use std::sync::{Mutex, PoisonError};
 
@@ -33,33 +33,15 @@ enum AnyAvoider {
 impl Avoiders {
     /// Creates `count` robots in the plane or in space.
     #[new]
-    #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
-    fn new(
-        count: usize,
-        in_space: bool,
-        horizon_s: f64,
-        wall_horizon_s: f64,
-        share: f64,
-        margin_m: f64,
-        lean_rad: f64,
-        patience_radii: f64,
-        downwash: f64,
-        seed: u64,
-    ) -> Self {
-        let params = AvoidParams {
-            horizon_s: horizon_s as f32,
-            wall_horizon_s: wall_horizon_s as f32,
-            share: share as f32,
-            margin_m: margin_m as f32,
-            deadlock: DeadlockParams { lean_rad: lean_rad as f32, patience_radii: patience_radii as f32 },
-        };
+    fn new(count: usize, in_space: bool, seed: u64, given: &str) -> PyResult<Self> {
+        let (params, Fly { downwash }) = refused(settings::orca(given, in_space))?;
         let avoider = match in_space {
-            true => AnyAvoider::Space(Avoider::with_source(params, InSpace { downwash: downwash as f32 })),
+            true => AnyAvoider::Space(Avoider::with_source(params, InSpace { downwash })),
             false => AnyAvoider::Plane(Avoider::new(params)),
         };
         let random = |number| Rng::keyed(seed, RANDOM, number, 0);
         let all = (1..).take(count).map(|number| (avoider.clone(), random(number))).collect();
-        Self { all: Mutex::new(all), horizon_s }
+        Ok(Self { all: Mutex::new(all), horizon_s: params.horizon_s.into() })
     }
 
     /// Returns the velocities until the next step, m/s. Each robot considers the 16 nearest robots
