@@ -1,4 +1,4 @@
-"""Laws, safety layers and their settings by name: Python refuses what files refuse, in the same words."""
+"""Laws, safety layers and settings by name: Python refuses what files refuse, in the same words."""
 
 import re
 import typing
@@ -74,7 +74,7 @@ def refused(make):
 
 
 def by_file(text, place, kind, name, table, values):
-    """What the reader of files says of a law or a layer with these values."""
+    """The error of the reader of files about a law or a layer with these values."""
     inside = ", ".join(f"{row} = {toml(value)}" for row, value in values.items())
     lines = f'{kind} = "{name}"\n{table} = {{ {inside} }}\n'
     text = text + lines if place == "plane" else text.replace("[terrain]", f"[grid]\n{lines}[terrain]")

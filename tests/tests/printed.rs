@@ -25,27 +25,34 @@ fn all_tables() -> Vec<Line> {
     all
 }
 
-/// Limits with short units.
-fn limits(line: &Line) -> String {
-    let Some(limits) = &line.limits else { return String::new() };
-    let units = [(" metres", " m"), (" seconds", " s"), (" radians", " rad")];
-    let limits = units.iter().fold(limits.to_string(), |text, (long, short)| text.replace(long, short));
-    format!(", {limits}")
+/// Appends a line, wrapped at 100 columns.
+fn wrap(text: &mut String, entry: &str) {
+    let mut line = String::new();
+    for word in entry.split(' ') {
+        if line.len() + 1 + word.len() > 100 {
+            let _ = writeln!(text, "{line}");
+            line = String::from(" ");
+        }
+        let space = if line.is_empty() { "" } else { " " };
+        line = format!("{line}{space}{word}");
+    }
+    let _ = writeln!(text, "{line}");
 }
 
 /// The rows of a table that another one of the page does not have.
 fn table(line: &Line, others: &[Line]) -> String {
-    let mut text = format!("| `{}` | meaning, range | default |\n|---|---|---|\n", line.name);
+    let mut text = format!("**`{}`**\n\n", line.name);
     let known = |row: &Line| {
         let is_same = |other: &Line| other.name == row.name && other.default == row.default && other.doc == row.doc;
         others.iter().flat_map(|table| &table.inner).any(is_same)
     };
     for row in line.inner.iter().filter(|row| !known(row)) {
-        let words = row.words.iter().fold(String::new(), |all, word| format!("{all}, \"{word}\""));
-        let what = row.doc.trim_end_matches('.');
-        let line = format!("| `{}` | {what}{}{words} | {} |", row.name, limits(row), row.default);
-        assert!(line.chars().count() <= 100, "this line of a page is too long: {line}");
-        let _ = writeln!(text, "{}", line.replace("|  |", "| |"));
+        let words: String = row.words.iter().map(|word| format!(", \"{word}\"")).collect();
+        let default = match &row.default {
+            Usual::None => String::new(),
+            default => format!(" ({default})"),
+        };
+        wrap(&mut text, &format!("- `{}`{default}: {}{words}", row.name, row.doc.trim_end_matches('.')));
     }
     text
 }
@@ -78,15 +85,7 @@ fn golden_list_of_laws_in_the_page_of_projects() {
             (Motion::Cells, LawSetup::Published(_) | LawSetup::Lookahead(_)) => "grid",
             (Motion::Cells, _) => "grid, plane with land",
         };
-        let mut line = String::from("-");
-        for word in format!("`{name}` ({place}): {what}").split(' ') {
-            if line.len() + 1 + word.len() > 100 {
-                let _ = writeln!(text, "{line}");
-                line = String::from(" ");
-            }
-            line = format!("{line} {word}");
-        }
-        let _ = writeln!(text, "{line}");
+        wrap(&mut text, &format!("- `{name}` ({place}): {what}"));
     }
     printed_part("docs/project.md", "laws", &text);
 }

@@ -134,8 +134,8 @@ pub(crate) fn scenario_error(error: &impl ToString) -> PyErr {
 #[pymethods]
 impl Run {
     /// Creates a scenario before its first tick from the text of the file `path`, with a law and a
-    /// safety layer by name, and overrides `settings` (`FIELD=VALUE`). With `record` every n-th tick
-    /// is recorded.
+    /// safety layer by name, and overrides `settings` (`FIELD=VALUE`). With `record` every n-th
+    /// tick is recorded.
     #[new]
     #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
     fn new(

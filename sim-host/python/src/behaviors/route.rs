@@ -21,7 +21,8 @@ type Routes<'py> = (Vec<Bound<'py, PyArray2<i16>>>, Bound<'py, PyArray1<f64>>, B
 
 /// Moves robots from their starts to their goals by their windows. Returns the cells of each path
 /// (x, y), its travel time in ticks, and whether it arrived. `land` is row by row from the south, 0
-/// for a wall; `seed` is that of the order of moves. Runs on all cores, without the interpreter lock.
+/// for a wall; `seed` is that of the order of moves. Runs on all cores, without the interpreter
+/// lock.
 ///
 /// # Errors
 /// `ValueError` for a map of an unsupported size, or settings that the law refuses.

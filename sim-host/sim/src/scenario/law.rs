@@ -320,7 +320,8 @@ pub fn store_given(
     }
 }
 
-/// `law` and the tables of laws among the fields of robots in cells, or else of a group in the plane.
+/// `law` and the tables of laws among the fields of robots in cells, or else of a group in the
+/// plane.
 #[derive(Clone, Debug, Default)]
 pub struct LawPart<const CELLS: bool> {
     /// The name, if it is given.

@@ -73,8 +73,8 @@ pub fn text_with(path: &Path, settings: &[Setting]) -> Result<String, ScenarioEr
     if settings.is_empty() { Ok(text) } else { with_settings(&text, path, settings) }
 }
 
-/// Settings of a law and a safety layer by name, before those of `settings`. A setting with the name
-/// of a value alone, such as `k1`, is one of the law, or of the layer if only that has it.
+/// Settings of a law and a safety layer by name, before those of `settings`. A setting with the
+/// name of a value alone, such as `k1`, is one of the law, or of the layer if only that has it.
 ///
 /// # Errors
 /// See [`text_with`]; also a layer of robots without one, or a value that both have.

@@ -60,7 +60,7 @@ fn each_default_is_a_value_that_its_field_accepts() {
         assert_eq!(rust, None, "{path}: {shown} is Rust");
     }
     assert!(values > 100, "only {values}");
-    // What the list had once is refused.
+    // Rust, and values of other fields, are refused.
     let line = |of: &str| &fields.iter().find(|(path, _)| path == of).expect("a field").1;
     for (field, value) in [
         ("plane.safety", "SafetyKind::Orca"),
