@@ -74,8 +74,8 @@ impl<S: Scalar> AvoidParams<S> {
 
 crate::parameters! {
     impl[S: Scalar] AvoidParams<S> {
-        row("horizon_s", "ORCA_HORIZON_S", "s", [0.01, 60.0], "look-ahead for robots (scenarios: by the body)")
-            => horizon_s,
+        row("horizon_s", "ORCA_HORIZON_S", "s", [0.01, 60.0], "time ahead without a collision with a robot")
+            .depends("0.5 s and the time for 1.2 radii") => horizon_s,
         row("wall_horizon_s", "ORCA_WALL_S", "s", [0.01, 60.0], "time ahead without a collision with an obstacle")
             => wall_horizon_s,
         row("share", "ORCA_SHARE", "", [0.0, 1.0], "own share of a correction") => share,

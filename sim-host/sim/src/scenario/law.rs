@@ -1,18 +1,18 @@
 //! `law = "NAME"` of a group of robots, and the table `NAME` beside it with the law's values.
 
-use super::read::{Field as _, Limits, Line, Node, Table, Wrong, nearest};
+use super::read::{Line, Node, Table, Wrong, nearest};
+use super::rows::{Word, contradicts, fill, heading, line, read, rows, store};
 use super::source::{Checked, Section};
 use super::table::Fields;
 use crate::own_law::{NEGOTIATION, Own, Site, added, own};
 use staya_controller::agent::{
-    Around, Contradiction, FormationSettings, Goals, LawSettings, Motion, RouteSettings, Settings, TEMPLATE,
-    WaypointSettings,
+    Around, Contradiction, FormationSettings, Goals, LawSettings, Motion, RouteSettings, Settings, SettingsOfLaw,
+    TEMPLATE, WaypointSettings,
 };
 use staya_controller::negotiation::Moves;
 use staya_controller::parameters::{Absent, Parameter, Parameters};
 use staya_controller::template::Template;
 use staya_papers::{LookaheadSettings, PublishedSettings};
-use toml::de::DeValue;
 
 /// A law of robots, with the values that it is made from.
 #[derive(Clone, Debug, PartialEq)]
@@ -242,37 +242,18 @@ impl LawSetup {
                 None => Ok(()),
                 Some(row) => {
                     let (what, remedy) = ("contradicts the other values of the law", "change it or leave it out");
-                    Err(Contradiction { row, what, remedy })
+                    Err(Contradiction::new(row, what, remedy))
                 }
             },
         }
     }
 }
 
-/// Stores the values that the table has, whatever the others are.
-fn store(table: &mut dyn Parameters, values: &[(String, f32)]) {
-    for (name, value) in values {
-        if let Some(index) = table.index(name) {
-            let _ = table.store(index, *value, false);
-        }
-    }
-}
-
-/// The first value that is not a whole number although the law stores one, with the stored number.
-fn rounded(law: &mut LawSetup, values: &[(String, f32)]) -> Option<(&'static str, f32, f32)> {
-    /// Gains are rounded to sixteenths, lengths to parts of a cell.
-    const FINE: f32 = 0.04;
-    let mut found = None;
-    law.tables(&mut |table| {
-        for (name, value) in values {
-            let Some(index) = table.index(name) else { continue };
-            let stored = table.get(index).unwrap_or(*value);
-            if value.fract() != 0.0 && stored.fract() == 0.0 && (stored - value).abs() > FINE {
-                found = found.or(Some((table.table()[index].name, *value, stored)));
-            }
-        }
-    });
-    found
+/// The rows of a law that files give.
+fn rows_of(law: &mut LawSetup) -> Vec<(&'static Parameter, Option<f32>)> {
+    let is_added = matches!(law, LawSetup::Added(law) if law.name != NEGOTIATION);
+    let all = rows(&mut |visit| law.tables(visit)).into_iter();
+    all.filter(|(row, _)| is_added || !matches!(row.absent, Absent::OfBody(_))).collect()
 }
 
 /// `law` and the tables of laws among the fields of a group.
@@ -282,17 +263,6 @@ pub struct LawPart {
     pub name: Option<String>,
     /// The tables of laws that are given, with their values.
     tables: Vec<(&'static str, Vec<(String, f32)>)>,
-}
-
-/// The rows of a law that files give, each with its default value.
-fn rows(law: &mut LawSetup) -> Vec<(&'static Parameter, Option<f32>)> {
-    let (mut rows, is_added) = (Vec::new(), matches!(law, LawSetup::Added(law) if law.name != NEGOTIATION));
-    law.tables(&mut |table| {
-        let all = table.table().iter().enumerate();
-        let given = all.filter(|(_, row)| is_added || !matches!(row.absent, Absent::OfBody(_)));
-        rows.extend(given.map(|(index, row)| (row, table.get(index))));
-    });
-    rows
 }
 
 fn usual(name: &str) -> Option<LawSetup> {
@@ -325,22 +295,12 @@ impl LawPart {
             let remedy = format!("give law = \"{given}\", or leave this table out");
             return Err(at.error(given, format!("these robots have the law \"{name}\""), remedy));
         }
-        let missing = rows(&mut law).into_iter().find(|(row, _)| row.absent == Absent::Needed && !self.given(row.name));
-        if let Some((row, _)) = missing {
-            let remedy = format!("give {}, {}, in [{}]", row.name, Limits::of(row), at.field(name));
-            return Err(at.error(name, format!("the law \"{name}\" needs `{}`: {}", row.name, row.what), remedy));
-        }
         let values = self.tables.first().map_or(&[][..], |(_, values)| values);
-        match &mut law {
-            LawSetup::Added(law) => law.values = values.to_vec(),
-            law => law.tables(&mut |table| store(table, values)),
+        if let LawSetup::Added(law) = &mut law {
+            law.values = values.to_vec();
         }
-        if let Some((row, value, stored)) = rounded(&mut law, values) {
-            let remedy = format!("give {stored}, or another whole number");
-            return Err(at.error(&format!("{name}.{row}"), format!("{value} is not a whole number"), remedy));
-        }
-        law.adapt(&|row| self.given(row), around)
-            .map_err(|wrong| at.error(&format!("{name}.{}", wrong.row), wrong.what, wrong.remedy))?;
+        fill(&mut |visit| law.tables(visit), at, (name, &format!("the law \"{name}\"")), values)?;
+        law.adapt(&|row| self.given(row), around).map_err(|wrong| contradicts(at, name, wrong))?;
         Ok(law)
     }
 }
@@ -353,36 +313,6 @@ fn unknown(node: &Node<'_>, name: &str) -> Wrong {
     };
     let wrong = Wrong::new(node, format!("this program has no law \"{name}\""));
     Wrong { remedy: Some(remedy), is_listed: false, ..wrong }
-}
-
-fn value(table: &Table<'_>, row: &Parameter) -> Result<Option<f32>, Wrong> {
-    if row.is_switch() {
-        return Ok(table.read::<bool>(row.name, None)?.map(|is| f32::from(u8::from(is))));
-    }
-    if row.words.is_empty() {
-        return Ok(table.read::<f64>(row.name, Some(&Limits::of(row)))?.map(|value| value as f32));
-    }
-    let Some(Word(word)) = table.read::<Word>(row.name, None)? else { return Ok(None) };
-    match row.words.iter().position(|known| *known == word) {
-        Some(index) => Ok(Some(index as f32)),
-        None => {
-            let known: Vec<_> = row.words.iter().map(|word| (*word, ())).collect();
-            table.of(row.name, |node| super::word(node, &known)).map(|_| None)
-        }
-    }
-}
-
-struct Word(String);
-
-impl super::Read for Word {
-    const KIND: &'static str = "a name in quotes";
-
-    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
-        match node.get_ref() {
-            DeValue::String(text) => Ok(Self(text.clone().into_owned())),
-            _ => Err(Wrong::not(node, Self::KIND)),
-        }
-    }
 }
 
 impl Fields for LawPart {
@@ -401,12 +331,9 @@ impl Fields for LawPart {
         for (law, _) in laws() {
             let Some(mut setup) = table.has(law).then(|| usual(law)).flatten() else { continue };
             let values = table.of(law, |node| {
-                let rows: Vec<_> = rows(&mut setup).into_iter().map(|(row, _)| row).collect();
+                let rows: Vec<_> = rows_of(&mut setup).into_iter().map(|(row, _)| row).collect();
                 let names: Vec<_> = rows.iter().map(|row| row.name).collect();
-                let table = Table::new(node, &names)?;
-                let value =
-                    |row: &&'static Parameter| Ok(value(&table, row)?.map(|value| (row.name.to_owned(), value)));
-                rows.iter().filter_map(|row| value(row).transpose()).collect::<Result<Vec<_>, Wrong>>()
+                read(&Table::new(node, &names)?, &rows)
             })?;
             tables.push((law, values));
         }
@@ -414,54 +341,12 @@ impl Fields for LawPart {
     }
 
     fn part_lines() -> Vec<Line> {
-        let law = Line {
-            name: "law",
-            doc: "The law of the robots, by name.".into(),
-            kind: Word::KIND,
-            limits: None,
-            default: String::new().into(),
-            inner: Vec::new(),
-        };
+        let law = heading("law", "The law of the robots, by name.", Vec::new());
         let tables = laws().into_iter().filter_map(|(name, what)| {
-            let rows = rows(&mut usual(name)?);
+            let rows = rows_of(&mut usual(name)?);
             let inner: Vec<_> = rows.into_iter().map(|(row, default)| line(row, default)).collect();
-            let line =
-                Line { name, doc: what.into(), kind: "a table", limits: None, default: String::new().into(), inner };
-            (!line.inner.is_empty()).then_some(line)
+            (!inner.is_empty()).then(|| heading(name, what, inner))
         });
         [law].into_iter().chain(tables).collect()
-    }
-}
-
-/// The documentation of a row.
-fn line(row: &'static Parameter, default: Option<f32>) -> Line {
-    let (kind, limits) = match (row.is_switch(), row.words.is_empty()) {
-        (true, _) => (bool::KIND, None),
-        (_, true) => (f64::KIND, Some(Limits::of(row))),
-        _ => (Word::KIND, None),
-    };
-    let shown = |value: f32| match row.words.get(value as usize) {
-        Some(word) if row.is_switch() => (*word).to_owned(),
-        Some(word) => format!("\"{word}\""),
-        None => value.to_string(),
-    };
-    let default = match row.absent {
-        Absent::Default => default.map(shown).unwrap_or_default(),
-        Absent::Depends(on) => on.to_owned(),
-        Absent::OfBody(name) => format!("that of the body, `{name}`"),
-        Absent::Needed => String::new(),
-    };
-    let words = if row.words.is_empty() || row.is_switch() {
-        String::new()
-    } else {
-        format!(" ({})", row.words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "))
-    };
-    Line {
-        name: row.name,
-        doc: format!("{}{words}", row.what).into(),
-        kind,
-        limits,
-        default: default.into(),
-        inner: Vec::new(),
     }
 }

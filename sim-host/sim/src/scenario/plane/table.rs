@@ -1,14 +1,11 @@
 //! `[plane]` as written in a scenario file, with the documentation of its fields.
 
 use super::super::formation::FormationEntry;
-use super::super::given::Given;
 use super::super::law::LawPart;
+use super::super::layer::LayerPart;
 use super::super::read::{Field, Node, Wrong};
-use crate::{defaults, names, one_of, table};
-use staya_controller::agent::SafetyKind;
-use staya_controller::orca::AvoidParams;
+use crate::{one_of, table};
 use staya_controller::parameters::{RADIUS, TOLERANCE};
-use staya_controller::push_out::{Model, PushOutParams};
 use std::ops::RangeInclusive;
 
 /// Coordinates along each axis, metres: beacons encode positions as 32-bit millimetres.
@@ -27,6 +24,7 @@ table! {
     /// lacks, and the tables of a law or a safety layer if it has the same one.
     pub struct BodyTable {
         part law: LawPart;
+        part layer: LayerPart;
         /// Radius of each body, metres.
         pub radius_m: f64, RADIUS;
         /// Highest speed on easy land, m/s.
@@ -44,12 +42,6 @@ table! {
         /// Time of the first decision, a whole number of ticks below a step. Default: by
         /// `clocks.phases`.
         pub phase_s: Option<f64>, 0.0..=60.0, "seconds";
-        /// Safety layer.
-        pub safety: SafetyKind = SafetyKind::Orca;
-        /// Parameters of ORCA.
-        pub orca: Option<OrcaTable>;
-        /// Parameters of push-out; required for it.
-        pub push_out: Option<PushOutTable>;
     }
 }
 
@@ -318,43 +310,3 @@ table! {
         pub velocity_mps: Place = Default::default(), FAST, "m/s";
     }
 }
-
-table! {
-    /// `[plane.orca]`. All fields are optional.
-    pub struct OrcaTable {
-        // Parameters of the layer; `horizon_s` is at least twice the braking time, to which the
-        // default grows.
-        part params: Given<AvoidParams<f32>>;
-        /// Growth rate of the ball around a silent robot, m/s. Default: the highest speed.
-        pub inflation_mps: Option<f64>, 0.0..=1000.0, "m/s";
-        /// Largest growth of the ball around a lost robot, metres. Default: the radius.
-        pub inflation_m: Option<f64>, 0.0..=1000.0, "metres";
-        /// In space: ratio of the vertical to the horizontal separation. Default: 1.
-        pub downwash: Option<f64>, 1.0..=10.0, "";
-        /// Silence after which a lost robot counts as standing even if most are lost, seconds.
-        pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// How long a robot stands and listens after its start, seconds. Default: six steps, the
-        /// delay of the radio and the longest one of a late decision.
-        pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// Whether a robot that has not heard another one stands. Default: in the simulator whether
-        /// another one starts within radio range, in a companion false.
-        pub expects_others: Option<bool>;
-        /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
-        pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
-    }
-}
-
-table! {
-    /// `[plane.push_out]` (PAV).
-    pub struct PushOutTable {
-        // Parameters of the layer.
-        part params: Given<PushOutParams<f32>>;
-        /// `"radial"` (model 1, along the radius; default) or `"tangential"` (2, along the border).
-        pub model: Model = Default::default();
-        /// Whether only the nearest robot in the way is avoided. Default: false, all are.
-        pub single: bool = false;
-    }
-}
-
-defaults!(OrcaTable);
-names!(SafetyKind, Model);
