@@ -145,25 +145,27 @@ pub trait MakesLaw<S, const CELLS: usize, const M: usize, const L: usize, H>: Se
 /// Declares an enum of [`Settings`], with what each of them has. The line `Boids(BoidsSettings)`
 /// becomes a variant, an entry of `ALL`, and an arm of each function.
 macro_rules! settings {
-    ($(#[$about:meta])* pub enum $name:ident { $($variant:ident($settings:ty)),+ $(,)? }) => {
+    ($(#[$about:meta])* pub enum $name:ident {
+        $($(#[$on:meta])* $variant:ident($settings:ty)),+ $(,)?
+    }) => {
         $(#[$about])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[expect(missing_docs, reason = "each variant's type says it")]
         pub enum $name {
-            $($variant($settings)),+
+            $($(#[$on])* $variant($settings)),+
         }
 
         impl $name {
             /// All names, each with its description in a sentence.
             pub const ALL: &'static [(&'static str, &'static str)] = &[
-                $((<$settings as $crate::law::Settings>::NAME, <$settings as $crate::law::Settings>::WHAT)),+
+                $($(#[$on])* (<$settings as $crate::law::Settings>::NAME, <$settings as $crate::law::Settings>::WHAT)),+
             ];
 
             /// Returns the settings with this name and their defaults.
             #[must_use]
             pub fn by_name(name: &str) -> Option<Self> {
-                $(if name == <$settings as $crate::law::Settings>::NAME {
+                $($(#[$on])* if name == <$settings as $crate::law::Settings>::NAME {
                     return Some(Self::$variant(Default::default()));
                 })+
                 None
@@ -172,18 +174,18 @@ macro_rules! settings {
             /// Returns the name.
             #[must_use]
             pub const fn name(&self) -> &'static str {
-                match self { $(Self::$variant(_) => <$settings as $crate::law::Settings>::NAME),+ }
+                match self { $($(#[$on])* Self::$variant(_) => <$settings as $crate::law::Settings>::NAME),+ }
             }
 
             /// Returns the name of the table of the values.
             #[must_use]
             pub const fn section(&self) -> &'static str {
-                match self { $(Self::$variant(_) => <$settings as $crate::law::Settings>::SECTION),+ }
+                match self { $($(#[$on])* Self::$variant(_) => <$settings as $crate::law::Settings>::SECTION),+ }
             }
 
             /// Calls `visit` with each table of values.
             pub fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn $crate::parameters::Parameters)) {
-                match self { $(Self::$variant(settings) => $crate::law::Settings::tables(settings, visit)),+ }
+                match self { $($(#[$on])* Self::$variant(settings) => $crate::law::Settings::tables(settings, visit)),+ }
             }
 
             /// Sets the values that depend on others and are not given.
@@ -195,7 +197,7 @@ macro_rules! settings {
                 is_given: &dyn Fn(&str) -> bool,
                 around: &$crate::law::Around,
             ) -> Result<(), $crate::law::Contradiction> {
-                match self { $(Self::$variant(settings) => $crate::law::Settings::adapt(settings, is_given, around)),+ }
+                match self { $($(#[$on])* Self::$variant(settings) => $crate::law::Settings::adapt(settings, is_given, around)),+ }
             }
         }
     };

@@ -1,7 +1,11 @@
 //! The laws that can be chosen at run time, by a scenario, over a host link, from C and from Python.
 
 use super::boids::BoidsSettings;
-use super::cells::{FarMap, GridWorkspace};
+use super::cells::FarMap;
+#[cfg(feature = "list_cells")]
+use super::cells::GridWorkspace as Workspace;
+#[cfg(not(feature = "list_cells"))]
+use super::cells::NoWorkspace as Workspace;
 use super::formation::FormationSettings;
 use super::goal_flock::GoalFlockSettings;
 use super::lattice::LatticeSettings;
@@ -14,10 +18,10 @@ use serde::{Deserialize, Serialize};
 /// The line `Boids(BoidsSettings)` becomes a variant of [`LawSettings`] and one of [`AnyLaw`], and
 /// an arm of each of their functions.
 macro_rules! list {
-    ($($variant:ident($settings:ty)),+ $(,)?) => {
+    ($($(#[$on:meta])* $variant:ident($settings:ty)),+ $(,)?) => {
         settings! {
             /// A law with the values that it is made from; the laws document them.
-            pub enum LawSettings { $($variant($settings)),+ }
+            pub enum LawSettings { $($(#[$on])* $variant($settings)),+ }
         }
 
         crate::laws! {
@@ -26,9 +30,9 @@ macro_rules! list {
             #[serde(bound(deserialize = "H: Deserialize<'de>"))]
             #[expect(missing_docs, reason = "each variant's type says it")]
             pub enum AnyLaw[S: Scalar, const CELLS: usize, const M: usize, const L: usize = 0, H: FarMap = ()] of S,
-            in GridWorkspace<CELLS>,
+            in Workspace<CELLS>,
             [S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap] for [S, CELLS, M, L, H] {
-                $($variant(<$settings as MakesLaw<S, CELLS, M, L, H>>::Law)),+
+                $($(#[$on])* $variant(<$settings as MakesLaw<S, CELLS, M, L, H>>::Law)),+
             }
         }
 
@@ -36,20 +40,20 @@ macro_rules! list {
             /// Returns the bodies that it moves.
             #[must_use]
             pub const fn motion(&self) -> Motion {
-                match self { $(Self::$variant(_) => <$settings as SettingsOfLaw>::MOTION),+ }
+                match self { $($(#[$on])* Self::$variant(_) => <$settings as SettingsOfLaw>::MOTION),+ }
             }
 
             /// Returns the goals that it takes.
             #[must_use]
             pub const fn goals(&self) -> Goals {
-                match self { $(Self::$variant(_) => <$settings as SettingsOfLaw>::GOALS),+ }
+                match self { $($(#[$on])* Self::$variant(_) => <$settings as SettingsOfLaw>::GOALS),+ }
             }
 
             /// Returns the `CELLS` of a [`CostField`](crate::route::CostField) that it needs; 0 for
             /// none.
             #[must_use]
             pub fn cells(&self) -> usize {
-                match self { $(Self::$variant(settings) => settings.cells()),+ }
+                match self { $($(#[$on])* Self::$variant(settings) => settings.cells()),+ }
             }
 
             /// Creates the law; laws over cells take the `map`.
@@ -58,7 +62,7 @@ macro_rules! list {
                 &self,
                 map: H,
             ) -> AnyLaw<S, CELLS, M, L, H> {
-                match self { $(Self::$variant(settings) => AnyLaw::$variant(MakesLaw::<S, CELLS, M, L, H>::law(settings, map))),+ }
+                match self { $($(#[$on])* Self::$variant(settings) => AnyLaw::$variant(MakesLaw::<S, CELLS, M, L, H>::law(settings, map))),+ }
             }
         }
     };
@@ -66,9 +70,14 @@ macro_rules! list {
 
 list! {
     Waypoint(WaypointSettings),
+    #[cfg(feature = "list_flocks")]
     Lattice(LatticeSettings),
+    #[cfg(feature = "list_flocks")]
     GoalFlock(GoalFlockSettings),
+    #[cfg(feature = "list_flocks")]
     Boids(BoidsSettings),
+    #[cfg(feature = "list_cells")]
     Route(RouteSettings),
+    #[cfg(feature = "list_cells")]
     Formation(FormationSettings),
 }

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 pub enum AnyHalfPlanes {
     #[default]
     Analytic,
+    #[cfg(feature = "list_table")]
     Template2k,
 }
 
@@ -27,6 +28,7 @@ impl<S: Scalar> HalfSpaces<S> for AnyHalfPlanes {
         let own = own_velocity_mps;
         match self {
             Self::Analytic => orca::half_plane(own, disc, params),
+            #[cfg(feature = "list_table")]
             Self::Template2k => orca::VoxelTable2k.half_space(own, disc, params),
         }
     }

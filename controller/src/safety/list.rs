@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 /// The line `Orca(OrcaSettings)` becomes a variant of [`LayerSettings`] and one of [`AnySafety`],
 /// and an arm of each of their functions.
 macro_rules! list {
-    ($($variant:ident($settings:ty)),+ $(,)?) => {
+    ($($(#[$on:meta])* $variant:ident($settings:ty)),+ $(,)?) => {
         settings! {
             /// A safety layer with the values that it is made from; the layers document them.
             #[derive(Copy)]
-            pub enum LayerSettings { $($variant($settings)),+ }
+            pub enum LayerSettings { $($(#[$on])* $variant($settings)),+ }
         }
 
         /// Any safety layer, with at most `K` half-planes.
@@ -25,16 +25,16 @@ macro_rules! list {
         #[serde(bound(deserialize = ""))]
         #[expect(missing_docs, reason = "each variant's type says it")]
         pub enum AnySafety<S: Scalar, const K: usize> {
-            $($variant(<$settings as MakesLayer<S, K>>::Layer)),+
+            $($(#[$on])* $variant(<$settings as MakesLayer<S, K>>::Layer)),+
         }
 
         impl<S: Scalar, const K: usize> AnySafety<S, K> {
             fn inside(&self) -> &dyn Safety<S> {
-                match self { $(Self::$variant(layer) => layer),+ }
+                match self { $($(#[$on])* Self::$variant(layer) => layer),+ }
             }
 
             fn inside_mut(&mut self) -> &mut dyn Safety<S> {
-                match self { $(Self::$variant(layer) => layer),+ }
+                match self { $($(#[$on])* Self::$variant(layer) => layer),+ }
             }
         }
 
@@ -42,7 +42,7 @@ macro_rules! list {
             /// Creates the layer.
             #[must_use]
             pub fn layer<S: Scalar, const K: usize>(&self) -> AnySafety<S, K> {
-                match self { $(Self::$variant(settings) => AnySafety::$variant(MakesLayer::<S, K>::layer(settings))),+ }
+                match self { $($(#[$on])* Self::$variant(settings) => AnySafety::$variant(MakesLayer::<S, K>::layer(settings))),+ }
             }
         }
     };
@@ -51,8 +51,11 @@ macro_rules! list {
 list! {
     None(UnguardedSettings),
     Orca(OrcaSettings),
+    #[cfg(feature = "list_table")]
     Template2k(TableSettings),
+    #[cfg(feature = "list_space")]
     Fly(FlySettings),
+    #[cfg(feature = "list_push_out")]
     PushOut(PushOutSettings),
 }
 
@@ -83,9 +86,11 @@ impl LayerSettings {
     #[must_use]
     pub const fn orca(&self) -> Option<&OrcaSettings> {
         match self {
-            Self::Orca(orca) | Self::Template2k(TableSettings(orca)) | Self::Fly(FlySettings { orca, .. }) => {
-                Some(orca)
-            }
+            Self::Orca(orca) => Some(orca),
+            #[cfg(feature = "list_table")]
+            Self::Template2k(TableSettings(orca)) => Some(orca),
+            #[cfg(feature = "list_space")]
+            Self::Fly(FlySettings { orca, .. }) => Some(orca),
             _ => None,
         }
     }
@@ -94,9 +99,11 @@ impl LayerSettings {
     #[must_use]
     pub const fn orca_mut(&mut self) -> Option<&mut OrcaSettings> {
         match self {
-            Self::Orca(orca) | Self::Template2k(TableSettings(orca)) | Self::Fly(FlySettings { orca, .. }) => {
-                Some(orca)
-            }
+            Self::Orca(orca) => Some(orca),
+            #[cfg(feature = "list_table")]
+            Self::Template2k(TableSettings(orca)) => Some(orca),
+            #[cfg(feature = "list_space")]
+            Self::Fly(FlySettings { orca, .. }) => Some(orca),
             _ => None,
         }
     }
@@ -104,7 +111,11 @@ impl LayerSettings {
     /// Returns whether its robots fly.
     #[must_use]
     pub const fn flies(&self) -> bool {
-        matches!(self, Self::Fly(_))
+        match self {
+            #[cfg(feature = "list_space")]
+            Self::Fly(_) => true,
+            _ => false,
+        }
     }
 
     /// Returns whether there is none.

@@ -137,6 +137,7 @@ impl Settings for TableSettings {
     }
 }
 
+#[cfg(feature = "list_table")]
 impl<S: Scalar, const K: usize> MakesLayer<S, K> for TableSettings {
     type Layer = OrcaSafety<S, K, AnyHalfPlanes>;
 

@@ -38,6 +38,15 @@ impl Default for BoidsSettings {
     }
 }
 
+impl BoidsSettings {
+    /// The parameters of the rules.
+    #[must_use]
+    pub fn params<S: Scalar>(&self) -> BoidsParams<S> {
+        let Self { crowded_m, closest_m, max_turn, max_turn_away, .. } = *self;
+        BoidsParams::new(cast(crowded_m), cast(closest_m), cast(max_turn), cast(max_turn_away))
+    }
+}
+
 impl Settings for BoidsSettings {
     const NAME: &'static str = "boids";
     const WHAT: &'static str = "constant speed, and headings that follow the neighbours (V. A. Starovoitova, STA)";
@@ -61,8 +70,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H> MakesLaw<
     type Law = BoidsGuidance<S>;
 
     fn law(&self, _: H) -> BoidsGuidance<S> {
-        let Self { crowded_m, closest_m, max_turn, max_turn_away, speed_mps } = *self;
-        let params = BoidsParams::new(cast(crowded_m), cast(closest_m), cast(max_turn), cast(max_turn_away));
-        BoidsGuidance::new(params, cast(speed_mps))
+        BoidsGuidance::new(self.params(), cast(self.speed_mps))
     }
 }

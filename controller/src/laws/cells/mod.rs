@@ -16,3 +16,5 @@ pub(crate) use protocol::is_over;
 pub use protocol::{Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask};
 pub use shared_map::{FarMap, SharedMap};
 pub use workspace::GridWorkspace;
+#[cfg(not(feature = "list_cells"))]
+pub use workspace::NoWorkspace;
