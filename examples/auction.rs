@@ -64,6 +64,8 @@ impl Protocol for Bids {
     type Order = Never;
 }
 
+impl InAny for Bids {}
+
 impl Law<f32> for Auction {
     type Surroundings<'a> = InPlane<'a, f32>;
     type Protocol = Bids;

@@ -44,6 +44,8 @@ impl Protocol for Estimates {
     type Order = Never;
 }
 
+impl InAny for Estimates {}
+
 impl Law<f32> for Meeting {
     type Surroundings<'a> = InPlane<'a, f32>;
     type Protocol = Estimates;

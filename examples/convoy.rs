@@ -33,6 +33,8 @@ impl Protocol for Words {
     type Order = Never;
 }
 
+impl InAny for Words {}
+
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Convoy {
     pace: Pace,

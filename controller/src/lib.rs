@@ -11,6 +11,8 @@
 //!    [`push_out`].
 //! 4. Composition: [`supervisor`], [`agent`].
 #![no_std]
+// The lists of laws and layers import what their lines need.
+#![cfg_attr(not(feature = "lists"), allow(unused_imports))]
 // Code that may panic is denied on a robot and allowed in tests.
 #![cfg_attr(
     not(test),

@@ -27,14 +27,18 @@ static float distance(const float a[3], const float b[3])
 
 int main(void)
 {
-    static uint64_t memory[ROBOTS][STAYA_ORCA_SIZE / 8];
+    static uint64_t memory[ROBOTS][STAYA_AVOIDER_SIZE / 8];
     static float place[ROBOTS][3], goal[ROBOTS][3], velocity[ROBOTS][3], chosen[ROBOTS][3];
     StayaAvoider *avoider[ROBOTS];
-    StayaOrca orca;
-    must(staya_orca_defaults(&orca));
+    StayaSetup setup;
+    must(staya_setup_defaults(&setup, 1, RADIUS_M, (int32_t)(STEP_S * 1e6f)));
+    setup.speed_mps = SPEED_MPS;
+    setup.seed = 1;
+    must(staya_choose_layer(&setup, "orca"));
+    must(staya_set(&setup, "horizon_s", 2.0f)); /* a crowd on a circle meets in its middle */
     for (int i = 0; i < ROBOTS; i++) {
         const float angle = 6.2831853f * (float)i / ROBOTS;
-        must(staya_orca_init(memory[i], sizeof memory[i], &orca, 0, 1, &avoider[i]));
+        must(staya_avoider_init(memory[i], sizeof memory[i], &setup, &avoider[i]));
         place[i][0] = 5.0f * cosf(angle);
         place[i][1] = 5.0f * sinf(angle);
         goal[i][0] = -place[i][0];
@@ -69,7 +73,7 @@ int main(void)
             /* The preferred velocity reaches the goal in one step; ORCA takes the nearest permitted one. */
             const float way_m[3] = {goal[i][0] - place[i][0], goal[i][1] - place[i][1], 0.0f};
             const float wish_mps[3] = {way_m[0] / STEP_S, way_m[1] / STEP_S, 0.0f};
-            must(staya_orca_velocity(avoider[i], &body, wish_mps, way_m, nearby, count, NULL, 0, chosen[i]));
+            must(staya_avoider_velocity(avoider[i], &body, wish_mps, way_m, nearby, count, NULL, 0, chosen[i]));
         }
         /* All robots have decided; now all move. */
         arrived = 0;

@@ -61,7 +61,7 @@ int main(void)
     for (uint32_t i = 0; i < ROBOTS; i++) {
         StayaSetup setup;
         must(staya_setup_defaults(&setup, i + 1, 0.1f, TICK_US));
-        setup.law = STAYA_LAW_EXTERNAL;
+        must(staya_choose_law(&setup, "external"));
         setup.protocol = PROTOCOL;
         must(staya_init(memory[i], sizeof memory[i], &setup, &robots[i].agent));
         robots[i].inputs = (StayaInputs){.position_mm = {600 * (int32_t)i}, .max_speed_mps = 0.5f, .inbox = air};

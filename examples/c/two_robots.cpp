@@ -27,7 +27,6 @@ public:
         StayaSetup setup;
         must(staya_setup_defaults(&setup, id, 0.1f, TICK_US));
         setup.latency_us = TICK_US;
-        setup.orca.growth_mps = setup.speed_mps;
         must(staya_init(memory, sizeof memory, &setup, &agent));
         StayaWaypoint goal{};
         goal.position_mm[0] = to_mm;

@@ -4,7 +4,7 @@ use crate::criteria::PublishedParams;
 use crate::{Course, PublishedFormation};
 use staya_controller::agent::{
     Around, Contradiction, FarMap, FormationGuidance, FormationSettings, Goals, Motion, RouteSettings, Settings,
-    TEMPLATE,
+    SettingsOfLaw, TEMPLATE,
 };
 use staya_controller::formation::{FormationParams, NO_SEARCH, Prediction};
 use staya_controller::grid::UNIT;
@@ -52,8 +52,6 @@ impl Settings for PublishedSettings {
     const NAME: &'static str = "formation_paper";
     const WHAT: &'static str =
         "formations on the grid as published: each robot weighs its own route (A. V. Kuznetsov, KUZ)";
-    const MOTION: Motion = Motion::Cells;
-    const GOALS: Goals = Goals::Cell;
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         visit(self);
@@ -70,10 +68,15 @@ impl Settings for PublishedSettings {
         }
         if self.params.resume > self.params.halt {
             let (what, remedy) = ("more than halt_cells", "give at most halt_cells");
-            return Err(Contradiction { row: "resume_cells", what, remedy });
+            return Err(Contradiction::new("resume_cells", what, remedy));
         }
         Ok(())
     }
+}
+
+impl SettingsOfLaw for PublishedSettings {
+    const MOTION: Motion = Motion::Cells;
+    const GOALS: Goals = Goals::Cell;
 }
 
 /// Settings of formations on the grid whose followers predict the [`Course`] of their leader.
@@ -93,15 +96,13 @@ impl LookaheadSettings {
         &self,
         map: H,
     ) -> FormationGuidance<CELLS, M, TEMPLATE, L, Course, H> {
-        self.0.law(Course::new(), map)
+        self.0.on_grid(Course::new(), map)
     }
 }
 
 impl Settings for LookaheadSettings {
     const NAME: &'static str = "formation_lookahead";
     const WHAT: &'static str = "formations on the grid whose followers plan to where their places will be";
-    const MOTION: Motion = Motion::Cells;
-    const GOALS: Goals = Goals::Cell;
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         self.0.tables(visit);
@@ -110,4 +111,9 @@ impl Settings for LookaheadSettings {
     fn adapt(&mut self, is_given: &dyn Fn(&str) -> bool, around: &Around) -> Result<(), Contradiction> {
         self.0.adapt(is_given, around)
     }
+}
+
+impl SettingsOfLaw for LookaheadSettings {
+    const MOTION: Motion = Motion::Cells;
+    const GOALS: Goals = Goals::Cell;
 }

@@ -2,8 +2,7 @@
 //! arrive or stay together, do not overlap where that can be avoided, and stay in their area.
 
 use rayon::prelude::*;
-use staya_controller::agent::{LawSettings, SafetyKind};
-use staya_controller::names::Named as _;
+use staya_controller::agent::{LawSettings, LayerSettings};
 use staya_controller::push_out::Model;
 use staya_sim::metrics::flock::FlockMeter;
 use staya_sim::nearby::Space;
@@ -18,11 +17,11 @@ const SPACING_M: f64 = 1.0;
 
 const RADIOS: [(&str, &str); 3] = [("perfect", ""), ("lossy", "loss = 0.3"), ("dead", "loss = 1")];
 
-type Layer = (SafetyKind, Model);
+type Layer = (&'static str, Model);
 
 fn layers() -> Vec<Layer> {
-    let kinds = SafetyKind::NAMES.iter().map(|&(_, kind)| (kind, Model::Radial));
-    kinds.chain([(SafetyKind::PushOut, Model::Tangential)]).collect()
+    let kinds = LayerSettings::ALL.iter().map(|&(name, _)| (name, Model::Radial));
+    kinds.chain([("push_out", Model::Tangential)]).collect()
 }
 
 /// Robots, settings, and the smallest and largest x and y.
@@ -65,21 +64,20 @@ fn swarm(law: &str) -> (&'static str, &'static str, [f64; 2]) {
 fn scenario(law: &str, (safety, model): Layer, radio: &str) -> Result<Scenario, ScenarioError> {
     let (own, above, _) = swarm(law);
     let push_out = match safety {
-        SafetyKind::PushOut => format!("push_out = {{ min_distance_m = 0.5, model = \"{}\" }}", model.name()),
+        "push_out" => format!("push_out = {{ min_distance_m = 0.5, model = \"{}\" }}", model.name()),
         _ => String::new(),
     };
     let text = format!(
         "name = \"matrix\"\nseed = 1\nticks = 1800\ntick_s = 0.05\n[radio]\nrange_m = 30\n{radio}\n{above}\n[plane]\n\
          radius_m = {RADIUS_M}\nmax_speed_mps = {FASTEST_MPS}\ntolerance_m = 0.05\nlaw = \"{}\"\nsafety = \"{}\"\n{own}\n{push_out}\n",
-        law,
-        safety.name(),
+        law, safety,
     );
     Scenario::parse(&text, Path::new("matrix.toml"), &Overrides::default())
 }
 
 /// A robot with a straight path cannot pass another one if both turn aside.
 fn is_refused(law: &str, layer: Layer) -> bool {
-    (law, layer) == ("waypoint", (SafetyKind::PushOut, Model::Tangential))
+    (law, layer) == ("waypoint", ("push_out", Model::Tangential))
 }
 
 #[derive(Debug)]
@@ -120,9 +118,9 @@ fn verdict(law: &str, safety: Layer, radio: &str) -> Verdict {
 fn complaint(law: &str, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
     let hears = radio != "dead";
     let has_goal = !matches!(law, "boids" | "lattice");
-    let guards = safety != SafetyKind::None;
+    let guards = safety != "none";
     // Each expects the others, and hears none.
-    if !hears && guards && safety != SafetyKind::PushOut {
+    if !hears && guards && safety != "push_out" {
         return if verdict.arrived > 0 || verdict.overlaps > 0 { "a robot without a radio moved" } else { "" };
     }
     if !verdict.stays {

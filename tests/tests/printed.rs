@@ -1,7 +1,7 @@
 //! Pages with tables of laws, layers and their values, which come from the controller's tables; and
 //! a search for copies of these elsewhere.
 
-use staya_controller::agent::{Motion, parameters};
+use staya_controller::agent::{LayerSettings, Motion, parameters};
 use staya_controller::negotiation::Moves;
 use staya_sim::scenario::{LawSetup, Line, Read as _, ScenarioFile, Usual, laws};
 use staya_tests::{END, printed_part, root};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// The tables of laws and layers in a table of scenario files, with their rows.
 fn tables(place: &str) -> Vec<Line> {
     let place = ScenarioFile::lines().into_iter().find(|line| line.name == place).expect("a table");
-    let is_named = |name: &str| matches!(name, "orca" | "push_out") || laws().iter().any(|(law, _)| *law == name);
+    let is_named = |name: &str| LayerSettings::ALL.iter().chain(&laws()).any(|(known, _)| *known == name);
     place.inner.into_iter().filter(|line| is_named(line.name) && !line.inner.is_empty()).collect()
 }
 

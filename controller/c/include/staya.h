@@ -64,12 +64,22 @@
 /**
  * Bytes that suffice for an avoider.
  */
-#define STAYA_ORCA_SIZE 256
+#define STAYA_AVOIDER_SIZE 256
 
 /**
  * Maximum number of robots that these behaviours consider: the nearest of all that are given.
  */
 #define STAYA_NEARBY 16
+
+/**
+ * Number of values of a law in a setup.
+ */
+#define STAYA_LAW_VALUES 24
+
+/**
+ * Number of values of a safety layer in a setup.
+ */
+#define STAYA_LAYER_VALUES 12
 
 /**
  * Maximum length of a message to one robot in bytes.
@@ -112,14 +122,14 @@
 #define STAYA_SETUP_SIZE 416
 
 /**
+ * Largest `sight_cells`.
+ */
+#define STAYA_MAX_RADIUS 5
+
+/**
  * Maximum number of entries in a formation's template.
  */
 #define STAYA_TEMPLATE 8
-
-/**
- * Largest radius of a search over a window, cells.
- */
-#define STAYA_MAX_RADIUS 5
 
 /**
  * The result of a function. Unless it is `STAYA_STATUS_OK` nothing has changed, except that
@@ -143,11 +153,11 @@ enum StayaStatus
      */
     STAYA_STATUS_ALIGNMENT = 2,
     /**
-     * The memory is too small: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE.
+     * The memory is too small: see STAYA_AGENT_SIZE and STAYA_AVOIDER_SIZE.
      */
     STAYA_STATUS_MEMORY_SIZE = 3,
     /**
-     * This memory does not hold an agent or avoider: call `staya_init` or `staya_orca_init`.
+     * This memory does not hold an agent or avoider: call `staya_init` or `staya_avoider_init`.
      */
     STAYA_STATUS_NOT_THERE = 4,
     /**
@@ -175,7 +185,7 @@ enum StayaStatus
      */
     STAYA_STATUS_TASK = 10,
     /**
-     * The radius of the search is above STAYA_MAX_RADIUS.
+     * `sight_cells` is 0, or above STAYA_MAX_RADIUS.
      */
     STAYA_STATUS_SEARCH = 11,
     /**
@@ -198,65 +208,32 @@ enum StayaStatus
      * `staya_act` needs a `staya_hear` before.
      */
     STAYA_STATUS_NOT_HEARD = 16,
+    /**
+     * This build has no law or layer of this name, or the setup has chosen another one.
+     */
+    STAYA_STATUS_LAW = 17,
+    /**
+     * The chosen law and layer do not have this row; fields of the setup are not rows.
+     */
+    STAYA_STATUS_ROW = 18,
+    /**
+     * A row cannot have this value or word.
+     */
+    STAYA_STATUS_RANGE = 19,
+    /**
+     * A row without a default is not given: `staya_explain` names it.
+     */
+    STAYA_STATUS_NEEDED = 20,
+    /**
+     * Values or fields contradict each other: `staya_explain` says which.
+     */
+    STAYA_STATUS_CONTRADICTION = 21,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
 typedef enum StayaStatus StayaStatus;
 #else
 typedef int32_t StayaStatus;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
-
-/**
- * Guidance law: how a robot moves.
- */
-enum StayaLaw
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : uint8_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
-    /**
-     * Straight to its waypoint at `speed_mps`, until it is within `tolerance_m`.
-     */
-    STAYA_LAW_WAYPOINT = 0,
-    /**
-     * The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is followed.
-     */
-    STAYA_LAW_LATTICE = 1,
-    /**
-     * The goal flock (V. E. and V. V. Pavlovsky): to the waypoints' middle, then each to one.
-     */
-    STAYA_LAW_GOAL_FLOCK = 2,
-    /**
-     * Boids (V. A. Starovoitova 2018): constant speed, only headings change.
-     */
-    STAYA_LAW_BOIDS = 3,
-    /**
-     * A route across land in cells (A. V. Kuznetsov 2017), with velocities as commands.
-     */
-    STAYA_LAW_ROUTE = 4,
-    /**
-     * A formation across land in cells, with velocities as commands.
-     */
-    STAYA_LAW_FORMATION = 5,
-    /**
-     * A route across land in cells, with moves from cell to cell as commands.
-     */
-    STAYA_LAW_ROUTE_ON_GRID = 6,
-    /**
-     * A formation across land in cells, with moves from cell to cell as commands.
-     */
-    STAYA_LAW_FORMATION_ON_GRID = 7,
-    /**
-     * A law of your own: `staya_decide` gives the decision of each step.
-     */
-    STAYA_LAW_EXTERNAL = 8,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum StayaLaw StayaLaw;
-#else
-typedef uint8_t StayaLaw;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -290,43 +267,6 @@ enum StayaAction
 typedef enum StayaAction StayaAction;
 #else
 typedef uint8_t StayaAction;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
-
-/**
- * Safety layer: how a robot keeps clear of others. Robots that move from cell to cell have none.
- */
-enum StayaSafety
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : uint8_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
-    /**
-     * No safety layer.
-     */
-    STAYA_SAFETY_NONE = 0,
-    /**
-     * ORCA in the plane.
-     */
-    STAYA_SAFETY_ORCA = 1,
-    /**
-     * ORCA in the plane with half-planes from a table of 2 KiB.
-     */
-    STAYA_SAFETY_ORCA_TABLE = 2,
-    /**
-     * ORCA in space, for flying robots.
-     */
-    STAYA_SAFETY_FLY = 3,
-    /**
-     * Push-out: considers only the present positions of others.
-     */
-    STAYA_SAFETY_PUSH_OUT = 4,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum StayaSafety StayaSafety;
-#else
-typedef uint8_t StayaSafety;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -631,300 +571,14 @@ typedef uint8_t StayaShape;
 #endif // __cplusplus
 
 /**
- * The active terms of the alpha flock.
- */
-enum StayaLatticeTerms
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : uint8_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
-    /**
-     * Only the other robots.
-     */
-    STAYA_LATTICE_TERMS_OTHERS = 1,
-    /**
-     * Also the reference, with a pull that grows without bound.
-     */
-    STAYA_LATTICE_TERMS_REFERENCE = 2,
-    /**
-     * Also obstacles; the pull of the reference is bounded.
-     */
-    STAYA_LATTICE_TERMS_ALL = 3,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum StayaLatticeTerms StayaLatticeTerms;
-#else
-typedef uint8_t StayaLatticeTerms;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
-
-/**
- * How push-out changes a step that leads too near.
- */
-enum StayaPushOutModel
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : uint8_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
-    /**
-     * The step slides along the border and becomes shorter.
-     */
-    STAYA_PUSH_OUT_MODEL_RADIAL = 0,
-    /**
-     * The step keeps its length and is turned.
-     */
-    STAYA_PUSH_OUT_MODEL_TANGENTIAL = 1,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum StayaPushOutModel StayaPushOutModel;
-#else
-typedef uint8_t StayaPushOutModel;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
-
-/**
  * The controller of one robot. Its contents are private to the library.
  */
 typedef struct StayaAgent StayaAgent;
 
 /**
- * ORCA for one robot. Its contents are private to the library.
+ * The safety layer of one robot. Its contents are private to the library.
  */
 typedef struct StayaAvoider StayaAvoider;
-
-/**
- * Optimal reciprocal collision avoidance (J. van den Berg and others 2011).
- */
-typedef struct StayaOrca {
-    /**
-     * Time ahead for which collisions with robots are excluded, seconds; 1 to 5. With a longer
-     * time robots give way earlier and crowds become slower. A time shorter than the body needs to
-     * stop (speed / acceleration) is not safe.
-     */
-    float horizon_s;
-    /**
-     * Time ahead for which collisions with obstacles are excluded, seconds. In front of a wall a
-     * robot slows to (distance / this time).
-     */
-    float wall_horizon_s;
-    /**
-     * Own share of a correction: 0.5 if all robots use the same. Less is not safe.
-     */
-    float share;
-    /**
-     * Distance kept in addition to the radii, metres: the error of the known positions.
-     */
-    float margin_m;
-    /**
-     * How far the preferred velocity turns to the right while a robot is in the way, radians; 0.4
-     * to 0.6, 0 disables it.
-     */
-    float lean_rad;
-    /**
-     * How long a gap is left to robots whose turn it is: the time to travel this many own radii at
-     * full speed; 4 to 16.
-     */
-    float patience_radii;
-    /**
-     * Growth of the ball around a silent robot, m/s: the highest speed that others can have. Less
-     * is not safe if the radio is bad.
-     */
-    float growth_mps;
-    /**
-     * Limit of this growth for a stationary robot, metres.
-     */
-    float growth_max_m;
-    /**
-     * In space: ratio of the vertical to the horizontal distance between robots; 1 or more, for
-     * quadrotors 2.5.
-     */
-    float downwash;
-} StayaOrca;
-
-/**
- * Push-out (V. E. and V. V. Pavlovsky).
- */
-typedef struct StayaPushOut {
-    /**
-     * Least distance of two centres, and of a centre from an obstacle, metres; more than bodies
-     * need by the length of a step.
-     */
-    float min_distance_m;
-    /**
-     * StayaPushOutModel.
-     */
-    uint8_t model;
-    /**
-     * Other than 0: evades only the nearest of the robots in the way.
-     */
-    uint8_t only_nearest;
-} StayaPushOut;
-
-/**
- * The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3); see `staya_lattice_defaults`.
- */
-typedef struct StayaLattice {
-    /**
-     * Distance of neighbours (d), metres; 0.01 to 100, more than two radii plus the distance
-     * covered in half a second.
-     */
-    float spacing_m;
-    /**
-     * Range of interaction over spacing; above 1, below 1.7 for an even lattice.
-     */
-    float range_ratio;
-    /**
-     * Distance from obstacles over spacing; above 0, at most 4.
-     */
-    float obstacle_ratio;
-    /**
-     * Bounds of attraction (a) and repulsion (b): 0 < a <= b.
-     */
-    float attraction;
-    /**
-     * See `attraction`.
-     */
-    float repulsion;
-    /**
-     * Gains between robots on positions (1/s^2) and on velocities (1/s). Old beacons need small
-     * gains: see `staya_lattice_soften`.
-     */
-    float alpha_position;
-    /**
-     * See `alpha_position`.
-     */
-    float alpha_velocity;
-    /**
-     * Gains of obstacles; well above the others.
-     */
-    float beta_position;
-    /**
-     * See `beta_position`.
-     */
-    float beta_velocity;
-    /**
-     * Gains of the reference.
-     */
-    float gamma_position;
-    /**
-     * See `gamma_position`.
-     */
-    float gamma_velocity;
-    /**
-     * StayaLatticeTerms.
-     */
-    uint8_t terms;
-    /**
-     * Other than 0: the reference moves with its velocity. Agents only.
-     */
-    uint8_t reference_moves;
-} StayaLattice;
-
-/**
- * The goal flock (V. E. and V. V. Pavlovsky): only the ratios of the gains matter.
- */
-typedef struct StayaGoalFlock {
-    /**
-     * Pull of the goal (K1).
-     */
-    float goal_gain;
-    /**
-     * Pull of the middle of the neighbours (K2).
-     */
-    float center_gain;
-    /**
-     * Push of neighbours that are too near (K3).
-     */
-    float repulsion_gain;
-    /**
-     * Distance up to which neighbours count, metres; at least twice `min_distance_m`.
-     */
-    float neighborhood_m;
-    /**
-     * Least distance of two centres, metres; at least two radii.
-     */
-    float min_distance_m;
-    /**
-     * Distance within which a goal counts as reached, metres: about the neighbourhood, as a crowd
-     * needs space. Agents only.
-     */
-    float arrival_m;
-    /**
-     * Seed of the random choice of goals. Agents only.
-     */
-    uint32_t seed;
-} StayaGoalFlock;
-
-/**
- * Boids (V. A. Starovoitova 2018).
- */
-typedef struct StayaBoids {
-    /**
-     * Distance below which a boid turns away, metres.
-     */
-    float crowded_m;
-    /**
-     * Distance up to which a neighbour counts, metres.
-     */
-    float closest_m;
-    /**
-     * Largest turn towards the others in a step, radians.
-     */
-    float max_turn_rad;
-    /**
-     * Turn away from a neighbour that is too near in a step, radians.
-     */
-    float max_turn_away_rad;
-} StayaBoids;
-
-/**
- * The costs of a route across cells (A. V. Kuznetsov 2017); gains are in sixteenths of a tick.
- */
-typedef struct StayaRoute {
-    /**
-     * Weight of travel time (a0), sixteenths.
-     */
-    uint16_t time_gain_16ths;
-    /**
-     * Additional cost of a cell with another robot (a1), sixteenths of a tick.
-     */
-    uint16_t others_gain_16ths;
-    /**
-     * Additional cost of a cell for each earlier visit (a2), sixteenths of a tick.
-     */
-    uint16_t visits_gain_16ths;
-    /**
-     * Price of a cell between window and target (a3), sixteenths of a tick: about the time that a
-     * cell takes on a good route.
-     */
-    uint16_t way_gain_16ths;
-    /**
-     * A move that costs this much more, in 16ths of a tick, comes first half as often; 0: never.
-     */
-    uint16_t halved_per_16ths;
-    /**
-     * Radius of the window that is searched, cells; 1 to STAYA_MAX_RADIUS.
-     */
-    uint8_t radius_cells;
-    /**
-     * Other than 0: the window's exit is on the ray to the target; otherwise it is the best one.
-     */
-    uint8_t exit_on_ray;
-    /**
-     * Other than 0: a diagonal move is as long as a straight one.
-     */
-    uint8_t diagonals_count_as_one;
-    /**
-     * Other than 0: diagonal moves may pass a blocked corner.
-     */
-    uint8_t cuts_corners;
-    /**
-     * Other than 0: plans again only when the land on its route has changed, for fewer searches.
-     */
-    uint8_t keeps_plan;
-} StayaRoute;
 
 /**
  * A cell of the grid, or the difference of two.
@@ -959,8 +613,7 @@ typedef struct StayaPlace {
 } StayaPlace;
 
 /**
- * Formation keeping (A. V. Kuznetsov 2017); a unit is 1/70 of a cell. `staya_formation_from_graph`
- * fills in the place.
+ * The place of a robot in a formation, as `staya_formation_from_graph` fills it in.
  */
 typedef struct StayaFormation {
     /**
@@ -979,51 +632,11 @@ typedef struct StayaFormation {
      * The place's cell minus the top leader's.
      */
     struct StayaCell offset;
-    /**
-     * Price of being off the own place, sixteenths of a tick per cell.
-     */
-    uint16_t gain_16ths;
-    /**
-     * How far a robot may fall behind before the top leader waits, units.
-     */
-    uint16_t halt_lag_units;
-    /**
-     * Lag at which the leader continues, units; at most `halt_lag_units`.
-     */
-    uint16_t resume_lag_units;
-    /**
-     * Number of decisions (in the plane seconds) for which robots wait for each other.
-     */
-    uint16_t patience;
-    /**
-     * Distance from its place up to which a neighbour is found, cells.
-     */
-    uint8_t eps_cells;
-    /**
-     * How far ahead of the leader the others aim, cells.
-     */
-    uint8_t lead_cells;
-    /**
-     * Share of the others' land in the leader's price, sixteenths.
-     */
-    uint8_t footprint_16ths;
-    /**
-     * Other than 0: robots behind a dead robot move up.
-     */
-    uint8_t closes_ranks;
-    /**
-     * Other than 0: predicts others by computing their moves in their place; expensive.
-     */
-    uint8_t foresees_others;
-    /**
-     * Other than 0: instead of waiting, the leader heads for where the others are displaced.
-     */
-    uint8_t turns_back;
 } StayaFormation;
 
 /**
- * The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields. Fields
- * that the chosen law and layer do not use are ignored.
+ * The configuration of a robot. Fill it with `staya_setup_defaults`, change fields, and choose law
+ * and layer by `staya_choose_law` and `staya_choose_layer`, with values by `staya_set`.
  */
 typedef struct StayaSetup {
     /**
@@ -1038,6 +651,10 @@ typedef struct StayaSetup {
      * Seed of its random decisions, together with its number.
      */
     uint64_t seed;
+    /**
+     * Seed of draws that all robots make alike, as of the goals of a flock: the same in all.
+     */
+    uint64_t common_seed;
     /**
      * Time from one step to the next, microseconds, which the caller must keep; on the grid the
      * time for a cell of impassability 1.
@@ -1090,13 +707,13 @@ typedef struct StayaSetup {
      */
     uint8_t flock;
     /**
-     * StayaLaw.
+     * Private to the library: see `staya_choose_law`.
      */
     uint8_t law;
     /**
-     * StayaSafety.
+     * Private to the library: see `staya_choose_layer`.
      */
-    uint8_t safety;
+    uint8_t layer;
     /**
      * StayaWire.
      */
@@ -1106,9 +723,25 @@ typedef struct StayaSetup {
      */
     uint8_t expects_others;
     /**
-     * With STAYA_LAW_EXTERNAL: the protocol of its payloads and messages, 64 to 255.
+     * With the law "external": the protocol of its payloads and messages, 64 to 255.
      */
     uint8_t protocol;
+    /**
+     * Other than 0: the body moves from cell to cell; commands are moves, `speed_mps` is ignored.
+     */
+    uint8_t on_grid;
+    /**
+     * Over cells: sight in each direction, 1 to STAYA_MAX_RADIUS.
+     */
+    uint8_t sight_cells;
+    /**
+     * Over cells, other than 0: a diagonal move is as long as a straight one.
+     */
+    uint8_t diagonals_count_as_one;
+    /**
+     * Over cells, other than 0: diagonal moves may pass a blocked corner.
+     */
+    uint8_t cuts_corners;
     /**
      * Radius of the ball around the body, metres.
      */
@@ -1117,6 +750,14 @@ typedef struct StayaSetup {
      * Cruising speed, m/s; limited by that of the body.
      */
     float speed_mps;
+    /**
+     * Highest speed of the body, m/s; 0: `speed_mps`.
+     */
+    float max_speed_mps;
+    /**
+     * Highest speed of any robot, m/s; 0: that of the body.
+     */
+    float fastest_mps;
     /**
      * Distance within which its waypoint counts as reached, metres.
      */
@@ -1159,31 +800,15 @@ typedef struct StayaSetup {
      */
     uint32_t plausibility_last_id;
     /**
-     * ORCA, in the plane and in space.
+     * Private to the library: values of the law; NaN: not given.
      */
-    struct StayaOrca orca;
+    float law_values[STAYA_LAW_VALUES];
     /**
-     * Push-out.
+     * Private to the library: values of the layer; NaN: not given.
      */
-    struct StayaPushOut push_out;
+    float layer_values[STAYA_LAYER_VALUES];
     /**
-     * The lattice.
-     */
-    struct StayaLattice lattice;
-    /**
-     * The goal flock.
-     */
-    struct StayaGoalFlock goal_flock;
-    /**
-     * Boids.
-     */
-    struct StayaBoids boids;
-    /**
-     * Routes.
-     */
-    struct StayaRoute route;
-    /**
-     * Formations.
+     * The robot's place in a formation.
      */
     struct StayaFormation formation;
     /**
@@ -1235,7 +860,7 @@ typedef struct StayaObstacle {
  *
  * Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
  * `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
- * The other fields are then ignored. With STAYA_LAW_EXTERNAL a `window` puts the robot into cells,
+ * The other fields are then ignored. With the law "external" a `window` puts the robot into cells,
  * and `cell_m` above 0 lets it move by velocities there.
  */
 typedef struct StayaInputs {
@@ -1612,6 +1237,81 @@ typedef struct StayaReference {
 } StayaReference;
 
 /**
+ * Why `staya_init` refuses the law or the layer of a setup. Texts end with a zero, and are empty
+ * if no row is to blame.
+ */
+typedef struct StayaFault {
+    /**
+     * StayaStatus; STAYA_STATUS_OK: the setup has no such fault.
+     */
+    int32_t status;
+    /**
+     * The row to change, as `staya_set` takes it, or the field of StayaSetup.
+     */
+    char row[36];
+    /**
+     * The fault in a few words.
+     */
+    char what[96];
+    /**
+     * How to correct it.
+     */
+    char remedy[96];
+    /**
+     * The least value that is accepted, if that is the remedy; otherwise NaN.
+     */
+    float least;
+} StayaFault;
+
+/**
+ * A law or a safety layer. Texts end with a zero.
+ */
+typedef struct StayaKind {
+    /**
+     * The name for `staya_choose_law` or `staya_choose_layer`.
+     */
+    char name[20];
+    /**
+     * A description in a sentence.
+     */
+    char text[108];
+} StayaKind;
+
+/**
+ * A parameter of a running robot, or a row of a setup's law or layer. Texts end with a zero.
+ */
+typedef struct StayaParameter {
+    /**
+     * The name, such as "speed_mps".
+     */
+    char name[20];
+    /**
+     * The unit; empty for a plain number.
+     */
+    char unit[20];
+    /**
+     * A description in a few words.
+     */
+    char text[64];
+    /**
+     * If the row is a choice: the words for 0, 1, ..., separated by blanks.
+     */
+    char words[64];
+    /**
+     * The least value.
+     */
+    float least;
+    /**
+     * The greatest value.
+     */
+    float greatest;
+    /**
+     * The present value.
+     */
+    float value;
+} StayaParameter;
+
+/**
  * The decision of a law of your own. All zeros: idle.
  */
 typedef struct StayaDecision {
@@ -1678,36 +1378,6 @@ typedef struct StayaMessage {
      */
     uint8_t bytes[STAYA_CONTENT];
 } StayaMessage;
-
-/**
- * A parameter that `staya_set_parameter` can change while the robot runs. Texts end with a zero.
- */
-typedef struct StayaParameter {
-    /**
-     * The name, such as "horizon_s".
-     */
-    char name[20];
-    /**
-     * The unit; empty for a plain number.
-     */
-    char unit[20];
-    /**
-     * A description in a few words.
-     */
-    char text[64];
-    /**
-     * The least value.
-     */
-    float least;
-    /**
-     * The greatest value.
-     */
-    float greatest;
-    /**
-     * The present value.
-     */
-    float value;
-} StayaParameter;
 
 /**
  * Two neighbouring places of a formation, by their indices.
@@ -1793,44 +1463,38 @@ StayaStatus staya_digest(const struct StayaAgent *agent, uint64_t *digest);
 StayaStatus staya_move(int32_t position_mm[3], const float way_m[3]);
 
 /**
- * Writes the parameters of ORCA that suit most robots.
+ * Creates the safety layer that a setup has chosen, for one robot, in the caller's memory:
+ * STAYA_AVOIDER_SIZE bytes aligned to STAYA_ALIGN. The setup's `seed` draws random tie-breaks;
+ * robots may share it.
  */
-StayaStatus staya_orca_defaults(struct StayaOrca *orca);
-
-/**
- * Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN;
- * in space if `in_space` is not 0. `seed` seeds random tie-breaks; robots may share it.
- */
-StayaStatus staya_orca_init(void *memory,
-                            size_t memory_bytes,
-                            const struct StayaOrca *orca,
-                            uint8_t in_space,
-                            uint64_t seed,
-                            struct StayaAvoider **avoider);
+StayaStatus staya_avoider_init(void *memory,
+                               size_t memory_bytes,
+                               const struct StayaSetup *setup,
+                               struct StayaAvoider **avoider);
 
 /**
  * Returns the velocity to take until the next step, m/s: the one nearest to `wish_mps` that robots
  * and obstacles permit. Call it once per `step_s`, always for the same robot.
  *
  * `way_m` is the vector to the goal, metres, or null; near the goal the robot does not turn aside.
- * Only the nearest STAYA_NEARBY robots count. The plane ignores heights and keeps that of the
- * wish.
+ * Only the nearest STAYA_NEARBY robots count. A layer in the plane ignores heights and keeps that
+ * of the wish.
  */
-StayaStatus staya_orca_velocity(struct StayaAvoider *avoider,
-                                const struct StayaBody *body,
-                                const float wish_mps[3],
-                                const float way_m[3],
-                                const struct StayaNearby *nearby,
-                                size_t nearby_count,
-                                const struct StayaObstacle *obstacles,
-                                size_t obstacle_count,
-                                float velocity_mps[3]);
+StayaStatus staya_avoider_velocity(struct StayaAvoider *avoider,
+                                   const struct StayaBody *body,
+                                   const float wish_mps[3],
+                                   const float way_m[3],
+                                   const struct StayaNearby *nearby,
+                                   size_t nearby_count,
+                                   const struct StayaObstacle *obstacles,
+                                   size_t obstacle_count,
+                                   float velocity_mps[3]);
 
 /**
- * Returns the acceleration in an alpha flock, m/s^2, not limited by the body. `reference` may
- * be null.
+ * Returns the acceleration in an alpha flock, m/s^2, not limited by the body. The setup has chosen
+ * the law "lattice". `reference` may be null.
  */
-StayaStatus staya_lattice_acceleration(const struct StayaLattice *lattice,
+StayaStatus staya_lattice_acceleration(const struct StayaSetup *setup,
                                        const struct StayaBody *body,
                                        const struct StayaNearby *nearby,
                                        size_t nearby_count,
@@ -1840,10 +1504,10 @@ StayaStatus staya_lattice_acceleration(const struct StayaLattice *lattice,
                                        float acceleration_mps2[3]);
 
 /**
- * Returns the preferred velocity of a robot in a goal flock, m/s. `goal_mm` may be null.
+ * Returns the preferred velocity of a robot in a goal flock, m/s. The setup has chosen the law
+ * "goal_flock". `goal_mm` may be null.
  */
-StayaStatus staya_goal_flock_wish(const struct StayaGoalFlock *goal_flock,
-                                  float speed_mps,
+StayaStatus staya_goal_flock_wish(const struct StayaSetup *setup,
                                   const struct StayaBody *body,
                                   const int32_t own_mm[3],
                                   const int32_t goal_mm[3],
@@ -1852,25 +1516,66 @@ StayaStatus staya_goal_flock_wish(const struct StayaGoalFlock *goal_flock,
                                   float wish_mps[3]);
 
 /**
- * Turns a boid's heading, a unit vector, to its value one step later.
+ * Turns a boid's heading, a unit vector, to its value one step later. The setup has chosen the law
+ * "boids".
  */
-StayaStatus staya_boids_steer(const struct StayaBoids *boids,
+StayaStatus staya_boids_steer(const struct StayaSetup *setup,
                               uint32_t id,
                               const struct StayaNearby *nearby,
                               size_t nearby_count,
                               float heading[2]);
 
 /**
- * Returns the velocity nearest to `wish_mps` by the rules of push-out, m/s, for the next `step_s`.
+ * Chooses the law of a robot by its name (`staya_law` lists all), with its defaults.
+ * `STAYA_STATUS_LAW` if this build does not have it.
  */
-StayaStatus staya_push_out_velocity(const struct StayaPushOut *params,
-                                    const struct StayaBody *body,
-                                    const float wish_mps[3],
-                                    const struct StayaNearby *nearby,
-                                    size_t nearby_count,
-                                    const struct StayaObstacle *obstacles,
-                                    size_t obstacle_count,
-                                    float velocity_mps[3]);
+StayaStatus staya_choose_law(struct StayaSetup *setup, const char *name);
+
+/**
+ * Chooses the safety layer of a robot by its name (`staya_layer` lists all), with its defaults.
+ * `STAYA_STATUS_LAW` if this build does not have it.
+ */
+StayaStatus staya_choose_layer(struct StayaSetup *setup, const char *name);
+
+/**
+ * Sets a value of the chosen law and layer by the name of its row (`staya_law_row`,
+ * `staya_layer_row`). If both have the row, "SECTION.ROW" sets that of one, with its section in
+ * scenario files. Rows that count or choose take the nearest whole number. `STAYA_STATUS_ROW` if
+ * neither has it, `STAYA_STATUS_RANGE` if it cannot have the value; `staya_init` checks whether
+ * values go together.
+ */
+StayaStatus staya_set(struct StayaSetup *setup, const char *row, float value);
+
+/**
+ * Like `staya_set`, for a row whose values are words, such as "true" and "false".
+ */
+StayaStatus staya_set_word(struct StayaSetup *setup, const char *row, const char *word);
+
+/**
+ * Says why `staya_init` refuses the law or the layer of a setup.
+ */
+StayaStatus staya_explain(const struct StayaSetup *setup, struct StayaFault *fault);
+
+/**
+ * Writes law 0, 1, 2 and so on of this build; `STAYA_STATUS_UNKNOWN` beyond the last one.
+ */
+StayaStatus staya_law(uint32_t index, struct StayaKind *law);
+
+/**
+ * Writes safety layer 0, 1, 2 and so on of this build; `STAYA_STATUS_UNKNOWN` beyond the last one.
+ */
+StayaStatus staya_layer(uint32_t index, struct StayaKind *layer);
+
+/**
+ * Writes row 0, 1, 2 and so on of the chosen law with its present value; NaN: it depends on other
+ * values, or must be given. `STAYA_STATUS_UNKNOWN` beyond the last one.
+ */
+StayaStatus staya_law_row(const struct StayaSetup *setup, uint32_t index, struct StayaParameter *row);
+
+/**
+ * Writes row 0, 1, 2 and so on of the chosen layer, as `staya_law_row` does.
+ */
+StayaStatus staya_layer_row(const struct StayaSetup *setup, uint32_t index, struct StayaParameter *row);
 
 /**
  * The first half of a step: receives. `staya_neighbors` and `staya_received` then tell a law of
@@ -1894,7 +1599,7 @@ StayaStatus staya_act(struct StayaAgent *agent,
  * remains idle. A velocity needs `max_speed_mps`, moves need a `window` and no `cell_m`; without
  * them the robot is in STAYA_MODE_FAULT. `STAYA_STATUS_NUMBER`, `_CHOICE` or `_TOO_MANY` for an
  * invalid decision, which changes nothing. This function and those below do constant work and
- * return `STAYA_STATUS_TASK` if the agent's law is not STAYA_LAW_EXTERNAL.
+ * return `STAYA_STATUS_TASK` if the agent's law is another one.
  */
 StayaStatus staya_decide(struct StayaAgent *agent, const struct StayaDecision *decision);
 
@@ -1939,29 +1644,17 @@ StayaStatus staya_parameter(struct StayaAgent *agent, uint32_t index, struct Sta
 StayaStatus staya_get_parameter(struct StayaAgent *agent, const char *name, float *value);
 
 /**
- * Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and
+ * Changes a parameter, such as "speed_mps", from the next step on. `STAYA_STATUS_PARAMETER`, and
  * no change, if the robot lacks it, or the value is out of range or contradicts other parameters.
  */
 StayaStatus staya_set_parameter(struct StayaAgent *agent, const char *name, float value);
 
 /**
- * Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon
- * each step, no inertia, no latency; lengths of other laws follow from the radius. `radius_m` is
- * that of the ball around the body, `tick_us` the time between two steps. `staya_init` checks
- * them.
+ * Fills a setup for robot `id` with defaults: the law "waypoint" at 0.5 m/s behind the layer "orca",
+ * a beacon each step, no inertia, no latency. `radius_m` is that of the ball around the body,
+ * `tick_us` the time between two steps. `staya_init` checks them.
  */
 StayaStatus staya_setup_defaults(struct StayaSetup *setup, uint32_t id, float radius_m, int32_t tick_us);
-
-/**
- * Writes the paper's values of the lattice for a spacing, metres, as in a setup's defaults.
- */
-StayaStatus staya_lattice_defaults(struct StayaLattice *lattice, float spacing_m);
-
-/**
- * Reduces the gains as far as required if beacons are `delay_s` old when they arrive and come
- * `rate_hz` times per second. Stiffer gains make the lattice oscillate and break apart.
- */
-StayaStatus staya_lattice_soften(struct StayaLattice *lattice, float delay_s, float rate_hz);
 
 /**
  * Fills in the place number `own` of a formation, given the cells of all places in any common

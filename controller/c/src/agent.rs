@@ -1,19 +1,20 @@
 //! The agent: creation in the caller's memory, orders, steps and queries.
 
-use crate::choices::{StayaLaw, StayaMode};
+use crate::choices::StayaMode;
+use crate::chosen::Place;
 use crate::io::{StayaInputs, StayaOutputs, array, finite};
 use crate::law::{Law, Workspace};
-use crate::layer::Layer;
 use crate::memory::{Call, Resident, answers, check, plain};
 use crate::setup::{StayaCell, StayaSetup};
 use crate::speech::Speech;
 use crate::status::{Checked, StayaStatus};
-use crate::{NEIGHBORS, Number, OBSTACLES};
+use crate::{Layer, NEIGHBORS, Number, OBSTACLES};
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
 use heapless::Vec;
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyPayload, External, GridPayload, Outputs, Task, Unguarded, WAYPOINTS, Waypoint,
+    Agent, AgentConfig, AnyPayload, External, Grid, GridPayload, InAny, Outputs, Safety, Task, Unguarded, WAYPOINTS,
+    Waypoint,
 };
 use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
@@ -48,7 +49,7 @@ type AnyAgent = Agent<Number, Law, NEIGHBORS, Layer, Speech>;
 #[cfg_attr(all(), repr(C))]
 pub struct StayaAgent {
     mark: u32,
-    law: StayaLaw,
+    place: Place,
     /// Whether the next call is the second half of a step.
     has_heard: bool,
     agent: AnyAgent,
@@ -82,13 +83,17 @@ impl StayaAgent {
         // SAFETY: aligned space for the whole agent, not used elsewhere.
         unsafe {
             let agent = begin(&mut *(&raw mut (*site).agent).cast(), &config);
-            *agent.law_mut() = setup.law()?;
-            *agent.safety_mut() = setup.layer()?;
-            setup.check_rounding(&config, agent.safety())?;
+            let place = setup.law(agent.law_mut())?;
+            let layer = setup.layer_settings()?;
+            *agent.safety_mut() = layer.layer();
+            if let Some(inflation) = agent.safety().inflation() {
+                let fits = config.check_rounding(inflation.growth_mps, layer.flies());
+                fits.map_err(|_| StayaStatus::Number)?;
+            }
             *agent.wire_mut() = setup.speech()?;
-            (&raw mut (*site).law).write(StayaLaw::of(setup.law)?);
+            (&raw mut (*site).place).write(place);
             (&raw mut (*site).has_heard).write(false);
-            (&raw mut (*site).workspace).write(Workspace::new());
+            (&raw mut (*site).workspace).write(Workspace::default());
             (&raw mut (*site).obstacles).write(Vec::new());
             (&raw mut (*site).outputs).write(Outputs::default());
             (&raw mut (*site).mark).write(Self::MARK);
@@ -101,7 +106,7 @@ impl StayaAgent {
             return Err(StayaStatus::NotHeard);
         }
         let inputs = call.shared(inputs)?;
-        let own = inputs.inputs(call, self.law, &mut self.obstacles)?;
+        let own = inputs.inputs(call, self.place, &mut self.obstacles)?;
         let (now, out) = (Instant::from_micros(inputs.now_us), &mut self.outputs);
         if part != Part::Act {
             self.agent.hear_into(&own, now, out);
@@ -205,7 +210,7 @@ plain!(StayaWaypoint, StayaNeighbor);
 
 impl From<&Neighbor<Number, AnyPayload>> for StayaNeighbor {
     fn from(neighbor: &Neighbor<Number, AnyPayload>) -> Self {
-        let on_grid = neighbor.payload.and_then(|payload| payload.try_into().ok()).unwrap_or_default();
+        let on_grid = neighbor.payload.and_then(Grid::payload).unwrap_or_default();
         let GridPayload { cell, target, heading, slot, leader, .. } = on_grid;
         let encode = |payload: AnyPayload| payload.encode::<MAX_PAYLOAD>(ProtocolId::NONE);
         let (protocol, bytes) = neighbor.payload.and_then(encode).unwrap_or_default();

@@ -1,35 +1,30 @@
-//! Behaviours without an agent, for robots that sense each other or use their own radio; ORCA.
+//! Behaviours without an agent, for robots that sense each other or use their own radio: safety
+//! layers.
 
 #[cfg(feature = "flocks")]
 pub mod flocks;
-#[cfg(feature = "push-out")]
-pub mod push_out;
 
 use crate::io::{StayaObstacle, array, read_obstacles, vector};
-use crate::layer::Source;
 use crate::memory::{Call, Resident, answers, plain};
-use crate::setup::StayaOrca;
+use crate::setup::StayaSetup;
 use crate::status::{Checked, StayaStatus};
-use crate::{HALF_PLANES, Number, OBSTACLES};
+use crate::{Layer, Number, OBSTACLES};
 use core::ffi::c_void;
 use heapless::Vec;
+use staya_controller::agent::{Safety, SafetyInput};
 use staya_controller::body::Body;
-use staya_controller::geom::Vec3;
 use staya_controller::neighbor::Nearby;
 use staya_controller::obstacle::Obstacle;
-use staya_controller::orca::Avoider;
-#[cfg(feature = "space")]
-use staya_controller::orca::InSpace;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::scalar::cast;
 
 /// Bytes that suffice for an avoider.
-pub const STAYA_ORCA_SIZE: usize = 256;
+pub const STAYA_AVOIDER_SIZE: usize = 256;
 /// Maximum number of robots that these behaviours consider: the nearest of all that are given.
 pub const STAYA_NEARBY: usize = 16;
 
-const _: () = assert!(size_of::<StayaAvoider>() <= STAYA_ORCA_SIZE && align_of::<StayaAvoider>() <= 8);
+const _: () = assert!(size_of::<StayaAvoider>() <= STAYA_AVOIDER_SIZE && align_of::<StayaAvoider>() <= 8);
 
 /// The body of this robot. One that follows commands with a lag gives the point ahead of it, at its
 /// velocity times the lag, as its position, and its last command as its velocity.
@@ -147,87 +142,37 @@ fn surroundings(
     Ok((body, nearest(others), known))
 }
 
-/// ORCA for one robot. Its contents are private to the library.
+/// The safety layer of one robot. Its contents are private to the library.
 // A separate item, since cbindgen would otherwise export the fields.
 #[cfg_attr(all(), repr(C))]
 pub struct StayaAvoider {
     mark: u32,
-    avoider: AnyAvoider,
+    layer: Layer,
     rng: Rng,
 }
 
 // SAFETY: `repr(C)`, and the mark is its first field.
 unsafe impl Resident for StayaAvoider {
-    const MARK: u32 = u32::from_be_bytes(*b"orca");
+    const MARK: u32 = u32::from_be_bytes(*b"avoi");
 }
 
-enum AnyAvoider {
-    Plane(Avoider<Number, HALF_PLANES, Source>),
-    #[cfg(feature = "space")]
-    Space(Avoider<Number, HALF_PLANES, InSpace<Number>>),
-}
-
-impl AnyAvoider {
-    fn new(orca: &StayaOrca, in_space: u8) -> Checked<Self> {
-        if !(orca.horizon_s > 0.0 && orca.wall_horizon_s > 0.0) {
-            return Err(StayaStatus::Number);
-        }
-        if in_space == 0 {
-            return Ok(Self::Plane(Avoider::with_source(orca.params(), Source::Formula)));
-        }
-        #[cfg(feature = "space")]
-        {
-            let source = InSpace { downwash: cast(orca.downwash) };
-            Ok(Self::Space(Avoider::with_source(orca.params(), source)))
-        }
-        #[cfg(not(feature = "space"))]
-        Err(StayaStatus::NotBuilt)
-    }
-
-    fn velocity(
-        &mut self,
-        body: &Body<Number>,
-        wish_mps: Vec3<Number>,
-        way_m: Option<Vec3<Number>>,
-        nearby: &[Nearby<Number>],
-        obstacles: &[Obstacle<Number>],
-        rng: &mut Rng,
-    ) -> Vec3<Number> {
-        match self {
-            Self::Plane(avoider) => {
-                let way_m = way_m.map(Vec3::xy);
-                let best = avoider.velocity(body, wish_mps.xy(), way_m, nearby, obstacles, rng);
-                best.velocity_mps.extend(wish_mps.z)
-            }
-            #[cfg(feature = "space")]
-            Self::Space(avoider) => avoider.velocity(body, wish_mps, way_m, nearby, obstacles, rng).velocity_mps,
-        }
-    }
-}
-
-/// Writes the parameters of ORCA that suit most robots.
+/// Creates the safety layer that a setup has chosen, for one robot, in the caller's memory:
+/// STAYA_AVOIDER_SIZE bytes aligned to STAYA_ALIGN. The setup's `seed` draws random tie-breaks;
+/// robots may share it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn staya_orca_defaults(orca: *mut StayaOrca) -> StayaStatus {
-    answers!(|call| call.write(orca, StayaOrca::defaults()))
-}
-
-/// Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN;
-/// in space if `in_space` is not 0. `seed` seeds random tie-breaks; robots may share it.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn staya_orca_init(
+pub unsafe extern "C" fn staya_avoider_init(
     memory: *mut c_void,
     memory_bytes: usize,
-    orca: *const StayaOrca,
-    in_space: u8,
-    seed: u64,
+    setup: *const StayaSetup,
     avoider: *mut *mut StayaAvoider,
 ) -> StayaStatus {
     answers!(|call| {
         call.write(avoider, core::ptr::null_mut())?;
         let site = call.site::<StayaAvoider>(memory, memory_bytes)?;
-        let inside = AnyAvoider::new(call.shared(orca)?, in_space)?;
+        let setup = call.shared(setup)?.check_version()?;
+        let (layer, rng) = (setup.layer_settings()?.layer(), Rng::new(setup.seed));
         // SAFETY: aligned space for the whole avoider, not used elsewhere.
-        unsafe { site.write(StayaAvoider { mark: StayaAvoider::MARK, avoider: inside, rng: Rng::new(seed) }) };
+        unsafe { site.write(StayaAvoider { mark: StayaAvoider::MARK, layer, rng }) };
         call.write(avoider, site)
     })
 }
@@ -236,11 +181,11 @@ pub unsafe extern "C" fn staya_orca_init(
 /// and obstacles permit. Call it once per `step_s`, always for the same robot.
 ///
 /// `way_m` is the vector to the goal, metres, or null; near the goal the robot does not turn aside.
-/// Only the nearest STAYA_NEARBY robots count. The plane ignores heights and keeps that of the
-/// wish.
+/// Only the nearest STAYA_NEARBY robots count. A layer in the plane ignores heights and keeps that
+/// of the wish.
 /// cbindgen:ptrs-as-arrays=[[wish_mps; 3], [way_m; 3], [velocity_mps; 3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn staya_orca_velocity(
+pub unsafe extern "C" fn staya_avoider_velocity(
     avoider: *mut StayaAvoider,
     body: *const StayaBody,
     wish_mps: *const f32,
@@ -252,10 +197,11 @@ pub unsafe extern "C" fn staya_orca_velocity(
     velocity_mps: *mut f32,
 ) -> StayaStatus {
     answers!(|call| {
-        let StayaAvoider { avoider, rng, .. } = call.resident_mut(avoider)?;
-        let wish = vector(*call.shared::<[f32; 3]>(wish_mps.cast())?);
-        let way = call.optional::<[f32; 3]>(way_m.cast())?.map(|way| vector(*way));
-        let (body, others, obstacles) = surroundings(call, body, (nearby, nearby_count), (obstacles, obstacle_count))?;
-        call.write(velocity_mps.cast(), array(avoider.velocity(&body, wish, way, &others, &obstacles, rng)))
+        let StayaAvoider { layer, rng, .. } = call.resident_mut(avoider)?;
+        let wish_mps = vector(*call.shared::<[f32; 3]>(wish_mps.cast())?);
+        let way_m = call.optional::<[f32; 3]>(way_m.cast())?.map(|way| vector(*way));
+        let (body, others, known) = surroundings(call, body, (nearby, nearby_count), (obstacles, obstacle_count))?;
+        let input = SafetyInput { body, wish_mps, way_m, nearby: &others, obstacles: &known };
+        call.write(velocity_mps.cast(), array(layer.keep_clear(&input, rng)))
     })
 }

@@ -2,33 +2,7 @@
 
 use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::{Event, Wait};
-use staya_controller::lattice::Algorithm;
-use staya_controller::push_out::Model;
 use staya_controller::robot::Mode;
-
-/// Guidance law: how a robot moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum StayaLaw {
-    /// Straight to its waypoint at `speed_mps`, until it is within `tolerance_m`.
-    Waypoint = 0,
-    /// The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is followed.
-    Lattice = 1,
-    /// The goal flock (V. E. and V. V. Pavlovsky): to the waypoints' middle, then each to one.
-    GoalFlock = 2,
-    /// Boids (V. A. Starovoitova 2018): constant speed, only headings change.
-    Boids = 3,
-    /// A route across land in cells (A. V. Kuznetsov 2017), with velocities as commands.
-    Route = 4,
-    /// A formation across land in cells, with velocities as commands.
-    Formation = 5,
-    /// A route across land in cells, with moves from cell to cell as commands.
-    RouteOnGrid = 6,
-    /// A formation across land in cells, with moves from cell to cell as commands.
-    FormationOnGrid = 7,
-    /// A law of your own: `staya_decide` gives the decision of each step.
-    External = 8,
-}
 
 /// The action that a law of your own decides on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,22 +16,6 @@ pub enum StayaAction {
     Velocity = 2,
     /// Take the first of `moves` that leads into a free cell; only for moves from cell to cell.
     Moves = 3,
-}
-
-/// Safety layer: how a robot keeps clear of others. Robots that move from cell to cell have none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum StayaSafety {
-    /// No safety layer.
-    None = 0,
-    /// ORCA in the plane.
-    Orca = 1,
-    /// ORCA in the plane with half-planes from a table of 2 KiB.
-    OrcaTable = 2,
-    /// ORCA in space, for flying robots.
-    Fly = 3,
-    /// Push-out: considers only the present positions of others.
-    PushOut = 4,
 }
 
 /// Wire format; the same for all robots of a swarm.
@@ -193,29 +151,7 @@ pub enum StayaShape {
     Plane = 2,
 }
 
-/// The active terms of the alpha flock.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum StayaLatticeTerms {
-    /// Only the other robots.
-    Others = 1,
-    /// Also the reference, with a pull that grows without bound.
-    Reference = 2,
-    /// Also obstacles; the pull of the reference is bounded.
-    All = 3,
-}
-
-/// How push-out changes a step that leads too near.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum StayaPushOutModel {
-    /// The step slides along the border and becomes shorter.
-    Radial = 0,
-    /// The step keeps its length and is turned.
-    Tangential = 1,
-}
-
-/// [`of`](StayaLaw::of) for enums that C passes as numbers.
+/// [`of`](StayaWire::of) for enums that C passes as numbers.
 macro_rules! numbered {
     ($($name:ident { $($variant:ident),* $(,)? })*) => {
         $(impl $name {
@@ -232,9 +168,7 @@ macro_rules! numbered {
 }
 
 numbered! {
-    StayaLaw { Waypoint, Lattice, GoalFlock, Boids, Route, Formation, RouteOnGrid, FormationOnGrid, External }
     StayaAction { Idle, Stay, Velocity, Moves }
-    StayaSafety { None, Orca, OrcaTable, Fly, PushOut }
     StayaWire { Postcard, Mavlink, Sealed }
     StayaShape { Wall, Ball, Plane }
 }
@@ -261,28 +195,15 @@ shown! {
     }
 }
 
-/// Enums whose numbers from C select a variant of an enum of the controller.
-macro_rules! chosen {
-    ($($name:ident to $other:ty { $($variant:ident = $value:expr),* $(,)? })*) => {
-        $(impl $name {
-            /// The controller's value for this number.
-            ///
-            /// # Errors
-            /// `STAYA_STATUS_CHOICE` if there is none.
-            pub fn chosen(number: u8) -> Checked<$other> {
-                let mut all = [$((Self::$variant, $value)),*].into_iter();
-                all.find(|(known, _)| *known as u8 == number).map(|(_, value)| value).ok_or(StayaStatus::Choice)
-            }
-        })*
-    };
-}
-
-chosen! {
-    StayaLatticeTerms to Algorithm { Others = Algorithm::One, Reference = Algorithm::Two, All = Algorithm::Three }
-    StayaPushOutModel to Model { Radial = Model::Radial, Tangential = Model::Tangential }
-    StayaWait to Option<Wait> {
-        Nothing = None, Team = Some(Wait::Team), Stopped = Some(Wait::Stopped), Route = Some(Wait::Route),
-        Radio = Some(Wait::Radio), Turn = Some(Wait::Turn), Robots = Some(Wait::Robots),
-        GoalTaken = Some(Wait::GoalTaken),
+impl StayaWait {
+    /// The controller's value for this number.
+    ///
+    /// # Errors
+    /// `STAYA_STATUS_CHOICE` if there is none.
+    pub fn chosen(number: u8) -> Checked<Option<Wait>> {
+        let waits = [Wait::Team, Wait::Stopped, Wait::Route, Wait::Radio, Wait::Turn, Wait::Robots, Wait::GoalTaken];
+        let mut all = [None].into_iter().chain(waits.into_iter().map(Some));
+        let number_of = |wait: Option<Wait>| wait.map_or(Self::Nothing, Self::from) as u8;
+        all.find(|wait| number_of(*wait) == number).ok_or(StayaStatus::Choice)
     }
 }

@@ -125,7 +125,7 @@ pub unsafe extern "C" fn staya_act(
 /// remains idle. A velocity needs `max_speed_mps`, moves need a `window` and no `cell_m`; without
 /// them the robot is in STAYA_MODE_FAULT. `STAYA_STATUS_NUMBER`, `_CHOICE` or `_TOO_MANY` for an
 /// invalid decision, which changes nothing. This function and those below do constant work and
-/// return `STAYA_STATUS_TASK` if the agent's law is not STAYA_LAW_EXTERNAL.
+/// return `STAYA_STATUS_TASK` if the agent's law is another one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_decide(agent: *mut StayaAgent, decision: *const StayaDecision) -> StayaStatus {
     answers!(|call| {

@@ -1,6 +1,7 @@
 //! Inputs and outputs of a step, as plain structures.
 
-use crate::choices::{StayaCommand, StayaEventKind, StayaLaw, StayaMode, StayaShape, StayaWait};
+use crate::choices::{StayaCommand, StayaEventKind, StayaMode, StayaShape, StayaWait};
+use crate::chosen::Place;
 use crate::memory::{Call, plain};
 use crate::setup::StayaCell;
 use crate::status::{Checked, StayaStatus};
@@ -54,7 +55,7 @@ pub struct StayaObstacle {
 ///
 /// Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
 /// `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
-/// The other fields are then ignored. With STAYA_LAW_EXTERNAL a `window` puts the robot into cells,
+/// The other fields are then ignored. With the law "external" a `window` puts the robot into cells,
 /// and `cell_m` above 0 lets it move by velocities there.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -205,24 +206,21 @@ impl StayaInputs {
     pub(crate) fn inputs<'a>(
         &self,
         call: Call<'a>,
-        law: StayaLaw,
+        place: Place,
         obstacles: &'a mut Vec<Obstacle<Number>, OBSTACLES>,
     ) -> Checked<AnyInputs<'a, Number>> {
         let inbox = call.row(self.inbox, self.inbox_bytes)?;
         read_obstacles(call.row(self.obstacles, self.obstacle_count)?, obstacles)?;
         let plane = InPlane { max_speed_mps: cast(self.max_speed_mps), obstacles: obstacles.as_slice() };
-        // A representative of the laws with the same surroundings.
-        let kind = match law {
-            StayaLaw::External if self.window.is_null() => StayaLaw::Waypoint,
-            StayaLaw::External if self.cell_m == 0.0 => StayaLaw::RouteOnGrid,
-            StayaLaw::External => StayaLaw::Route,
-            law => law,
+        let place = match place {
+            Place::Any if self.window.is_null() => Place::Plane,
+            Place::Any if self.cell_m == 0.0 => Place::Grid,
+            Place::Any => Place::Cells,
+            place => place,
         };
-        let surroundings = match kind {
-            StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid => {
-                AnySurroundings::OnGrid(self.grid(call, Duration::from_micros(self.busy_us))?)
-            }
-            StayaLaw::Route | StayaLaw::Formation => {
+        let surroundings = match place {
+            Place::Grid => AnySurroundings::OnGrid(self.grid(call, Duration::from_micros(self.busy_us))?),
+            Place::Cells => {
                 if !(self.cell_m > 0.0 && self.cell_m.is_finite()) {
                     return Err(StayaStatus::Number);
                 }

@@ -29,10 +29,10 @@ extern crate std;
 pub mod agent;
 pub mod alone;
 pub mod choices;
+pub mod chosen;
 pub mod external;
 pub mod io;
 pub mod law;
-pub mod layer;
 mod memory;
 mod one_of;
 pub mod parameter;
@@ -56,6 +56,8 @@ pub type Number = staya_controller::scalar::Q16;
 pub const NEIGHBORS: usize = if cfg!(feature = "small") { 8 } else { 16 };
 /// Maximum number of ORCA's half-planes (in space half-spaces).
 pub const HALF_PLANES: usize = if cfg!(feature = "small") { 16 } else { 32 };
+/// Any safety layer of this build.
+pub type Layer = staya_controller::agent::AnySafety<Number, HALF_PLANES>;
 /// Maximum number of obstacles in a step.
 pub const OBSTACLES: usize = if cfg!(feature = "small") { 16 } else { 32 };
 

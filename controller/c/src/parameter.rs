@@ -8,16 +8,18 @@ use staya_controller::parameters::{LONGEST_DESCRIPTION, Parameter};
 
 const _: () = assert!(LONGEST_DESCRIPTION < 64);
 
-/// A parameter that `staya_set_parameter` can change while the robot runs. Texts end with a zero.
+/// A parameter of a running robot, or a row of a setup's law or layer. Texts end with a zero.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaParameter {
-    /// The name, such as "horizon_s".
+    /// The name, such as "speed_mps".
     pub name: [c_char; 20],
     /// The unit; empty for a plain number.
     pub unit: [c_char; 20],
     /// A description in a few words.
     pub text: [c_char; 64],
+    /// If the row is a choice: the words for 0, 1, ..., separated by blanks.
+    pub words: [c_char; 64],
     /// The least value.
     pub least: f32,
     /// The greatest value.
@@ -29,15 +31,17 @@ pub struct StayaParameter {
 plain!(StayaParameter);
 
 impl StayaParameter {
-    fn new(row: &Parameter, value: f32) -> Self {
+    pub(crate) fn new(row: &Parameter, value: f32) -> Self {
         let [least, greatest] = row.range;
-        Self { name: text(row.name), unit: text(row.unit), text: text(row.what), least, greatest, value }
+        let words = text(row.words.iter().flat_map(|word| [" ", *word]).skip(1));
+        Self { name: text([row.name]), unit: text([row.unit]), text: text([row.what]), words, least, greatest, value }
     }
 }
 
-fn text<const N: usize>(text: &str) -> [c_char; N] {
+/// Consecutive texts, as many letters as fit before a zero.
+pub(crate) fn text<'a, const N: usize>(pieces: impl IntoIterator<Item = &'a str>) -> [c_char; N] {
     let mut letters = [0; N];
-    for (letter, byte) in letters.iter_mut().zip(text.bytes()) {
+    for (letter, byte) in letters.iter_mut().take(N - 1).zip(pieces.into_iter().flat_map(str::bytes)) {
         *letter = byte as c_char;
     }
     letters
@@ -76,7 +80,7 @@ pub unsafe extern "C" fn staya_get_parameter(
     })
 }
 
-/// Changes a parameter, such as "horizon_s", from the next step on. `STAYA_STATUS_PARAMETER`, and
+/// Changes a parameter, such as "speed_mps", from the next step on. `STAYA_STATUS_PARAMETER`, and
 /// no change, if the robot lacks it, or the value is out of range or contradicts other parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_set_parameter(agent: *mut StayaAgent, name: *const c_char, value: f32) -> StayaStatus {

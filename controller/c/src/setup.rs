@@ -1,39 +1,23 @@
-//! The configuration of a robot: `staya_setup_defaults` fills it, then the caller changes fields.
+//! The configuration of a robot: `staya_setup_defaults` fills it, then the caller changes fields and
+//! chooses law and layer by name.
 
-// The structures exist in every build, so that the header is the same; the conversions do not.
-#[cfg_attr(not(feature = "push-out"), allow(unused_imports))]
-mod avoidance;
-#[cfg_attr(not(feature = "flocks"), allow(dead_code, unused_imports))]
-mod flocks;
-#[cfg_attr(not(feature = "grid"), allow(unused_imports))]
-mod grid;
-#[cfg(feature = "grid")]
-mod laws;
+mod formation;
 
-pub use avoidance::*;
-pub use flocks::*;
-pub use grid::*;
+pub use formation::*;
 
 use crate::Number;
-use crate::choices::{StayaLaw, StayaSafety, StayaWire};
-use crate::law::Law;
-use crate::layer::{Layer, Source};
+use crate::choices::StayaWire;
+use crate::chosen::{STAYA_LAW_VALUES, STAYA_LAYER_VALUES};
 use crate::memory::{answers, plain};
 use crate::speech::Speech;
 use crate::status::{Checked, StayaStatus};
-#[cfg(feature = "space")]
-use staya_controller::agent::FlySafety;
-#[cfg(feature = "push-out")]
-use staya_controller::agent::PushOutSafety;
-use staya_controller::agent::Safety;
-use staya_controller::agent::{AgentConfig, ContactLossPolicy, External, OrcaSafety, Unguarded, WaypointGuidance};
+use staya_controller::agent::{
+    AgentConfig, CELLS, ContactLossPolicy, OrcaSettings, RouteSettings, Settings, WaypointSettings,
+};
 use staya_controller::neighbor::{Ages, PlausibilityLimits};
-#[cfg(feature = "space")]
-use staya_controller::orca::InSpace;
 use staya_controller::robot::RobotId;
-use staya_controller::scalar::cast;
 use staya_controller::time::Duration;
-use staya_controller::wire::{Postcard, ProtocolId, Retry};
+use staya_controller::wire::{Postcard, Retry};
 
 /// Length of a swarm's key in bytes.
 pub const STAYA_KEY: usize = 32;
@@ -45,8 +29,8 @@ const _: () = assert!(size_of::<StayaSetup>() == STAYA_SETUP_SIZE);
 #[cfg(feature = "auth")]
 const _: () = assert!(STAYA_KEY == staya_controller::auth::KEY_LEN);
 
-/// The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields. Fields
-/// that the chosen law and layer do not use are ignored.
+/// The configuration of a robot. Fill it with `staya_setup_defaults`, change fields, and choose law
+/// and layer by `staya_choose_law` and `staya_choose_layer`, with values by `staya_set`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaSetup {
@@ -56,6 +40,8 @@ pub struct StayaSetup {
     pub id: u32,
     /// Seed of its random decisions, together with its number.
     pub seed: u64,
+    /// Seed of draws that all robots make alike, as of the goals of a flock: the same in all.
+    pub common_seed: u64,
     /// Time from one step to the next, microseconds, which the caller must keep; on the grid the
     /// time for a cell of impassability 1.
     pub tick_us: i32,
@@ -83,20 +69,32 @@ pub struct StayaSetup {
     pub boot: u8,
     /// The robot's flock; robots of other flocks are only obstacles.
     pub flock: u8,
-    /// StayaLaw.
+    /// Private to the library: see `staya_choose_law`.
     pub law: u8,
-    /// StayaSafety.
-    pub safety: u8,
+    /// Private to the library: see `staya_choose_layer`.
+    pub layer: u8,
     /// StayaWire.
     pub wire: u8,
     /// Above 0: a robot that has not heard another one stands.
     pub expects_others: u8,
-    /// With STAYA_LAW_EXTERNAL: the protocol of its payloads and messages, 64 to 255.
+    /// With the law "external": the protocol of its payloads and messages, 64 to 255.
     pub protocol: u8,
+    /// Other than 0: the body moves from cell to cell; commands are moves, `speed_mps` is ignored.
+    pub on_grid: u8,
+    /// Over cells: sight in each direction, 1 to STAYA_MAX_RADIUS.
+    pub sight_cells: u8,
+    /// Over cells, other than 0: a diagonal move is as long as a straight one.
+    pub diagonals_count_as_one: u8,
+    /// Over cells, other than 0: diagonal moves may pass a blocked corner.
+    pub cuts_corners: u8,
     /// Radius of the ball around the body, metres.
     pub radius_m: f32,
     /// Cruising speed, m/s; limited by that of the body.
     pub speed_mps: f32,
+    /// Highest speed of the body, m/s; 0: `speed_mps`.
+    pub max_speed_mps: f32,
+    /// Highest speed of any robot, m/s; 0: that of the body.
+    pub fastest_mps: f32,
     /// Distance within which its waypoint counts as reached, metres.
     pub tolerance_m: f32,
     /// How fast the body can change its velocity, m/s^2; FLT_MAX: at once.
@@ -118,19 +116,11 @@ pub struct StayaSetup {
     pub plausibility_settle_us: i32,
     /// The greatest number of any robot.
     pub plausibility_last_id: u32,
-    /// ORCA, in the plane and in space.
-    pub orca: StayaOrca,
-    /// Push-out.
-    pub push_out: StayaPushOut,
-    /// The lattice.
-    pub lattice: StayaLattice,
-    /// The goal flock.
-    pub goal_flock: StayaGoalFlock,
-    /// Boids.
-    pub boids: StayaBoids,
-    /// Routes.
-    pub route: StayaRoute,
-    /// Formations.
+    /// Private to the library: values of the law; NaN: not given.
+    pub law_values: [f32; STAYA_LAW_VALUES],
+    /// Private to the library: values of the layer; NaN: not given.
+    pub layer_values: [f32; STAYA_LAYER_VALUES],
+    /// The robot's place in a formation.
     pub formation: StayaFormation,
     /// With STAYA_WIRE_SEALED: its count of starts, in persistent memory from 0; below 2^20.
     pub starts: u32,
@@ -140,20 +130,20 @@ pub struct StayaSetup {
 
 plain!(StayaSetup);
 
-const VERSION: u32 = u32::from_be_bytes(*b"sty2");
+const VERSION: u32 = u32::from_be_bytes(*b"sty3");
 
-/// The first protocol of users.
-const FIRST_PROTOCOL: u8 = 64;
+/// Largest `sight_cells`.
+pub const STAYA_MAX_RADIUS: u8 = 5;
 
-fn positive(numbers: &[f32]) -> Checked<()> {
-    if numbers.iter().all(|number| *number > 0.0 && number.is_finite()) { Ok(()) } else { Err(StayaStatus::Number) }
-}
+const _: () = {
+    let side = 2 * STAYA_MAX_RADIUS as usize + 3;
+    assert!(side * side == CELLS);
+};
 
 impl StayaSetup {
-    fn defaults(&mut self, id: u32, radius_m: f32, tick_us: i32) {
+    fn defaults(&mut self, id: u32, radius_m: f32, tick_us: i32) -> Checked<()> {
         let config = AgentConfig::new(RobotId(id), radius_m, Duration::from_micros(tick_us));
         let AgentConfig { ages, retry, contact_loss, plausibility, .. } = config;
-        let diameter_m = 2.0 * radius_m.max(0.05);
         (self.version, self.id, self.radius_m, self.tick_us) = (VERSION, id, radius_m, tick_us);
         self.beacon_period_us = config.beacon_period.as_micros();
         self.stale_after_us = ages.stale_after.as_micros();
@@ -170,20 +160,17 @@ impl StayaSetup {
         self.plausibility_slack_m = plausibility.slack_m;
         self.plausibility_settle_us = plausibility.settle.as_micros();
         self.plausibility_last_id = plausibility.last.0;
-        self.safety = StayaSafety::Orca as u8;
-        self.orca = StayaOrca::defaults();
-        self.push_out.min_distance_m = 1.5 * diameter_m;
-        self.lattice = StayaLattice::defaults(3.0 * diameter_m);
-        self.goal_flock = StayaGoalFlock::defaults(1.5 * diameter_m);
-        self.boids = StayaBoids::defaults(0.1 * diameter_m);
-        #[cfg(feature = "grid")]
-        laws::defaults(self);
+        self.sight_cells = RouteSettings::default().params.radius;
+        self.choose_law(WaypointSettings::NAME)?;
+        self.choose_layer(OrcaSettings::NAME)
+    }
+
+    pub(crate) fn check_version(&self) -> Checked<&Self> {
+        if self.version == VERSION { Ok(self) } else { Err(StayaStatus::Version) }
     }
 
     pub(crate) fn config(&self) -> Checked<AgentConfig<Number>> {
-        if self.version != VERSION {
-            return Err(StayaStatus::Version);
-        }
+        self.check_version()?;
         if self.id == 0 {
             return Err(StayaStatus::NoRobot);
         }
@@ -227,70 +214,6 @@ impl StayaSetup {
         Ok(config.cast())
     }
 
-    pub(crate) fn law(&self) -> Checked<Law> {
-        let law = StayaLaw::of(self.law)?;
-        if !matches!(law, StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid | StayaLaw::External) {
-            positive(&[self.speed_mps])?;
-        }
-        match law {
-            StayaLaw::Waypoint => {
-                positive(&[self.tolerance_m])?;
-                Ok(Law::Waypoint(WaypointGuidance::new(cast(self.speed_mps), cast(self.tolerance_m))))
-            }
-            StayaLaw::External if self.protocol < FIRST_PROTOCOL => Err(StayaStatus::Choice),
-            StayaLaw::External => Ok(Law::External(External::new(ProtocolId(self.protocol)))),
-            #[cfg(feature = "flocks")]
-            StayaLaw::Lattice | StayaLaw::GoalFlock | StayaLaw::Boids => flocks::law(self, law),
-            #[cfg(feature = "grid")]
-            StayaLaw::Route | StayaLaw::Formation | StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid => {
-                laws::law(self, law)
-            }
-            #[cfg(not(all(feature = "flocks", feature = "grid")))]
-            _ => Err(StayaStatus::NotBuilt),
-        }
-    }
-
-    pub(crate) fn layer(&self) -> Checked<Layer> {
-        let params = || {
-            positive(&[self.orca.horizon_s, self.orca.wall_horizon_s])?;
-            Ok((self.orca.params(), self.orca.inflation()))
-        };
-        let orca = |source| {
-            let (params, inflation) = params()?;
-            Ok(Layer::Orca(OrcaSafety::with_source(params, inflation, source)))
-        };
-        match StayaSafety::of(self.safety)? {
-            StayaSafety::None => Ok(Layer::None(Unguarded)),
-            StayaSafety::Orca => orca(Source::Formula),
-            #[cfg(feature = "table")]
-            StayaSafety::OrcaTable => orca(Source::Table),
-            #[cfg(feature = "space")]
-            StayaSafety::Fly => {
-                let (params, inflation) = params()?;
-                let source = InSpace { downwash: cast(self.orca.downwash) };
-                Ok(Layer::Fly(FlySafety::with_source(params, inflation, source)))
-            }
-            #[cfg(feature = "push-out")]
-            StayaSafety::PushOut => {
-                positive(&[self.push_out.min_distance_m])?;
-                Ok(Layer::PushOut(PushOutSafety::new(self.push_out.params()?)))
-            }
-            #[cfg(not(all(feature = "table", feature = "space", feature = "push-out")))]
-            _ => Err(StayaStatus::NotBuilt),
-        }
-    }
-
-    /// Refuses a tick or a speed for which the gaps between robots do not cover rounding.
-    pub(crate) fn check_rounding(&self, config: &AgentConfig<Number>, layer: &Layer) -> Checked<()> {
-        let is_in_space = self.safety == StayaSafety::Fly as u8;
-        match layer.inflation() {
-            Some(inflation) => {
-                config.check_rounding(inflation.growth_mps, is_in_space).map_err(|_| StayaStatus::Number)
-            }
-            None => Ok(()),
-        }
-    }
-
     pub(crate) fn speech(&self) -> Checked<Speech> {
         match StayaWire::of(self.wire)? {
             StayaWire::Postcard => Ok(Speech::Postcard(Postcard)),
@@ -312,10 +235,9 @@ impl StayaSetup {
     }
 }
 
-/// Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon
-/// each step, no inertia, no latency; lengths of other laws follow from the radius. `radius_m` is
-/// that of the ball around the body, `tick_us` the time between two steps. `staya_init` checks
-/// them.
+/// Fills a setup for robot `id` with defaults: the law "waypoint" at 0.5 m/s behind the layer "orca",
+/// a beacon each step, no inertia, no latency. `radius_m` is that of the ball around the body,
+/// `tick_us` the time between two steps. `staya_init` checks them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_setup_defaults(
     setup: *mut StayaSetup,
@@ -323,8 +245,5 @@ pub unsafe extern "C" fn staya_setup_defaults(
     radius_m: f32,
     tick_us: i32,
 ) -> StayaStatus {
-    answers!(|call| {
-        call.zeroed(setup)?.defaults(id, radius_m, tick_us);
-        Ok(())
-    })
+    answers!(|call| call.zeroed(setup)?.defaults(id, radius_m, tick_us))
 }

@@ -13,9 +13,9 @@ pub enum StayaStatus {
     Null = 1,
     /// A pointer is misaligned for its type; memory of agents and avoiders needs STAYA_ALIGN.
     Alignment = 2,
-    /// The memory is too small: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE.
+    /// The memory is too small: see STAYA_AGENT_SIZE and STAYA_AVOIDER_SIZE.
     MemorySize = 3,
-    /// This memory does not hold an agent or avoider: call `staya_init` or `staya_orca_init`.
+    /// This memory does not hold an agent or avoider: call `staya_init` or `staya_avoider_init`.
     NotThere = 4,
     /// The structure was not filled by `staya_setup_defaults` of this version of the header.
     Version = 5,
@@ -29,7 +29,7 @@ pub enum StayaStatus {
     NotBuilt = 9,
     /// The guidance law does not support this order.
     Task = 10,
-    /// The radius of the search is above STAYA_MAX_RADIUS.
+    /// `sight_cells` is 0, or above STAYA_MAX_RADIUS.
     Search = 11,
     /// There are more elements than fit.
     TooMany = 12,
@@ -41,29 +41,44 @@ pub enum StayaStatus {
     Unknown = 15,
     /// `staya_act` needs a `staya_hear` before.
     NotHeard = 16,
+    /// This build has no law or layer of this name, or the setup has chosen another one.
+    Law = 17,
+    /// The chosen law and layer do not have this row; fields of the setup are not rows.
+    Row = 18,
+    /// A row cannot have this value or word.
+    Range = 19,
+    /// A row without a default is not given: `staya_explain` names it.
+    Needed = 20,
+    /// Values or fields contradict each other: `staya_explain` says which.
+    Contradiction = 21,
 }
 
 /// The statuses with their names and texts.
-const TEXTS: [(StayaStatus, &CStr, &CStr); 17] = {
+const TEXTS: [(StayaStatus, &CStr, &CStr); 22] = {
     use StayaStatus::*;
     [
         (Ok, c"STAYA_STATUS_OK", c"it is done"),
         (Null, c"STAYA_STATUS_NULL", c"a pointer that is needed is null"),
         (Alignment, c"STAYA_STATUS_ALIGNMENT", c"a pointer is not aligned; memory needs STAYA_ALIGN"),
-        (MemorySize, c"STAYA_STATUS_MEMORY_SIZE", c"too little memory: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE"),
-        (NotThere, c"STAYA_STATUS_NOT_THERE", c"nothing is in this memory: call staya_init or staya_orca_init"),
+        (MemorySize, c"STAYA_STATUS_MEMORY_SIZE", c"too little memory: see STAYA_AGENT_SIZE and STAYA_AVOIDER_SIZE"),
+        (NotThere, c"STAYA_STATUS_NOT_THERE", c"nothing is in this memory: call staya_init or staya_avoider_init"),
         (Version, c"STAYA_STATUS_VERSION", c"call staya_setup_defaults of this version of the header first"),
         (NoRobot, c"STAYA_STATUS_NO_ROBOT", c"0 is not a robot id: use 1 and up"),
         (Number, c"STAYA_STATUS_NUMBER", c"a number that must be above 0, or finite, is not"),
         (Choice, c"STAYA_STATUS_CHOICE", c"a field that names one of several has another number"),
         (NotBuilt, c"STAYA_STATUS_NOT_BUILT", c"the library was built without it: see its features"),
         (Task, c"STAYA_STATUS_TASK", c"the guidance law has no use for this"),
-        (Search, c"STAYA_STATUS_SEARCH", c"the radius of the search is above STAYA_MAX_RADIUS"),
+        (Search, c"STAYA_STATUS_SEARCH", c"sight_cells is 0, or above STAYA_MAX_RADIUS"),
         (TooMany, c"STAYA_STATUS_TOO_MANY", c"more of them than there is room for"),
         (Shape, c"STAYA_STATUS_SHAPE", c"a window, a graph or a template makes no sense"),
         (Parameter, c"STAYA_STATUS_PARAMETER", c"no such parameter here, or a value that it cannot have"),
         (Unknown, c"STAYA_STATUS_UNKNOWN", c"there is no such name or number"),
         (NotHeard, c"STAYA_STATUS_NOT_HEARD", c"call staya_hear before staya_act"),
+        (Law, c"STAYA_STATUS_LAW", c"not a law or layer of this build, or not the chosen one: see staya_law"),
+        (Row, c"STAYA_STATUS_ROW", c"the law and the layer lack this row: see staya_law_row"),
+        (Range, c"STAYA_STATUS_RANGE", c"a row cannot have this value or word: see staya_law_row"),
+        (Needed, c"STAYA_STATUS_NEEDED", c"a row must be given: staya_explain names it"),
+        (Contradiction, c"STAYA_STATUS_CONTRADICTION", c"values contradict each other: see staya_explain"),
     ]
 };
 

@@ -1,15 +1,18 @@
 mod external;
 mod header;
+mod laws;
 mod misuse;
 mod steps;
 
 use crate::Number;
 use crate::agent::{STAYA_AGENT_SIZE, StayaAgent, StayaWaypoint, staya_init};
-use crate::choices::{StayaLaw, StayaMode};
+use crate::choices::StayaMode;
+use crate::chosen::{staya_choose_law, staya_choose_layer};
 use crate::external::{STAYA_CONTENT, StayaDecision, StayaMessage};
 use crate::io::{StayaInputs, StayaOutputs};
 use crate::setup::{StayaSetup, staya_setup_defaults};
 use crate::status::StayaStatus;
+use core::ffi::CStr;
 use core::mem::MaybeUninit;
 use core::ptr::null_mut;
 use staya_controller::agent::Outputs;
@@ -57,8 +60,19 @@ fn setup(id: u32) -> StayaSetup {
     }
 }
 
+/// A setup with this law behind this layer.
+fn with(id: u32, law: &CStr, layer: &CStr) -> StayaSetup {
+    let mut setup = setup(id);
+    // SAFETY: all pointers are valid.
+    unsafe {
+        assert_eq!(staya_choose_law(&mut setup, law.as_ptr()), StayaStatus::Ok);
+        assert_eq!(staya_choose_layer(&mut setup, layer.as_ptr()), StayaStatus::Ok);
+    }
+    setup
+}
+
 fn own_law(id: u32) -> StayaSetup {
-    StayaSetup { law: StayaLaw::External as u8, protocol: PROTOCOL, latency_us: TICK_US, ..setup(id) }
+    StayaSetup { protocol: PROTOCOL, latency_us: TICK_US, ..with(id, c"external", c"orca") }
 }
 
 fn nothing() -> (StayaInputs, StayaOutputs) {

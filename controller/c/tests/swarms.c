@@ -52,9 +52,8 @@ typedef struct Solid {
 } Solid;
 
 typedef struct Case {
-    const char *name;
-    uint8_t law, safety;
-    uint8_t robots, goals, solids;
+    const char *name, *law, *layer;
+    uint8_t robots, goals, solids, fades;
     uint16_t ticks;
     float max_speed_mps;
     const int32_t (*starts)[3];
@@ -77,18 +76,18 @@ static const int32_t REFERENCE[1][3] = {{1000, 0, 0}};
 static const int32_t GOALS[2][3] = {{9000, 4000, 0}, {9000, -4000, 0}};
 
 static const Case CASES[] = {
-    {"orca_analytic", STAYA_LAW_WAYPOINT, STAYA_SAFETY_ORCA, 5, 0, 0, 400, 0.5f, PENTAGON, ACROSS, {{0}}},
-    {"orca_template_2k", STAYA_LAW_WAYPOINT, STAYA_SAFETY_ORCA_TABLE, 5, 0, 0, 400, 0.5f, PENTAGON, ACROSS, {{0}}},
-    {"doorway", STAYA_LAW_WAYPOINT, STAYA_SAFETY_ORCA, 4, 0, 2, 400, 0.5f, ROOMS, ROOMS_ACROSS,
+    {"orca_analytic", "waypoint", "orca", 5, 0, 0, 0, 400, 0.5f, PENTAGON, ACROSS, {{0}}},
+    {"orca_template_2k", "waypoint", "template_2k", 5, 0, 0, 0, 400, 0.5f, PENTAGON, ACROSS, {{0}}},
+    {"doorway", "waypoint", "orca", 4, 0, 2, 1, 400, 0.5f, ROOMS, ROOMS_ACROSS,
      {{STAYA_SHAPE_WALL, {0, -9000, 0}, {0, -250}, 0}, {STAYA_SHAPE_WALL, {0, 250, 0}, {0, 9000}, 0}}},
-    {"fly", STAYA_LAW_WAYPOINT, STAYA_SAFETY_FLY, 5, 0, 2, 400, 0.5f, SPHERE, SPHERE_ACROSS,
+    {"fly", "waypoint", "fly", 5, 0, 2, 0, 400, 0.5f, SPHERE, SPHERE_ACROSS,
      {{STAYA_SHAPE_PLANE, {0, 0, 0}, {0, 0}, 0}, {STAYA_SHAPE_BALL, {0, 0, 1500}, {0, 0}, 200}}},
-    {"push_out", STAYA_LAW_WAYPOINT, STAYA_SAFETY_PUSH_OUT, 3, 0, 2, 400, 0.5f, CROSSING, CROSSED,
+    {"push_out", "waypoint", "push_out", 3, 0, 2, 0, 400, 0.5f, CROSSING, CROSSED,
      {{STAYA_SHAPE_BALL, {0, 0, 0}, {0, 0}, 300}, {STAYA_SHAPE_WALL, {-3000, 1900, 0}, {3000, 1900}, 0}}},
-    {"lattice", STAYA_LAW_LATTICE, STAYA_SAFETY_NONE, 5, 1, 1, 400, 1.0f, CROWD, REFERENCE,
+    {"lattice", "lattice", "none", 5, 1, 1, 0, 400, 1.0f, CROWD, REFERENCE,
      {{STAYA_SHAPE_BALL, {6000, 900, 0}, {0, 0}, 500}, {0}}},
-    {"goal_flock", STAYA_LAW_GOAL_FLOCK, STAYA_SAFETY_PUSH_OUT, 5, 2, 0, 400, 1.0f, CROWD, GOALS, {{0}}},
-    {"boids", STAYA_LAW_BOIDS, STAYA_SAFETY_NONE, 5, 0, 0, 400, 1.0f, CROWD, NULL, {{0}}},
+    {"goal_flock", "goal_flock", "push_out", 5, 2, 0, 0, 400, 1.0f, CROWD, GOALS, {{0}}},
+    {"boids", "boids", "none", 5, 0, 0, 0, 400, 1.0f, CROWD, NULL, {{0}}},
 };
 
 /* A robot with its body, and the bytes that it sends. */
@@ -114,37 +113,49 @@ static void must(StayaStatus status)
     }
 }
 
+static int is(const char *text, const char *other)
+{
+    while (*text != 0 && *text == *other) {
+        text++;
+        other++;
+    }
+    return *text == *other;
+}
+
+/* A value of a law or a layer. */
+typedef struct Row {
+    const char *kind, *name;
+    float value;
+} Row;
+
+static const Row ROWS[] = {
+    {"orca", "horizon_s", 2.0f}, {"template_2k", "horizon_s", 2.0f}, {"fly", "horizon_s", 2.0f},
+    {"orca", "inflation_mps", 0.5f}, {"template_2k", "inflation_mps", 0.5f}, {"fly", "inflation_mps", 0.5f},
+    {"orca", "inflation_m", 0.3f}, {"template_2k", "inflation_m", 0.3f}, {"fly", "inflation_m", 0.3f},
+    {"lattice", "spacing_m", 1.0f}, {"lattice", "c1_alpha", 1.0f}, {"lattice", "c1_beta", 4.0f},
+    {"lattice", "c1_gamma", 0.5f},
+    {"goal_flock", "goal_flock.min_distance_m", 0.5f}, {"goal_flock", "tolerance_m", 1.0f},
+    {"boids", "crowded_m", 0.3f}, {"boids", "closest_m", 30.0f}, {"boids", "max_turn", 0.05f},
+    {"boids", "max_turn_away", 0.02f},
+};
+
 static void set_up(const Case *scene, uint32_t id)
 {
     must(staya_setup_defaults(&setup, id, 0.15f, TICK_US));
     setup.seed = 11;
+    setup.common_seed = 3;
     setup.latency_us = TICK_US; /* beacons are one step old */
-    setup.law = scene->law;
-    setup.safety = scene->safety;
-    setup.speed_mps = 0.5f;
+    setup.speed_mps = is(scene->law, "goal_flock") ? 1.0f : 0.5f;
     setup.tolerance_m = 0.03f;
-    if (scene->law == STAYA_LAW_LATTICE) {
-        must(staya_lattice_defaults(&setup.lattice, 1.0f));
-        setup.lattice.alpha_position = 1.0f;
-        setup.lattice.alpha_velocity = 2.0f;
-        setup.lattice.beta_position = 4.0f;
-        setup.lattice.beta_velocity = 4.0f;
-        setup.lattice.gamma_position = 0.5f;
-        setup.lattice.gamma_velocity = 1.41421356f;
-    } else if (scene->law == STAYA_LAW_GOAL_FLOCK) {
-        setup.goal_flock.seed = 3;
-        setup.speed_mps = 1.0f;
-        setup.goal_flock.min_distance_m = 0.5f;
-        setup.goal_flock.neighborhood_m = 2.0f;
-        setup.goal_flock.arrival_m = 1.0f;
-        setup.push_out.min_distance_m = 0.35f;
-    } else if (scene->law == STAYA_LAW_BOIDS) {
-        setup.boids.crowded_m = 0.3f;
-        setup.boids.closest_m = 30.0f;
-        setup.boids.max_turn_rad = 0.05f;
-        setup.boids.max_turn_away_rad = 0.02f;
-    } else {
-        setup.push_out.min_distance_m = 0.4f;
+    must(staya_choose_law(&setup, scene->law));
+    must(staya_choose_layer(&setup, scene->layer));
+    for (size_t i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        if (is(ROWS[i].kind, scene->law) || is(ROWS[i].kind, scene->layer)) {
+            must(staya_set(&setup, ROWS[i].name, ROWS[i].value));
+        }
+    }
+    if (is(scene->layer, "push_out")) {
+        must(staya_set(&setup, "push_out.min_distance_m", is(scene->law, "goal_flock") ? 0.35f : 0.4f));
     }
 }
 
@@ -158,19 +169,19 @@ static void start(const Case *scene)
         robot->said_bytes = robot->next_bytes = 0;
         for (int axis = 0; axis < 3; axis++) {
             robot->position_mm[axis] = scene->starts[i][axis];
-            robot->velocity_mps[axis] = scene->law == STAYA_LAW_BOIDS && axis < 2 ? WAYS[i][axis] : 0.0f;
+            robot->velocity_mps[axis] = is(scene->law, "boids") && axis < 2 ? WAYS[i][axis] : 0.0f;
         }
         uint8_t goals = scene->goals;
-        if (scene->law == STAYA_LAW_WAYPOINT) {
+        if (is(scene->law, "waypoint")) {
             goals = 1;
         }
         for (uint8_t goal = 0; goal < goals; goal++) {
             StayaWaypoint waypoint = {{0, 0, 0}, {0.0f, 0.0f, 0.0f}, 0};
-            const int32_t *place = scene->targets[scene->law == STAYA_LAW_WAYPOINT ? i : goal];
+            const int32_t *place = scene->targets[is(scene->law, "waypoint") ? i : goal];
             for (int axis = 0; axis < 3; axis++) {
                 waypoint.position_mm[axis] = place[axis];
             }
-            if (scene->law == STAYA_LAW_LATTICE) {
+            if (is(scene->law, "lattice")) {
                 waypoint.velocity_mps[0] = 0.25f;
             }
             must(staya_assign_waypoint(robot->agent, goal, &waypoint));
@@ -213,14 +224,41 @@ static void append(uint8_t *to, size_t *used, size_t room, const uint8_t *from, 
     }
 }
 
-/* The radio: as many whole frames as fit; each ends with a zero byte. */
-static void append_frames(uint8_t *to, size_t *used, size_t room, const uint8_t *from, size_t count)
+static uint64_t mix(uint64_t z)
+{
+    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return z ^ (z >> 31);
+}
+
+#define GOLDEN UINT64_C(0x9E3779B97F4A7C15)
+
+/* The controller's random numbers (controller/src/rand.rs) with the radio's seed of hil/cases. */
+static uint64_t keyed(uint32_t purpose, uint32_t way, uint32_t tick)
+{
+    const uint64_t seed = mix(7 + GOLDEN);
+    return mix((mix((seed ^ ((uint64_t)purpose << 32 | way)) + GOLDEN) ^ tick) + GOLDEN);
+}
+
+static int happens(uint64_t *random, uint32_t chance)
+{
+    *random += GOLDEN;
+    return (uint32_t)(mix(*random) >> 32) < chance;
+}
+
+/* The radio: as many whole frames as fit; each ends with a zero byte. With `random`, one in 16 is
+   lost; each draws four numbers there. */
+static void append_frames(uint8_t *to, size_t *used, size_t room, const uint8_t *from, size_t count, uint64_t *random)
 {
     size_t begin = 0;
     for (size_t i = 0; i < count; i++) {
         if (from[i] == 0) {
-            append(to, used, room, from + begin, i + 1 - begin);
+            const int is_lost = random != NULL && happens(random, UINT32_MAX >> 4);
+            append(to, used, room, from + begin, is_lost ? 0 : i + 1 - begin);
             begin = i + 1;
+            for (int other = 0; random != NULL && other < 3; other++) {
+                happens(random, 0);
+            }
         }
     }
 }
@@ -231,8 +269,11 @@ static void step(const Case *scene, uint8_t own, uint32_t tick)
     Robot *robot = &robots[own];
     size_t heard = 0;
     for (uint8_t other = 0; other < scene->robots; other++) {
-        if (other != own) {
-            append_frames(inbox, &heard, INBOX, robots[other].said, robots[other].said_bytes);
+        const uint32_t way = (uint32_t)other << 8 | own;
+        uint64_t link = keyed(0x66616465 /* "fade" */, way, tick / 20), random = keyed(0x63616972 /* "cair" */, way, tick);
+        if (other != own && !(scene->fades && happens(&link, UINT32_MAX / 5))) {
+            append_frames(inbox, &heard, INBOX, robots[other].said, robots[other].said_bytes,
+                          scene->fades ? &random : NULL);
         }
     }
     for (uint8_t i = 0; i < scene->solids; i++) {
@@ -251,7 +292,7 @@ static void step(const Case *scene, uint8_t own, uint32_t tick)
     must(staya_step(robot->agent, &inputs, &out));
     hash_outputs(&out);
     robot->next_bytes = 0;
-    append_frames(robot->next, &robot->next_bytes, SAID, out.outbox, out.outbox_bytes);
+    append_frames(robot->next, &robot->next_bytes, SAID, out.outbox, out.outbox_bytes, NULL);
     for (int axis = 0; axis < 3; axis++) {
         robot->velocity_mps[axis] = out.command == STAYA_COMMAND_VELOCITY ? out.velocity_mps[axis] : 0.0f;
     }

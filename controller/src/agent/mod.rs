@@ -115,15 +115,16 @@ mod tests;
 
 pub use crate::law::{
     Action, AnySurroundings, Around, BadInput, CellFrame, CellState, Contradiction, Decision, Goals, InCell, InCells,
-    InPlane, KinematicState, Known, Law, MessageOf, Motion, OfAnotherLaw, OnGrid, OrderOf, Outgoing, PayloadOf,
-    Protocol, Radio, Report, Scene, Settings, Status, Surroundings, Tools, View, Wait, WrongTask,
+    InPlane, KinematicState, Known, Law, MakesLaw, MessageOf, Motion, OfAnotherLaw, OnGrid, OrderOf, Outgoing,
+    PayloadOf, Protocol, Radio, Report, Scene, Settings, SettingsOfLaw, Status, Surroundings, Tools, View, Wait,
+    WrongTask,
 };
 pub use crate::laws::any::{Large, dispatch};
-pub use crate::laws::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, OtherPayload, Raw};
+pub use crate::laws::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, InAny, OtherPayload, Raw};
 pub use crate::laws::boids::{BoidsGuidance, BoidsSettings};
 pub use crate::laws::cells::{
     CellFollower, FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace,
-    MAX_TEMPLATE, PartError, SharedMap, TEMPLATE_PART, TemplateAssembler, TemplatePart,
+    MAX_TEMPLATE, OverCells, PartError, SharedMap, TEMPLATE_PART, TemplateAssembler, TemplatePart,
 };
 pub use crate::laws::external::{External, Incoming};
 pub use crate::laws::formation::{FormationGuidance, FormationInPlane, FormationSettings};
@@ -134,14 +135,15 @@ pub use crate::laws::list::{AnyLaw, LawSettings};
 pub use crate::laws::route::{RouteGuidance, RouteSettings};
 pub use crate::laws::waypoint::{WAYPOINTS, Waypoint, WaypointGuidance, WaypointOrder, WaypointSettings, Waypoints};
 pub use crate::safety::{
-    AnyHalfPlanes, AnySafety, FlySafety, OrcaSafety, PushOutSafety, Safety, SafetyInput, Unguarded,
+    AnyHalfPlanes, AnySafety, FlySafety, FlySettings, LayerSettings, MakesLayer, OrcaSafety, OrcaSettings,
+    PushOutSafety, PushOutSettings, Safety, SafetyInput, TableSettings, Unguarded, UnguardedSettings,
 };
 pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, OUTBOX, Outputs, Refused};
 pub use parameter::parameters;
 pub use perception::{Perception, RadioOnly};
-pub use setup::{AnyAgent, SafetyKind, SafetySetup, Setup, Task};
+pub use setup::{AnyAgent, Setup, Task};
 
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};

@@ -1,6 +1,6 @@
 //! Assigns a host's task to an agent.
 
-use super::{Agent, AnyOrder, GridOrder, Law, OrderOf, Perception, Safety, Task, WaypointOrder, WrongTask};
+use super::{Agent, AnyOrder, GridOrder, InAny, Law, Perception, Safety, Task, WaypointOrder, WrongTask};
 use crate::scalar::Scalar;
 use crate::wire::Wire;
 
@@ -11,9 +11,9 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
     /// [`WrongTask`] if the law cannot perform all of it.
     pub fn assign(&mut self, task: &Task) -> Result<(), WrongTask>
     where
-        OrderOf<L, S>: TryFrom<AnyOrder>,
+        L::Protocol: InAny,
     {
-        let mut give = |order: AnyOrder| order.try_into().is_ok_and(|order| self.order(&order));
+        let mut give = |order| L::Protocol::order_in(&order).is_some_and(|order| self.order(&order));
         let is_of_use = match task {
             Task::Cell(goal) => give(AnyOrder::Grid(GridOrder::Goal(*goal))),
             Task::Waypoints(waypoints) => waypoints

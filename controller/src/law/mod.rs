@@ -7,7 +7,8 @@ mod wait;
 
 pub(crate) use protocol::Queued;
 pub use protocol::{OfAnotherLaw, Outgoing, Protocol, Radio};
-pub use settings::{Around, Contradiction, Goals, Motion, Settings};
+pub(crate) use settings::settings;
+pub use settings::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
 pub use surroundings::{
     AnySurroundings, CellFrame, CellState, InCell, InCells, InPlane, KinematicState, OnGrid, Surroundings,
 };

@@ -1,14 +1,19 @@
 //! Law chosen at run time, for simulators and configurable firmware.
 
-use super::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, FromPayload};
+use super::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, InAny};
+#[cfg(feature = "host")]
+use crate::grid::Cell;
 use crate::grid::Dir;
-use crate::law::{
-    AnySurroundings, BadInput, Decision, Known, Law, MessageOf, OrderOf, PayloadOf, Protocol, Radio, Tools, View,
-};
+use crate::law::{AnySurroundings, BadInput, Decision, Known, Law, Radio, Tools, View};
+#[cfg(feature = "host")]
+use crate::law::{MessageOf, OrderOf, PayloadOf, Report};
 use crate::neighbor::Neighbor;
+#[cfg(feature = "host")]
+use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
+use core::marker::PhantomData;
 
 /// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
 #[cfg(not(feature = "host"))]
@@ -26,20 +31,62 @@ pub(crate) fn large<G>(law: G) -> Large<G> {
     Large::new(law)
 }
 
-#[doc(hidden)]
-pub const fn inside<G>(law: &Large<G>) -> &G {
-    law
-}
+/// A large law is a law, wherever it is.
+#[cfg(feature = "host")]
+impl<S: Scalar, G: Law<S>> Law<S> for Large<G> {
+    type Surroundings<'a> = G::Surroundings<'a>;
+    type Protocol = G::Protocol;
+    type Workspace = G::Workspace;
 
-#[doc(hidden)]
-pub const fn inside_mut<G>(law: &mut Large<G>) -> &mut G {
-    law
+    fn decide(
+        &mut self,
+        view: &View<'_, S, G::Protocol>,
+        here: &G::Surroundings<'_>,
+        tools: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput> {
+        let Tools { rng, radio, workspace } = tools;
+        (**self).decide(view, here, Tools { rng, radio, workspace })
+    }
+
+    fn payload(
+        &mut self,
+        here: &G::Surroundings<'_>,
+        heading: Dir,
+        radio: &mut Radio<'_, G::Protocol>,
+    ) -> PayloadOf<G, S> {
+        (**self).payload(here, heading, radio)
+    }
+
+    fn receive(&mut self, from: RobotId, message: &MessageOf<G, S>, radio: &mut Radio<'_, G::Protocol>) -> bool {
+        (**self).receive(from, message, radio)
+    }
+
+    fn order(&mut self, order: &OrderOf<G, S>) -> bool {
+        (**self).order(order)
+    }
+
+    fn needs(&self, id: RobotId) -> bool {
+        (**self).needs(id)
+    }
+
+    fn report(&self) -> Report {
+        (**self).report()
+    }
+
+    fn expects(&self, id: RobotId) -> Option<Cell> {
+        (**self).expects(id)
+    }
+
+    fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        (**self).parameters(visit);
+    }
 }
 
 /// Declares an enum of laws that is itself a law with [`AnyProtocol`]: one memory for any of them.
 ///
 /// `of`: its scalar type. `in`: its scratch memory, which is `AsMut` of that of each law. Then the
-/// generics of the `impl`, with bounds and as arguments. A law in [`Large`] is marked `large`.
+/// generics of the `impl`, with bounds and as arguments. The line `Drives(WaypointGuidance<f32>)`
+/// becomes a variant, and an arm of each method of [`Law`] that calls the law inside.
 ///
 /// ```
 /// use staya_controller::agent::{CELLS, GridWorkspace, Law, RouteGuidance, WaypointGuidance};
@@ -61,7 +108,7 @@ macro_rules! laws {
         $(#[$about:meta])*
         $visible:vis enum $name:ident[$($declared:tt)*] of $number:ty,
         in $workspace:ty, [$($bounds:tt)*] for [$($arguments:tt)*] {
-            $($(#[$attribute:meta])* $variant:ident($law:ty $(, $large:ident)?)),+ $(,)?
+            $($(#[$attribute:meta])* $variant:ident($law:ty)),+ $(,)?
         }
     ) => {
         $(#[$about])*
@@ -85,7 +132,7 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => $crate::agent::dispatch::decide(
-                        $crate::laws!(@inside_mut law $($large)?), view, here, sends, workspace.as_mut(),
+                        law, view, here, sends, workspace.as_mut(),
                     ),
                 )+}
             }
@@ -99,7 +146,7 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => $crate::agent::dispatch::payload(
-                        $crate::laws!(@inside_mut law $($large)?), here, heading, radio,
+                        law, here, heading, radio,
                     ),
                 )+}
             }
@@ -114,7 +161,7 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => $crate::agent::dispatch::receive::<$number, _>(
-                        $crate::laws!(@inside_mut law $($large)?), from, message, radio,
+                        law, from, message, radio,
                     ),
                 )+}
             }
@@ -124,7 +171,7 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => $crate::agent::dispatch::order::<$number, _>(
-                        $crate::laws!(@inside_mut law $($large)?), order,
+                        law, order,
                     ),
                 )+}
             }
@@ -133,7 +180,7 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => {
-                        $crate::agent::Law::<$number>::needs($crate::laws!(@inside law $($large)?), id)
+                        $crate::agent::Law::<$number>::needs(law, id)
                     }
                 )+}
             }
@@ -142,7 +189,7 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => {
-                        $crate::agent::Law::<$number>::report($crate::laws!(@inside law $($large)?))
+                        $crate::agent::Law::<$number>::report(law)
                     }
                 )+}
             }
@@ -151,7 +198,7 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => {
-                        $crate::agent::Law::<$number>::expects($crate::laws!(@inside law $($large)?), id)
+                        $crate::agent::Law::<$number>::expects(law, id)
                     }
                 )+}
             }
@@ -160,32 +207,28 @@ macro_rules! laws {
                 match self {$(
                     $(#[$attribute])*
                     Self::$variant(law) => {
-                        $crate::agent::Law::<$number>::parameters($crate::laws!(@inside_mut law $($large)?), visit)
+                        $crate::agent::Law::<$number>::parameters(law, visit)
                     }
                 )+}
             }
         }
     };
-    (@inside $law:ident) => { $law };
-    (@inside $law:ident large) => { $crate::agent::dispatch::inside($law) };
-    (@inside_mut $law:ident) => { $law };
-    (@inside_mut $law:ident large) => { $crate::agent::dispatch::inside_mut($law) };
 }
 
 /// The robots of an enum of laws as one of its laws knows them.
-struct Narrow<'a, S>(&'a dyn Known<S, AnyPayload>);
+struct Narrow<'a, S, P>(&'a dyn Known<S, AnyPayload>, PhantomData<P>);
 
-impl<S: Scalar, Q: TryFrom<AnyPayload>> Known<S, Q> for Narrow<'_, S> {
+impl<S: Scalar, P: InAny> Known<S, P::Payload> for Narrow<'_, S, P> {
     fn count(&self) -> usize {
         self.0.count()
     }
 
-    fn at(&self, index: usize) -> Option<Neighbor<S, Q>> {
-        self.0.at(index).map(|robot| robot.map(|payload| payload.try_into().ok()))
+    fn at(&self, index: usize) -> Option<Neighbor<S, P::Payload>> {
+        self.0.at(index).map(|robot| robot.map(P::payload))
     }
 
-    fn find(&self, id: RobotId) -> Option<Neighbor<S, Q>> {
-        self.0.find(id).map(|robot| robot.map(|payload| payload.try_into().ok()))
+    fn find(&self, id: RobotId) -> Option<Neighbor<S, P::Payload>> {
+        self.0.find(id).map(|robot| robot.map(P::payload))
     }
 }
 
@@ -194,59 +237,45 @@ impl<S: Scalar, Q: TryFrom<AnyPayload>> Known<S, Q> for Narrow<'_, S> {
 pub mod dispatch {
     use super::*;
 
-    pub use super::{inside, inside_mut};
-
     /// Decides.
     ///
     /// # Errors
     /// [`BadInput`] also for surroundings of another kind.
-    pub fn decide<S: Scalar, L: Law<S>>(
+    pub fn decide<S: Scalar, L: Law<S, Protocol: InAny>>(
         law: &mut L,
         view: &View<'_, S, AnyProtocol>,
         here: &AnySurroundings<'_, S>,
         (rng, radio): (&mut Rng, &mut Radio<'_, AnyProtocol>),
         workspace: &mut L::Workspace,
-    ) -> Result<Decision<S>, BadInput>
-    where
-        PayloadOf<L, S>: TryFrom<AnyPayload>,
-    {
+    ) -> Result<Decision<S>, BadInput> {
         let here = L::Surroundings::try_from(*here).map_err(|_| BadInput)?;
-        let known = Narrow(view.known);
+        let known = Narrow::<S, L::Protocol>(view.known, PhantomData);
         law.decide(&view.with(&known), &here, Tools { rng, radio: radio.of(), workspace })
     }
 
     /// Asks for the payload.
-    pub fn payload<S: Scalar, L: Law<S>>(
+    pub fn payload<S: Scalar, L: Law<S, Protocol: InAny>>(
         law: &mut L,
         here: &AnySurroundings<'_, S>,
         heading: Dir,
         radio: &mut Radio<'_, AnyProtocol>,
-    ) -> AnyPayload
-    where
-        AnyPayload: FromPayload<PayloadOf<L, S>>,
-    {
+    ) -> AnyPayload {
         let Ok(here) = L::Surroundings::try_from(*here) else { return AnyPayload::default() };
-        AnyPayload::from_payload(<L::Protocol as Protocol>::ID, law.payload(&here, heading, &mut radio.of()))
+        L::Protocol::wrap(law.payload(&here, heading, &mut radio.of()))
     }
 
     /// Gives a message.
-    pub fn receive<S: Scalar, L: Law<S>>(
+    pub fn receive<S: Scalar, L: Law<S, Protocol: InAny>>(
         law: &mut L,
         from: RobotId,
         message: &AnyMessage,
         radio: &mut Radio<'_, AnyProtocol>,
-    ) -> bool
-    where
-        for<'a> &'a MessageOf<L, S>: TryFrom<&'a AnyMessage>,
-    {
-        <&MessageOf<L, S>>::try_from(message).is_ok_and(|message| law.receive(from, message, &mut radio.of()))
+    ) -> bool {
+        L::Protocol::message(message).is_some_and(|message| law.receive(from, &message, &mut radio.of()))
     }
 
     /// Gives an order.
-    pub fn order<S: Scalar, L: Law<S>>(law: &mut L, order: &AnyOrder) -> bool
-    where
-        for<'a> &'a OrderOf<L, S>: TryFrom<&'a AnyOrder>,
-    {
-        <&OrderOf<L, S>>::try_from(order).is_ok_and(|order| law.order(order))
+    pub fn order<S: Scalar, L: Law<S, Protocol: InAny>>(law: &mut L, order: &AnyOrder) -> bool {
+        L::Protocol::order_in(order).is_some_and(|order| law.order(&order))
     }
 }

@@ -2,9 +2,10 @@
 
 use super::cells::{Grid, GridMessage, GridOrder, GridPayload};
 use super::waypoint::{WaypointOrder, Waypoints};
-use crate::law::{OfAnotherLaw, Protocol};
+use crate::law::Protocol;
 use crate::time::Instant;
-use crate::wire::{Bytes, Content, MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD, Never, ProtocolId};
+use crate::wire::{Bytes, Content, MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD, ProtocolId};
+use core::any::Any;
 use serde::{Deserialize, Serialize};
 
 /// The protocol of an enum of built-in laws: each law speaks its own.
@@ -70,27 +71,92 @@ impl Default for AnyPayload {
     }
 }
 
-/// Made of the payload of one law of an enum.
-pub trait FromPayload<T> {
-    /// Wraps the payload of a law with protocol `own`.
-    fn from_payload(own: ProtocolId, payload: T) -> Self;
-}
+/// A protocol whose values an enum of laws can carry. For one of users: `impl InAny for Bids {}`.
+pub trait InAny: Protocol {
+    /// Returns the payload as one of any law.
+    fn wrap(payload: Self::Payload) -> AnyPayload {
+        let encoded = payload.encode::<MAX_PAYLOAD>(Self::ID);
+        encoded.and_then(|(id, bytes)| AnyPayload::decode(ProtocolId::NONE, id, &bytes)).unwrap_or_default()
+    }
 
-impl FromPayload<()> for AnyPayload {
-    fn from_payload(own: ProtocolId, (): ()) -> Self {
-        Self::Empty(own)
+    /// Returns the payload, if it is one of this protocol.
+    fn payload(any: AnyPayload) -> Option<Self::Payload> {
+        match any {
+            AnyPayload::Empty(id) => Content::decode(Self::ID, id, &[]),
+            AnyPayload::Grid(_) => None,
+            AnyPayload::Other(other) => Content::decode(Self::ID, other.id, other.bytes()),
+        }
+    }
+
+    /// Returns the message, if it is one of this protocol.
+    fn message(any: &AnyMessage) -> Option<Self::Message> {
+        match any {
+            AnyMessage::Grid(_) => None,
+            AnyMessage::Other(raw) => Content::decode(Self::ID, raw.id, &raw.bytes),
+        }
+    }
+
+    /// Returns the order, if it is one of this protocol.
+    fn order_in(any: &AnyOrder) -> Option<Self::Order> {
+        match any {
+            AnyOrder::Grid(order) => same(order),
+            AnyOrder::Waypoint(order) => same(order),
+            AnyOrder::Other(raw) => Content::decode(Self::ID, raw.id, &raw.bytes),
+        }
     }
 }
 
-impl FromPayload<GridPayload> for AnyPayload {
-    fn from_payload(_: ProtocolId, payload: GridPayload) -> Self {
-        Self::Grid(payload)
+/// The value, if it has this type.
+fn same<T: 'static, U: Clone + 'static>(value: &T) -> Option<U> {
+    (value as &dyn Any).downcast_ref().cloned()
+}
+
+/// Reads the payloads of all laws that say nothing.
+fn nothing(any: AnyPayload) -> Option<()> {
+    matches!(any, AnyPayload::Empty(_)).then_some(())
+}
+
+impl InAny for () {
+    fn payload(any: AnyPayload) -> Option<()> {
+        nothing(any)
     }
 }
 
-impl FromPayload<Self> for AnyPayload {
-    fn from_payload(_: ProtocolId, payload: Self) -> Self {
+impl InAny for Waypoints {
+    fn payload(any: AnyPayload) -> Option<()> {
+        nothing(any)
+    }
+}
+
+impl InAny for Grid {
+    fn wrap(payload: GridPayload) -> AnyPayload {
+        AnyPayload::Grid(payload)
+    }
+
+    fn payload(any: AnyPayload) -> Option<GridPayload> {
+        if let AnyPayload::Grid(payload) = any { Some(payload) } else { None }
+    }
+
+    fn message(any: &AnyMessage) -> Option<GridMessage> {
+        if let AnyMessage::Grid(message) = any { Some(message.clone()) } else { None }
+    }
+}
+
+impl InAny for AnyProtocol {
+    fn wrap(payload: AnyPayload) -> AnyPayload {
         payload
+    }
+
+    fn payload(any: AnyPayload) -> Option<AnyPayload> {
+        Some(any)
+    }
+
+    fn message(any: &AnyMessage) -> Option<AnyMessage> {
+        Some(any.clone())
+    }
+
+    fn order_in(any: &AnyOrder) -> Option<AnyOrder> {
+        Some(any.clone())
     }
 }
 
@@ -206,74 +272,20 @@ impl Content for AnyOrder {
     }
 }
 
-macro_rules! one_of {
-    ($any:ident { $($variant:ident($one:ty)),+ }) => {$(
-        impl From<$one> for $any {
-            fn from(one: $one) -> Self {
-                Self::$variant(one)
-            }
-        }
-
-        impl TryFrom<$any> for $one {
-            type Error = OfAnotherLaw;
-            fn try_from(any: $any) -> Result<Self, OfAnotherLaw> {
-                match any {
-                    $any::$variant(one) => Ok(one),
-                    _ => Err(OfAnotherLaw),
-                }
-            }
-        }
-
-        impl<'a> TryFrom<&'a $any> for &'a $one {
-            type Error = OfAnotherLaw;
-            fn try_from(any: &'a $any) -> Result<Self, OfAnotherLaw> {
-                match any {
-                    $any::$variant(one) => Ok(one),
-                    _ => Err(OfAnotherLaw),
-                }
-            }
-        }
-    )+};
-}
-
-impl TryFrom<AnyPayload> for GridPayload {
-    type Error = OfAnotherLaw;
-    fn try_from(any: AnyPayload) -> Result<Self, OfAnotherLaw> {
-        if let AnyPayload::Grid(payload) = any { Ok(payload) } else { Err(OfAnotherLaw) }
+impl From<GridOrder> for AnyOrder {
+    fn from(order: GridOrder) -> Self {
+        Self::Grid(order)
     }
 }
 
-one_of!(AnyMessage { Grid(GridMessage) });
-one_of!(AnyOrder { Grid(GridOrder), Waypoint(WaypointOrder) });
-
-impl TryFrom<AnyPayload> for () {
-    type Error = OfAnotherLaw;
-    fn try_from(any: AnyPayload) -> Result<Self, OfAnotherLaw> {
-        if matches!(any, AnyPayload::Empty(_)) { Ok(()) } else { Err(OfAnotherLaw) }
+impl From<WaypointOrder> for AnyOrder {
+    fn from(order: WaypointOrder) -> Self {
+        Self::Waypoint(order)
     }
 }
 
-impl From<Never> for AnyMessage {
-    fn from(never: Never) -> Self {
-        match never {}
+impl From<GridMessage> for AnyMessage {
+    fn from(message: GridMessage) -> Self {
+        Self::Grid(message)
     }
 }
-
-macro_rules! never {
-    ($($any:ty),+) => {$(
-        impl TryFrom<$any> for Never {
-            type Error = OfAnotherLaw;
-            fn try_from(_: $any) -> Result<Self, OfAnotherLaw> {
-                Err(OfAnotherLaw)
-            }
-        }
-
-        impl<'a> TryFrom<&'a $any> for &'a Never {
-            type Error = OfAnotherLaw;
-            fn try_from(_: &'a $any) -> Result<Self, OfAnotherLaw> {
-                Err(OfAnotherLaw)
-            }
-        }
-    )+};
-}
-never!(AnyMessage, AnyOrder);

@@ -42,7 +42,7 @@ pub use avoider::{Analytic, Avoider, HalfSpaces, InSpace};
 pub(crate) use deadlock::detour;
 pub use dimension::{Dimension, HalfPlane, HalfSpace, MovingBall};
 pub use linear_program::{Solution, solve};
-pub use params::{AvoidParams, DOWNWASH, DeadlockParams, Params};
+pub use params::{AvoidParams, DeadlockParams, Params};
 pub use plane::half_plane;
 pub use space::half_space;
 pub use velocity_obstacle::VelocityObstacle;

@@ -1,4 +1,4 @@
-use crate::parameters::{BY_BODY, Parameter, row};
+use crate::parameters::{BY_BODY, row};
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
 
@@ -72,14 +72,10 @@ impl<S: Scalar> AvoidParams<S> {
     }
 }
 
-/// Vertical separation in space over the horizontal one.
-pub const DOWNWASH: Parameter =
-    row("downwash", "ORCA_DOWNWASH", "", [1.0, 10.0], "in space: vertical separation over the horizontal one");
-
 crate::parameters! {
     impl[S: Scalar] AvoidParams<S> {
-        row("horizon_s", "ORCA_HORIZON_S", "s", [0.01, 60.0], "look-ahead for robots").depends(BY_BODY)
-            => horizon_s,
+        row("horizon_s", "ORCA_HORIZON_S", "s", [0.01, 60.0], "time ahead without a collision with a robot")
+            .depends(BY_BODY) => horizon_s,
         row("wall_horizon_s", "ORCA_WALL_S", "s", [0.01, 60.0], "time ahead without a collision with an obstacle")
             => wall_horizon_s,
         row("share", "ORCA_SHARE", "", [0.0, 1.0], "own share of a correction") => share,

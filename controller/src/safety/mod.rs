@@ -1,14 +1,18 @@
 //! The last layer before the body: turns the desired velocity into a safe one.
 
-mod any;
+mod half_planes;
+pub(crate) mod list;
 mod orca;
 mod push_out;
+mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use any::{AnyHalfPlanes, AnySafety};
+pub use half_planes::AnyHalfPlanes;
+pub use list::{AnySafety, LayerSettings};
 pub use orca::{FlySafety, OrcaSafety};
 pub use push_out::PushOutSafety;
+pub use settings::{FlySettings, MakesLayer, OrcaSettings, PushOutSettings, TableSettings, UnguardedSettings};
 
 use crate::body::Body;
 use crate::geom::Vec3;

@@ -74,9 +74,9 @@ type Orca<P = AnyHalfPlanes> = OrcaSafety<f64, 8, P>;
 fn all() -> [AnySafety<f64, 8>; 5] {
     let params = AvoidParams::default();
     [
-        AnySafety::Unguarded(Unguarded),
+        AnySafety::None(Unguarded),
         AnySafety::Orca(OrcaSafety::with_source(params, INFLATION, AnyHalfPlanes::Analytic)),
-        AnySafety::Orca(OrcaSafety::with_source(params, INFLATION, AnyHalfPlanes::Template2k)),
+        AnySafety::Template2k(OrcaSafety::with_source(params, INFLATION, AnyHalfPlanes::Template2k)),
         AnySafety::Fly(OrcaSafety::with_source(params, INFLATION, InSpace { downwash: 2.5 })),
         AnySafety::PushOut(push_out()),
     ]

@@ -48,7 +48,7 @@ impl ProtocolId {
 /// assert_eq!(Bid::decode(own, id, &bytes), Some(bid));
 /// assert_eq!(Bid::decode(ProtocolId(65), id, &bytes), None);
 /// ```
-pub trait Content: Clone + Debug + Serialize + DeserializeOwned {
+pub trait Content: Clone + Debug + Serialize + DeserializeOwned + 'static {
     /// Whether there are such values; the code for others is not linked.
     const EXISTS: bool = true;
 

@@ -6,8 +6,8 @@ use crate::refusal::Refusal;
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, AnyOrder, AnySurroundings, Command, ImplausibleCounts, InCell, InCells, InPlane, Inputs, KinematicState,
-    Law, OnGrid, Outputs, Protocol, Refused, Safety, Setup, Task, Wait,
+    Agent, AnySurroundings, Command, ImplausibleCounts, InAny, InCell, InCells, InPlane, Inputs, KinematicState, Law,
+    OnGrid, Outputs, Refused, Safety, Setup, Task, Wait,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -107,7 +107,7 @@ impl<S: Scalar, G: Law<S>, A, W, const N: usize, const O: usize> Body<S, G, A, W
 impl<S, G, A, W, const N: usize, const O: usize> Body<S, G, A, W, N, O>
 where
     S: Scalar,
-    G: Law<S, Protocol: Protocol<Order: TryFrom<AnyOrder>>> + Serialize,
+    G: Law<S, Protocol: InAny> + Serialize,
     A: Safety<S> + Serialize,
     W: Wire + Serialize,
 {

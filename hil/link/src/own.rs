@@ -7,9 +7,7 @@ use crate::refusal::Refusal;
 use crate::robot::Controller;
 use postcard::take_from_bytes;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{
-    Agent, AnyOrder, AnySafety, HALF_PLANES, InPlane, Law, NEIGHBORS, Protocol, Setup, Task,
-};
+use staya_controller::agent::{Agent, AnySafety, HALF_PLANES, InAny, InPlane, Law, NEIGHBORS, Setup, Task};
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::wire::FromFormat;
 use staya_mavlink::any::AnyWire;
@@ -23,14 +21,14 @@ pub type OwnSmall<G> = Own<Q16, G, 8, 16, 16, AnyWire>;
 /// Its orders come from the [`Task`] of the host: [`Never`](staya_controller::wire::Never),
 /// [`WaypointOrder`](staya_controller::agent::WaypointOrder), or a type made from [`AnyOrder`].
 pub trait LinkedLaw<S: Scalar>:
-    for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Protocol: Protocol<Order: TryFrom<AnyOrder>>, Workspace = ()>
+    for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Protocol: InAny, Workspace = ()>
     + Serialize
     + for<'de> Deserialize<'de>
 {
 }
 
 impl<S: Scalar, G> LinkedLaw<S> for G where
-    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Protocol: Protocol<Order: TryFrom<AnyOrder>>, Workspace = ()>
+    G: for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Protocol: InAny, Workspace = ()>
         + Serialize
         + for<'de> Deserialize<'de>
 {
@@ -74,7 +72,7 @@ impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize,
             return Err(Refusal::Law);
         };
         let wire = W::from_format(setup.format).ok_or(Refusal::Format(setup.format))?;
-        self.body.start(task, || Agent::new(&setup.agent.cast(), law, setup.safety.safety(), wire))
+        self.body.start(task, || Agent::new(&setup.agent.cast(), law, setup.safety.layer(), wire))
     }
 
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {

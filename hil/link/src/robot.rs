@@ -5,7 +5,7 @@ use crate::capacities::Capacities;
 use crate::message::{NumberFormat, StepInputs, StepResult};
 use crate::refusal::Refusal;
 use staya_controller::agent::{
-    AnyAgent, AnyLaw, AnySafety, CELLS, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS, Setup, TEMPLATE, Task, VISITS,
+    AnyAgent, AnyLaw, AnySafety, CELLS, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS, Setup, Task, VISITS,
 };
 use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::wire::{FromFormat, Postcard};
@@ -61,7 +61,7 @@ pub struct Robot<
     W = Postcard,
     const L: usize = 0,
 > {
-    body: Body<S, AnyLaw<S, CELLS, M, TEMPLATE, L>, AnySafety<S, K>, W, N, O>,
+    body: Body<S, AnyLaw<S, CELLS, M, L>, AnySafety<S, K>, W, N, O>,
 }
 
 impl<

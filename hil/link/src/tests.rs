@@ -9,7 +9,8 @@ use crate::message::{Hello, Stepped, kind};
 use crate::robot::{Large, Small};
 use crate::session::{About, Reaction, Session, content_bytes};
 use staya_controller::agent::{
-    AgentConfig, AnyHalfPlanes, CELLS, LawSettings, RouteSettings, SafetySetup, Setup, Task, WaypointSettings,
+    AgentConfig, CELLS, LawSettings, LayerSettings, OrcaSettings, RouteSettings, Setup, Task, UnguardedSettings,
+    WaypointSettings,
 };
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::StalenessInflation;
@@ -42,11 +43,10 @@ pub fn in_plane() -> Setup {
             ..AgentConfig::new(RobotId(1), 0.25, Duration::from_millis(100))
         },
         law: LawSettings::Waypoint(WaypointSettings { speed_mps: 1.0, tolerance_m: 0.05 }),
-        safety: SafetySetup::Orca {
+        safety: LayerSettings::Orca(OrcaSettings {
             params: AvoidParams::default(),
             inflation: StalenessInflation { growth_mps: 0.5, max_m: 0.25 },
-            source: AnyHalfPlanes::Analytic,
-        },
+        }),
         format: Format::Postcard,
     }
 }
@@ -56,7 +56,7 @@ pub fn on_grid(radius: u8) -> (Setup, Task) {
     let setup = Setup {
         agent: AgentConfig { seed: 7, ..AgentConfig::new(RobotId(1), 0.0, Duration::from_millis(100)) },
         law: LawSettings::Route(RouteSettings { params, ..RouteSettings::default() }),
-        safety: SafetySetup::None,
+        safety: LayerSettings::None(UnguardedSettings),
         format: Format::Postcard,
     };
     (setup, Task::Cell(Cell::new(40, 17)))

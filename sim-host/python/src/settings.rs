@@ -4,35 +4,24 @@
 //! scenario files.
 
 use staya_controller::agent::{
-    Around, BoidsSettings, Contradiction, GoalFlockSettings, LatticeSettings, RouteSettings, SafetyKind, Settings,
+    Around, BoidsSettings, Contradiction, FlySettings, GoalFlockSettings, LatticeSettings, LayerSettings,
+    RouteSettings, Settings,
 };
 use staya_controller::goal_flock::GoalParams;
 use staya_controller::grid::Norm;
-use staya_controller::names::Named as _;
-use staya_controller::orca::{AvoidParams, DOWNWASH};
+use staya_controller::orca::AvoidParams;
 use staya_sim::scenario::{Line, Read as _, Tables, Usual, laws, lines_of, store_given};
 use std::fmt::Write as _;
 
 /// Where the settings are documented.
 const LIST: &str = "help(staya.settings)";
 
-/// Parameters of ORCA in space.
-#[derive(Clone, Copy, Debug)]
-pub struct Fly {
-    /// Vertical separation over the horizontal one.
-    pub downwash: f32,
-}
-
-staya_controller::parameters! {
-    impl[] Fly { DOWNWASH => downwash }
-}
-
 /// The parameters of ORCA, in space with `downwash`; in the plane that is 1.
 ///
 /// # Errors
 /// A value that scenario files refuse, too; likewise below.
-pub fn orca(text: &str, in_space: bool) -> Result<(AvoidParams<f32>, Fly), String> {
-    let (mut params, mut fly) = (AvoidParams::default(), Fly { downwash: 1.0 });
+pub fn orca(text: &str, in_space: bool) -> Result<(AvoidParams<f32>, FlySettings), String> {
+    let (mut params, mut fly) = (AvoidParams::default(), FlySettings::default());
     store_given(text, LIST, &[], &mut |visit| {
         visit(&mut params);
         if in_space {
@@ -88,6 +77,11 @@ pub fn route(text: &str, norm: Norm, corner_cutting: bool) -> Result<RouteSettin
 /// Sets the values that depend on others, for robots that know each other's present places.
 fn adapted(settings: &mut impl Settings, given: &[&str], speed_mps: f32) -> Result<(), String> {
     let around = Around {
+        radius_m: 0.0,
+        max_speed_mps: speed_mps,
+        fastest_mps: speed_mps,
+        brake_s: 0.0,
+        has_goal: true,
         cruise_mps: Some(speed_mps),
         tolerance_m: 0.0,
         delay_s: 0.0,
@@ -98,7 +92,7 @@ fn adapted(settings: &mut impl Settings, given: &[&str], speed_mps: f32) -> Resu
         corner_cutting: false,
     };
     let adapted = settings.adapt(&|row| given.contains(&row), &around);
-    adapted.map_err(|Contradiction { row, what, remedy }| format!("{row}: {what}; {remedy}"))
+    adapted.map_err(|Contradiction { row, what, remedy, .. }| format!("{row}: {what}; {remedy}"))
 }
 
 /// The begin of `staya/settings.py`.
@@ -120,8 +114,8 @@ pub fn page() -> String {
     let mut page = String::from(HEAD);
     let names = laws().into_iter().map(|(name, _)| name);
     let _ = writeln!(page, "Law = Literal[{}]", quoted(names));
-    let _ = writeln!(page, "Layer = Literal[{}]", quoted(SafetyKind::NAMES.iter().map(|(name, _)| *name)));
-    let (mut orca, mut fly) = (AvoidParams::<f32>::default(), Fly { downwash: 1.0 });
+    let _ = writeln!(page, "Layer = Literal[{}]", quoted(LayerSettings::ALL.iter().map(|(name, _)| *name)));
+    let (mut orca, mut fly) = (AvoidParams::<f32>::default(), FlySettings::default());
     let (mut lattice, mut goal) = (LatticeSettings::default(), GoalFlockSettings::default().params);
     let (mut boids, mut route) = (BoidsSettings::default(), RouteSettings::default());
     let mut class = |name: &str, what: &str, needed: &[&str], tables: &mut Tables<'_>| {

@@ -1,35 +1,38 @@
-//! Laws of other crates beside those of Staya: payloads, messages and orders are bytes between the
-//! agent and the law. Scenario files name the laws that a program adds ([`add_law`]).
+//! Laws of other crates beside those of Staya. Scenario files name the laws that a program adds ([`add_law`]).
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use staya_controller::agent::{
     AnyMessage, AnyOrder, AnyPayload, AnyProtocol, AnySurroundings, BadInput, CellState, Decision, Goals, GridOrder,
-    InCell, InCells, InPlane, Known, Law, MessageOf, Motion, OnGrid, OrderOf, Protocol, Radio, Report, Tools, View,
-    Waypoint, WaypointOrder,
+    InAny, InCell, InCells, InPlane, Law, Motion, OnGrid, Radio, Report, Tools, View, Waypoint, WaypointOrder,
+    dispatch,
 };
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::negotiation::{Moves, NegotiationGuidance, NegotiationInPlane};
-use staya_controller::neighbor::Neighbor;
 use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
-use staya_controller::wire::{Content, MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD, ProtocolId};
-use std::any::{Any, type_name};
+use std::any::type_name;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
-use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 
 /// A law of another crate. Its state is serialized in checkpoints.
 pub trait OwnLaw:
-    Law<f32, Workspace: Default + Send + Sync> + Serialize + DeserializeOwned + Clone + fmt::Debug + Send + Sync + 'static
+    Law<f32, Protocol: InAny, Workspace: Default + Send + Sync>
+    + Serialize
+    + DeserializeOwned
+    + Clone
+    + fmt::Debug
+    + Send
+    + Sync
+    + 'static
 {
 }
 
 impl<L> OwnLaw for L where
-    L: Law<f32, Workspace: Default + Send + Sync>
+    L: Law<f32, Protocol: InAny, Workspace: Default + Send + Sync>
         + Serialize
         + DeserializeOwned
         + Clone
@@ -260,10 +263,7 @@ impl<L: OwnLaw> Hosted for Held<L> {
         rng: &mut Rng,
         radio: &mut Radio<'_, AnyProtocol>,
     ) -> Result<Decision<f32>, BadInput> {
-        let here = L::Surroundings::try_from(*here).map_err(|_| BadInput)?;
-        let known = Decoded::<L::Protocol>(view.known, PhantomData);
-        let tools = Tools { rng, radio: radio.of(), workspace: &mut self.workspace };
-        self.law.decide(&view.with(&known), &here, tools)
+        dispatch::decide(&mut self.law, view, here, (rng, radio), &mut self.workspace)
     }
 
     fn payload(
@@ -272,27 +272,15 @@ impl<L: OwnLaw> Hosted for Held<L> {
         heading: Dir,
         radio: &mut Radio<'_, AnyProtocol>,
     ) -> AnyPayload {
-        let Ok(here) = L::Surroundings::try_from(*here) else { return AnyPayload::default() };
-        let payload = self.law.payload(&here, heading, &mut radio.of());
-        let encoded = payload.encode::<MAX_PAYLOAD>(<L::Protocol as Protocol>::ID);
-        encoded.and_then(|(id, bytes)| AnyPayload::decode(ProtocolId::NONE, id, &bytes)).unwrap_or_default()
+        dispatch::payload(&mut self.law, here, heading, radio)
     }
 
     fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
-        let encoded = message.encode::<MAX_CONTENT>(ProtocolId::NONE);
-        let own = <L::Protocol as Protocol>::ID;
-        let message = encoded.and_then(|(id, bytes)| MessageOf::<L, f32>::decode(own, id, &bytes));
-        message.is_some_and(|message| self.law.receive(from, &message, &mut radio.of()))
+        dispatch::receive(&mut self.law, from, message, radio)
     }
 
     fn order(&mut self, order: &AnyOrder) -> bool {
-        if let Some(order) = exact::<OrderOf<L, f32>>(order) {
-            return self.law.order(order);
-        }
-        let encoded = order.encode::<MAX_ORDER>(ProtocolId::NONE);
-        let own = <L::Protocol as Protocol>::ID;
-        let order = encoded.and_then(|(id, bytes)| OrderOf::<L, f32>::decode(own, id, &bytes));
-        order.is_some_and(|order| self.law.order(&order))
+        dispatch::order(&mut self.law, order)
     }
 
     fn needs(&self, id: RobotId) -> bool {
@@ -309,42 +297,6 @@ impl<L: OwnLaw> Hosted for Held<L> {
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         self.law.parameters(visit);
-    }
-}
-
-/// An order of a built-in protocol, not rounded to the units of frames.
-fn exact<O: 'static>(order: &AnyOrder) -> Option<&O> {
-    let order: &dyn Any = match order {
-        AnyOrder::Grid(order) => order,
-        AnyOrder::Waypoint(order) => order,
-        AnyOrder::Other(_) => order,
-    };
-    order.downcast_ref()
-}
-
-/// The known robots as a law with protocol `P` reads them.
-struct Decoded<'a, P>(&'a dyn Known<f32, AnyPayload>, PhantomData<P>);
-
-impl<P: Protocol> Decoded<'_, P> {
-    fn decoded(robot: Neighbor<f32, AnyPayload>) -> Neighbor<f32, P::Payload> {
-        robot.map(|payload| {
-            let (id, bytes) = payload.encode::<MAX_PAYLOAD>(ProtocolId::NONE)?;
-            P::Payload::decode(P::ID, id, &bytes)
-        })
-    }
-}
-
-impl<P: Protocol> Known<f32, P::Payload> for Decoded<'_, P> {
-    fn count(&self) -> usize {
-        self.0.count()
-    }
-
-    fn at(&self, index: usize) -> Option<Neighbor<f32, P::Payload>> {
-        self.0.at(index).map(Self::decoded)
-    }
-
-    fn find(&self, id: RobotId) -> Option<Neighbor<f32, P::Payload>> {
-        self.0.find(id).map(Self::decoded)
     }
 }
 

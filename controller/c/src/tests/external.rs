@@ -1,11 +1,11 @@
 //! A law over the C interface equals its twin in Rust, step by step.
 
 use super::{EMPTY, IDLE, Memory, PROTOCOL, TICK_US, nothing, own_law, setup, shows};
+use crate::Layer;
 use crate::agent::*;
 use crate::choices::{StayaAction, StayaCommand, StayaEventKind, StayaMode};
 use crate::external::*;
 use crate::io::{StayaInputs, StayaOutputs};
-use crate::layer::Layer;
 use crate::setup::StayaCell;
 use crate::status::StayaStatus;
 use crate::{NEIGHBORS, Number};
@@ -190,7 +190,7 @@ fn a_law_in_c_equals_its_twin_in_rust_over_a_radio_that_loses_frames() {
         let mut memory = Memory::new();
         memory.agent(&setup).unwrap();
         memories.push(memory);
-        let (config, layer) = (setup.config().unwrap(), setup.layer().unwrap());
+        let (config, layer) = (setup.config().unwrap(), setup.layer_settings().unwrap().layer());
         twins.push(Agent::<Number, _, NEIGHBORS, Layer>::new(&config, law.clone(), layer, Postcard));
         laws.push(law);
         places.push([id as i32 * 900, 0, 0]);

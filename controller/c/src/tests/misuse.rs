@@ -1,7 +1,8 @@
-use super::{EMPTY, IDLE, Memory, PROTOCOL, nothing, own_law, setup, waypoint};
+use super::{EMPTY, IDLE, Memory, PROTOCOL, nothing, own_law, setup, waypoint, with};
 use crate::agent::*;
-use crate::alone::{StayaAvoider, staya_orca_defaults, staya_orca_init, staya_orca_velocity};
-use crate::choices::{StayaAction, StayaCommand, StayaLaw, StayaMode, StayaSafety, StayaWire};
+use crate::alone::{StayaAvoider, staya_avoider_init, staya_avoider_velocity};
+use crate::choices::{StayaAction, StayaCommand, StayaMode, StayaWire};
+use crate::chosen::*;
 use crate::external::*;
 use crate::io::{StayaInputs, StayaObstacle};
 use crate::parameter::{StayaParameter, staya_get_parameter, staya_parameter, staya_set_parameter};
@@ -19,10 +20,10 @@ fn null_is_refused_by_every_function() {
     let own = memory_of_own.agent(&own_law(2)).unwrap();
     let (inputs, mut out) = nothing();
     let (mut agents, mut avoider) = (null_mut(), null_mut::<StayaAvoider>());
-    let mut orca = MaybeUninit::uninit();
+    let (mut kind, mut row, mut fault) = (MaybeUninit::uninit(), MaybeUninit::uninit(), MaybeUninit::uninit());
+    let mut changed = setup;
     // SAFETY: pointers that are not null are valid.
     let answers = unsafe {
-        assert_eq!(staya_orca_defaults(orca.as_mut_ptr()), StayaStatus::Ok);
         [
             staya_setup_defaults(null_mut(), 1, 0.1, 1),
             staya_init(null_mut(), STAYA_AGENT_SIZE, &setup, &mut agents),
@@ -42,11 +43,23 @@ fn null_is_refused_by_every_function() {
             staya_set_parameter(null_mut(), c"speed_mps".as_ptr(), 1.0),
             staya_set_parameter(agent, null(), 1.0),
             staya_parameter(agent, 0, null_mut()),
-            staya_lattice_defaults(null_mut(), 1.0),
-            staya_lattice_soften(null_mut(), 0.1, 10.0),
+            staya_choose_law(null_mut(), c"boids".as_ptr()),
+            staya_choose_law(&mut changed, null()),
             staya_formation_from_graph(null_mut(), null(), 0, null(), 0, 0, 1),
-            staya_orca_init(null_mut(), 256, orca.as_ptr(), 0, 1, &mut avoider),
-            staya_orca_velocity(null_mut(), null(), null(), null(), null(), 0, null(), 0, null_mut()),
+            staya_choose_layer(null_mut(), c"orca".as_ptr()),
+            staya_choose_layer(&mut changed, null()),
+            staya_set(null_mut(), c"orca".as_ptr(), 1.0),
+            staya_set(&mut changed, null(), 1.0),
+            staya_set_word(&mut changed, null(), c"true".as_ptr()),
+            staya_set_word(&mut changed, c"waits".as_ptr(), null()),
+            staya_explain(null(), fault.as_mut_ptr()),
+            staya_explain(&changed, null_mut()),
+            staya_law(0, null_mut()),
+            staya_layer(0, null_mut()),
+            staya_law_row(null(), 0, row.as_mut_ptr()),
+            staya_layer_row(&changed, 0, null_mut()),
+            staya_avoider_init(null_mut(), 256, &setup, &mut avoider),
+            staya_avoider_velocity(null_mut(), null(), null(), null(), null(), 0, null(), 0, null_mut()),
             staya_hear(null_mut(), &inputs),
             staya_hear(own, null()),
             staya_act(null_mut(), &inputs, &mut out),
@@ -62,6 +75,8 @@ fn null_is_refused_by_every_function() {
             staya_received(own, null_mut(), 0, null_mut()),
         ]
     };
+    // SAFETY: there is space.
+    assert_eq!(unsafe { staya_law(99, kind.as_mut_ptr()) }, StayaStatus::Unknown);
     for (index, answer) in answers.into_iter().enumerate() {
         // An empty graph does not have a place 0, which is checked first.
         let wanted = if index == 20 { StayaStatus::Shape } else { StayaStatus::Null };
@@ -103,43 +118,29 @@ fn invalid_setups_return_their_status() {
     assert_eq!(refused(&|s| s.tick_us = 0), StayaStatus::Number);
     assert_eq!(refused(&|s| s.radius_m = f32::NAN), StayaStatus::Number);
     assert_eq!(refused(&|s| s.speed_mps = 0.0), StayaStatus::Number);
-    assert_eq!(refused(&|s| s.law = 200), StayaStatus::Choice);
-    assert_eq!(refused(&|s| s.safety = 200), StayaStatus::Choice);
+    assert_eq!(refused(&|s| s.law = 200), StayaStatus::Law);
+    assert_eq!(refused(&|s| s.layer = 200), StayaStatus::Law);
     assert_eq!(refused(&|s| s.wire = 200), StayaStatus::Choice);
-    assert_eq!(refused(&|s| s.orca.horizon_s = 0.0), StayaStatus::Number);
     for protocol in [0, 1, 63] {
         assert_eq!(refused(&|s| *s = StayaSetup { protocol, ..own_law(1) }), StayaStatus::Choice);
     }
-    let lattice = StayaLaw::Lattice as u8;
-    let with = |law: u8, change: fn(&mut StayaSetup)| {
-        refused(&|s| {
-            s.law = law;
-            change(s);
-        })
-    };
-    #[cfg(feature = "flocks")]
-    {
-        assert_eq!(with(lattice, |s| s.lattice.terms = 0), StayaStatus::Choice);
-        assert_eq!(with(lattice, |s| s.lattice.attraction = -1.0), StayaStatus::Number);
-    }
-    #[cfg(not(feature = "flocks"))]
-    assert_eq!(with(lattice, |_| ()), StayaStatus::NotBuilt);
-    let formation = StayaLaw::Formation as u8;
     #[cfg(feature = "grid")]
     {
-        assert_eq!(with(formation, |s| s.route.radius_cells = 6), StayaStatus::Search);
-        assert_eq!(with(formation, |s| s.formation.neighbor_count = 9), StayaStatus::TooMany);
-        assert_eq!(with(formation, |s| s.formation.neighbor_count = 1), StayaStatus::Shape);
+        let formation = with(3, c"formation", c"none");
+        let refused = |change: &dyn Fn(&mut StayaSetup)| {
+            refused(&|s| {
+                *s = formation;
+                change(s);
+            })
+        };
+        assert_eq!(refused(&|s| s.sight_cells = 6), StayaStatus::Search);
+        assert_eq!(refused(&|s| s.formation.neighbor_count = 9), StayaStatus::TooMany);
+        assert_eq!(refused(&|s| s.formation.neighbor_count = 1), StayaStatus::Shape);
     }
-    #[cfg(not(feature = "grid"))]
-    assert_eq!(with(formation, |_| ()), StayaStatus::NotBuilt);
     #[cfg(feature = "mavlink")]
     assert_eq!(refused(&|s| (s.wire, s.id) = (StayaWire::Mavlink as u8, 255)), StayaStatus::Number);
     #[cfg(not(feature = "mavlink"))]
     assert_eq!(refused(&|s| s.wire = StayaWire::Mavlink as u8), StayaStatus::NotBuilt);
-    #[cfg(not(feature = "space"))]
-    assert_eq!(refused(&|s| s.safety = StayaSafety::Fly as u8), StayaStatus::NotBuilt);
-    let _ = StayaSafety::Fly;
 }
 
 fn digest(agent: *const StayaAgent) -> u64 {
@@ -254,7 +255,7 @@ fn a_step_acts_once_after_it_has_heard() {
 #[test]
 fn a_robot_whose_law_hangs_stays() {
     let (mut memory, mut out) = (Memory::new(), nothing().1);
-    let agent = memory.agent(&StayaSetup { safety: StayaSafety::None as u8, ..own_law(1) }).unwrap();
+    let agent = memory.agent(&StayaSetup { protocol: PROTOCOL, ..with(1, c"external", c"none") }).unwrap();
     let inputs = StayaInputs { max_speed_mps: 1.0, ..nothing().0 };
     let east = StayaDecision { velocity_mps: [0.5, 0.0, 0.0], kind: StayaAction::Velocity as u8, ..IDLE };
     let mut step = || {
@@ -302,7 +303,7 @@ fn parameters_are_listed_and_set_by_name() {
     unsafe {
         let mut row = MaybeUninit::<StayaParameter>::uninit();
         while staya_parameter(agent, listed.len() as u32, row.as_mut_ptr()) == StayaStatus::Ok {
-            let StayaParameter { name, unit, text, least, greatest, value } = row.assume_init();
+            let StayaParameter { name, unit, text, least, greatest, value, .. } = row.assume_init();
             let [name, unit, text] =
                 [&name[..], &unit, &text].map(|text| CStr::from_ptr(text.as_ptr()).to_str().unwrap());
             assert!(unit.len() <= 5 && text.len() > 5 && least <= value && value <= greatest, "{name}");
@@ -326,11 +327,11 @@ fn parameters_are_listed_and_set_by_name() {
 fn every_status_has_a_name_and_a_text() {
     // SAFETY: the strings end with a zero.
     let text = |pointer| unsafe { CStr::from_ptr(pointer) }.to_str().unwrap();
-    for status in 0..17 {
+    for status in 0..22 {
         assert!(text(staya_status_name(status)).starts_with("STAYA_STATUS_"), "{status}");
         assert!(text(staya_status_text(status)).len() > 5);
     }
-    for none in [-1, 17, i32::MAX] {
+    for none in [-1, 22, i32::MAX] {
         assert_eq!(text(staya_status_name(none)), "(no status)");
     }
 }

@@ -1,17 +1,14 @@
-//! Steps through C equal the steps of the same agent in Rust; `cargo xtask c` compares whole swarms
-//! of the plane.
+//! Steps through C; `cargo xtask c` compares whole swarms of the plane.
 
-use super::{Memory, nothing, setup, shows, waypoint};
+#[cfg(all(feature = "grid", not(feature = "fixed"), not(feature = "small")))]
+use super::shows;
+use super::{Memory, nothing, setup, waypoint, with};
 use crate::agent::*;
 use crate::alone::*;
-use crate::choices::{StayaCommand, StayaDir, StayaLaw, StayaMode, StayaSafety};
-use crate::law::Law;
-use crate::setup::{StayaOrca, StayaSetup};
+use crate::choices::{StayaCommand, StayaDir, StayaMode};
+use crate::setup::StayaSetup;
 use crate::status::StayaStatus;
-use crate::{NEIGHBORS, Number};
-use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut};
-use staya_controller::agent;
 
 #[test]
 fn two_robots_hear_each_other() {
@@ -42,74 +39,11 @@ fn two_robots_hear_each_other() {
     assert_eq!((flock, leader, cell.x, heading), (3, 0, 0, StayaDir::Stay as u8), "not across land in cells");
 }
 
-/// Steps two agents of C and two of Rust; all receive the same frames.
-fn twins_agree<L>(setup: impl Fn(u32) -> StayaSetup, law: impl Fn(Law) -> L)
-where
-    L: for<'a> agent::Law<Number, Surroundings<'a> = agent::InPlane<'a, Number>, Workspace = ()> + serde::Serialize,
-    agent::OrderOf<L, Number>: TryFrom<agent::AnyOrder>,
-{
-    use staya_controller::geom::Position;
-    use staya_controller::scalar::cast;
-    use staya_controller::time::Instant;
-    use staya_controller::wire::Postcard;
-
-    let (mut twins, mut memories) = (Vec::new(), Vec::new());
-    for id in [1, 2] {
-        let setup = setup(id);
-        let mut memory = Memory::new();
-        let one = memory.agent(&setup).unwrap();
-        let law = law(setup.law().unwrap());
-        let config = setup.config().unwrap();
-        let mut twin = agent::Agent::<Number, L, NEIGHBORS, _>::new(&config, law, agent::Unguarded, Postcard);
-        // SAFETY: there is an agent.
-        let status = unsafe { staya_assign_waypoint(one, 0, &waypoint(5000)) };
-        let to = agent::Waypoint::fixed(Position::from_mm([5000, 0, 0]));
-        let assigned = twin.assign(&agent::Task::Waypoints([(0, to)].into_iter().collect()));
-        assert_eq!(status == StayaStatus::Ok, assigned.is_ok());
-        twins.push(twin);
-        memories.push(memory);
-    }
-    let mut said = vec![Vec::new(); 2];
-    for step in 0..20u32 {
-        let heard = said.concat();
-        for (place, (memory, twin)) in (0..).zip(memories.iter_mut().zip(&mut twins)) {
-            let one: *mut StayaAgent = (&raw mut **memory).cast();
-            let (mut inputs, mut out) = nothing();
-            (inputs.now_us, inputs.max_speed_mps) = (step * 50_000, 0.5);
-            inputs.position_mm = [place * 300 + step as i32 * 20, 0, 0];
-            (inputs.inbox, inputs.inbox_bytes) = (heard.as_ptr(), heard.len());
-            // SAFETY: all pointers are valid.
-            assert_eq!(unsafe { staya_step(one, &inputs, &mut out) }, StayaStatus::Ok);
-            let position = Position::from_mm(inputs.position_mm);
-            let own_inputs = agent::Inputs {
-                state: agent::KinematicState { position, ..agent::KinematicState::default() },
-                surroundings: agent::InPlane { max_speed_mps: cast(0.5), obstacles: &[] },
-                inbox: &heard,
-            };
-            let own = twin.step(&own_inputs, Instant::from_micros(step * 50_000), &mut ());
-            shows(&out, &own, twin.mode(), &format!("step {step} of {place}"));
-            said[place as usize] = own.outbox.to_vec();
-        }
-    }
-    assert!(twins.iter().all(|twin| twin.neighbors().len() == 1 && twin.neighbors()[0].payload.is_some()));
-}
-
-#[test]
-fn agents_in_the_plane_equal_those_of_rust() {
-    let with = |law: StayaLaw| move |id| StayaSetup { law: law as u8, safety: StayaSafety::None as u8, ..setup(id) };
-    twins_agree(with(StayaLaw::Waypoint), |law| if let Law::Waypoint(law) = law { law } else { panic!("{law:?}") });
-    #[cfg(feature = "flocks")]
-    {
-        twins_agree(with(StayaLaw::Lattice), |law| if let Law::Lattice(law) = law { law } else { panic!("{law:?}") });
-        twins_agree(with(StayaLaw::Boids), |law| if let Law::Boids(law) = law { law } else { panic!("{law:?}") });
-    }
-}
-
 #[test]
 fn orca_without_an_agent_keeps_clear_in_any_order() {
     #[repr(align(8))]
-    struct Room([u8; STAYA_ORCA_SIZE]);
-    let mut orca = MaybeUninit::<StayaOrca>::uninit();
+    struct Room([u8; STAYA_AVOIDER_SIZE]);
+    let setup = with(1, c"waypoint", c"orca");
     let body = StayaBody {
         id: 1,
         velocity_mps: [1.0, 0.0, 0.0],
@@ -128,25 +62,23 @@ fn orca_without_an_agent_keeps_clear_in_any_order() {
         is_stranger: 0,
     };
     // More than are considered, with the nearest one last.
-    let far: Vec<_> = (2..40).rev().map(|id| other(id, id as f32)).collect();
+    let far: Vec<_> = (2..40).rev().map(|id| other(id, id as f32 / 2.0)).collect();
     let near: Vec<_> = far.iter().rev().copied().collect();
     let velocity = |all: &[StayaNearby]| {
-        let (mut room, mut avoider, mut best) = (Room([0; STAYA_ORCA_SIZE]), null_mut(), [0.0f32; 3]);
+        let (mut room, mut avoider, mut best) = (Room([0; STAYA_AVOIDER_SIZE]), null_mut(), [0.0f32; 3]);
         let wish = [1.0f32, 0.0, 0.0];
         // SAFETY: all pointers are valid.
         unsafe {
-            assert_eq!(staya_orca_defaults(orca.as_mut_ptr()), StayaStatus::Ok);
             let place = (&raw mut room.0).cast();
-            let made = staya_orca_init(place, STAYA_ORCA_SIZE, orca.as_ptr(), 0, 1, &mut avoider);
+            let made = staya_avoider_init(place, STAYA_AVOIDER_SIZE, &setup, &mut avoider);
             assert_eq!(made, StayaStatus::Ok);
             let (first, count) = (all.as_ptr(), all.len());
             let (to, none) = (best.as_mut_ptr(), null());
-            let status = staya_orca_velocity(avoider, &body, wish.as_ptr(), none, first, count, null(), 0, to);
+            let status = staya_avoider_velocity(avoider, &body, wish.as_ptr(), none, first, count, null(), 0, to);
             assert_eq!(status, StayaStatus::Ok);
         }
         best
     };
-    let mut velocity = velocity;
     assert_eq!(velocity(&far), velocity(&near));
     assert_eq!(velocity(&[]), [1.0, 0.0, 0.0]);
     assert_ne!(velocity(&near), [1.0, 0.0, 0.0]);
@@ -170,8 +102,8 @@ fn a_formation_on_the_grid_equals_that_of_rust() {
     let tick = Duration::from_micros(50_000);
     let (mut twins, mut memories) = (Vec::new(), Vec::new());
     for own in 0..3usize {
-        let mut setup = setup(own as u32 + 1);
-        (setup.law, setup.safety, setup.seed) = (StayaLaw::FormationOnGrid as u8, StayaSafety::None as u8, 5);
+        let mut setup = with(own as u32 + 1, c"formation", c"none");
+        (setup.on_grid, setup.seed) = (1, 5);
         let cells = places.map(|(x, y)| StayaCell { x, y });
         let graph = edges.map(|(a, b)| StayaEdge { a, b });
         // SAFETY: all pointers are valid.

@@ -10,7 +10,7 @@ use core::ops::Range;
 type Map = SharedMap<256>;
 type Route = RouteGuidance<CELLS, VISITS, 0, Map>;
 type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE, 0, NextMove, Map>;
-type Any = AnyLaw<f32, CELLS, VISITS, TEMPLATE, 0, Map>;
+type Any = AnyLaw<f32, CELLS, VISITS, 0, Map>;
 
 fn map() -> Map {
     SharedMap::new(MapParams::default())
@@ -162,7 +162,8 @@ fn routes_on_the_grid_are_equal() {
     let robots = (1..).zip(cells).map(|(id, cell)| (agent(id, route()), cell)).collect();
     let typed =
         on_grid(robots, &corridor, &orders, 60, |agent, inputs, now| (agent.step(inputs, now, &mut ws), agent.mode()));
-    let any = on_grid_as_any(cells.map(|cell| (Any::RouteOnGrid(route()), cell)).into(), &corridor, &orders, 60);
+    let any =
+        on_grid_as_any(cells.map(|cell| (Any::Route(OverCells::OnGrid(route())), cell)).into(), &corridor, &orders, 60);
     assert_eq!(typed, any);
     assert!(typed.counts().iter().all(|count| *count > 0), "{:?}", typed.counts());
 }
@@ -187,7 +188,8 @@ fn formations_on_the_grid_are_equal() {
     let robots = (1..).zip(cells).map(|(id, cell)| (agent(id, formation(id)), cell)).collect();
     let typed =
         on_grid(robots, &land, &orders, 90, |agent, inputs, now| (agent.step(inputs, now, &mut ws), agent.mode()));
-    let any = (1..).zip(cells).map(|(id, cell)| (Any::FormationOnGrid(large(formation(id))), cell)).collect();
+    let any =
+        (1..).zip(cells).map(|(id, cell)| (Any::Formation(OverCells::OnGrid(large(formation(id)))), cell)).collect();
     assert_eq!(typed, on_grid_as_any(any, &land, &orders, 90));
     assert!(typed.counts().iter().all(|count| *count > 0), "{:?}", typed.counts());
     assert!(typed.went.ends_with(&[[40, 5], [37, 5], [34, 5]]), "{:?}", typed.went.last());
@@ -206,7 +208,7 @@ fn routes_in_the_plane_are_equal() {
     let robots = (1..).zip(places).map(|(id, at_m)| (agent(id, law()), at_m)).collect();
     let typed =
         in_cells(robots, &corridor, &orders, 80, |agent, inputs, now| (agent.step(inputs, now, &mut ws), agent.mode()));
-    let any = places.map(|at_m| (Any::Route(large(law())), at_m)).into();
+    let any = places.map(|at_m| (Any::Route(OverCells::InPlane(large(law()))), at_m)).into();
     assert_eq!(typed, in_cells_as_any(any, &corridor, &orders, 80));
     assert!(typed.counts().iter().all(|count| *count > 0), "{:?}", typed.counts());
 }
@@ -221,7 +223,7 @@ fn formations_in_the_plane_are_equal() {
     let robots = (1..).zip(places).map(|(id, at_m)| (agent(id, law(id)), at_m)).collect();
     let typed =
         in_cells(robots, &land, &orders, 150, |agent, inputs, now| (agent.step(inputs, now, &mut ws), agent.mode()));
-    let any = (1..).zip(places).map(|(id, at_m)| (Any::Formation(large(law(id))), at_m)).collect();
+    let any = (1..).zip(places).map(|(id, at_m)| (Any::Formation(OverCells::InPlane(large(law(id)))), at_m)).collect();
     assert_eq!(typed, in_cells_as_any(any, &land, &orders, 150));
     assert!(typed.counts().iter().all(|count| *count > 0), "{:?}", typed.counts());
 }

@@ -14,7 +14,7 @@ use crate::push_out::PushOutParams;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-type Any = Agent<f32, AnyLaw<f32, CELLS, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, 16>>;
+type Any = Agent<f32, AnyLaw<f32, CELLS, VISITS>, NEIGHBORS, AnySafety<f32, 16>>;
 
 fn number() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![
@@ -110,7 +110,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     })
 }
 
-fn guidance(which: u8, speed: f32, length: f32) -> AnyLaw<f32, CELLS, VISITS, TEMPLATE> {
+fn guidance(which: u8, speed: f32, length: f32) -> AnyLaw<f32, CELLS, VISITS> {
     match which % 6 {
         0 => AnyLaw::Waypoint(WaypointGuidance::new(speed, length)),
         1 if which < 64 => {
@@ -127,13 +127,13 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyLaw<f32, CELLS, VISITS, TE
         }
         4 => {
             let inside = RouteGuidance::new(RouteParams::default());
-            AnyLaw::Route(large(CellFollower::new(inside, speed)))
+            AnyLaw::Route(OverCells::InPlane(large(CellFollower::new(inside, speed))))
         }
         _ => {
             let template = Template::from_graph(&[Cell::new(0, 0), Cell::new(-3, 0)], &[(0, 1)], 1, 2);
             let (route, keeping) = (RouteParams::default(), FormationParams::default());
             let inside = FormationGuidance::new(route, keeping, template.unwrap());
-            AnyLaw::Formation(large(FormationInPlane::new(inside, speed)))
+            AnyLaw::Formation(OverCells::InPlane(large(FormationInPlane::new(inside, speed))))
         }
     }
 }
@@ -142,7 +142,7 @@ fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
     let inflation = StalenessInflation { growth_mps, max_m: length };
     let orca = |source| AnySafety::Orca(OrcaSafety::with_source(AvoidParams::default(), inflation, source));
     match which % 5 {
-        0 => AnySafety::Unguarded(Unguarded),
+        0 => AnySafety::None(Unguarded),
         1 => AnySafety::Fly(FlySafety::in_space(AvoidParams::default(), inflation)),
         2 => AnySafety::PushOut(PushOutSafety::new(PushOutParams::new(length))),
         3 => orca(AnyHalfPlanes::Template2k),

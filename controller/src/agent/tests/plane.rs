@@ -402,10 +402,10 @@ fn a_robot_without_a_speed_is_in_fault_and_stands() {
     fn check<G>(mut law: G)
     where
         G: for<'a> Law<f32, Surroundings<'a> = InPlane<'a, f32>, Workspace = ()>,
-        OrderOf<G, f32>: TryFrom<AnyOrder>,
+        G::Protocol: InAny,
     {
         let order = AnyOrder::Waypoint(WaypointOrder::first(place(1000, 0)));
-        let _ = OrderOf::<G, f32>::try_from(order).map(|order| law.order(&order));
+        let _ = G::Protocol::order_in(&order).map(|order| law.order(&order));
         let config = one_step_late(1);
         let mut agent = Agent::<f32, _, NEIGHBORS, _, _>::new(&config, law, orca(), Postcard);
         let inputs = Inputs {
@@ -424,7 +424,7 @@ fn a_robot_without_a_speed_is_in_fault_and_stands() {
 
 #[test]
 fn the_input_of_another_law_is_a_fault() {
-    type Any = AnyLaw<f32, CELLS, VISITS, TEMPLATE>;
+    type Any = AnyLaw<f32, CELLS, VISITS>;
     let route = || RouteGuidance::new(RouteParams::default());
     let plane = InPlane { max_speed_mps: 1.0, obstacles: &[] };
     let grid = inputs(&FLAT, Cell::new(5, 5), &[]).surroundings;
@@ -446,7 +446,7 @@ fn the_input_of_another_law_is_a_fault() {
     use Mode::{Cruise, Fault};
     assert_eq!(modes(Any::Waypoint(waypoint()), Task::Waypoints(east)), [Fault, Cruise, Cruise]);
     let goal = || Task::Cell(Cell::new(9, 5));
-    assert_eq!(modes(Any::RouteOnGrid(route()), goal()), [Cruise, Fault, Fault]);
+    assert_eq!(modes(Any::Route(OverCells::OnGrid(route())), goal()), [Cruise, Fault, Fault]);
     let follower = CellFollower::new(route(), 1.0);
-    assert_eq!(modes(Any::Route(large(follower)), goal()), [Fault, Fault, Cruise]);
+    assert_eq!(modes(Any::Route(OverCells::InPlane(large(follower))), goal()), [Fault, Fault, Cruise]);
 }

@@ -230,7 +230,7 @@ fn a_stop_is_neither_acknowledged_nor_obeyed_by_a_robot_with_waypoints() {
     assert_eq!((has_acks(&out), agent.mode()), (false, Mode::Cruise));
 }
 
-type AnyRobot = Agent<f32, AnyLaw<f32, CELLS, VISITS, TEMPLATE>, NEIGHBORS>;
+type AnyRobot = Agent<f32, AnyLaw<f32, CELLS, VISITS>, NEIGHBORS>;
 
 /// Whether an `AnyLaw` with waypoints acknowledges the message.
 fn any_acknowledges(message: Message) -> bool {

@@ -36,13 +36,14 @@ fn laws() -> [LawSettings; 7] {
     ]
 }
 
-fn safeties() -> [SafetySetup; 4] {
+fn safeties() -> [LayerSettings; 4] {
     let inflation = StalenessInflation { growth_mps: 0.25, max_m: 0.3 };
+    let orca = OrcaSettings { params: AvoidParams::default(), inflation };
     [
-        SafetySetup::None,
-        SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Template2k },
-        SafetySetup::Fly { params: AvoidParams::default(), inflation, downwash: 3.0 },
-        SafetySetup::PushOut { params: PushOutParams::new(0.4) },
+        LayerSettings::None(UnguardedSettings),
+        LayerSettings::Template2k(TableSettings(orca)),
+        LayerSettings::Fly(FlySettings { orca, downwash: 3.0 }),
+        LayerSettings::PushOut(PushOutSettings { params: PushOutParams::new(0.4) }),
     ]
 }
 
@@ -109,7 +110,7 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
 #[test]
 fn each_law_takes_the_goals_that_its_settings_name() {
     for settings in laws() {
-        let mut law: AnyLaw<f32, CELLS, VISITS, TEMPLATE> = settings.law(());
+        let mut law: AnyLaw<f32, CELLS, VISITS> = settings.law(());
         let waypoint = WaypointOrder::first(Waypoint::fixed(crate::geom::Position::ORIGIN));
         let orders = [AnyOrder::Grid(GridOrder::Goal(Cell::new(3, 4))), AnyOrder::Waypoint(waypoint)];
         let expected = match settings.goals() {

@@ -1,7 +1,7 @@
 //! Settings of boids.
 
 use super::{BoidsGuidance, BoidsParams, CLOSEST, CROWDED, TURN, TURN_AWAY};
-use crate::law::{Around, Contradiction, Goals, Motion, Settings};
+use crate::law::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
 use crate::parameters::Parameters;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
@@ -39,20 +39,17 @@ impl Default for BoidsSettings {
 }
 
 impl BoidsSettings {
-    /// Creates the law.
+    /// The parameters of the rules.
     #[must_use]
-    pub fn law<S: Scalar>(&self) -> BoidsGuidance<S> {
-        let Self { crowded_m, closest_m, max_turn, max_turn_away, speed_mps } = *self;
-        let params = BoidsParams::new(cast(crowded_m), cast(closest_m), cast(max_turn), cast(max_turn_away));
-        BoidsGuidance::new(params, cast(speed_mps))
+    pub fn params<S: Scalar>(&self) -> BoidsParams<S> {
+        let Self { crowded_m, closest_m, max_turn, max_turn_away, .. } = *self;
+        BoidsParams::new(cast(crowded_m), cast(closest_m), cast(max_turn), cast(max_turn_away))
     }
 }
 
 impl Settings for BoidsSettings {
     const NAME: &'static str = "boids";
     const WHAT: &'static str = "constant speed, and headings that follow the neighbours (V. A. Starovoitova, STA)";
-    const MOTION: Motion = Motion::Velocities;
-    const GOALS: Goals = Goals::None;
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         visit(self);
@@ -61,5 +58,18 @@ impl Settings for BoidsSettings {
     fn adapt(&mut self, _: &dyn Fn(&str) -> bool, around: &Around) -> Result<(), Contradiction> {
         self.speed_mps = around.cruise_mps.unwrap_or_default();
         Ok(())
+    }
+}
+
+impl SettingsOfLaw for BoidsSettings {
+    const MOTION: Motion = Motion::Velocities;
+    const GOALS: Goals = Goals::None;
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H> MakesLaw<S, CELLS, M, L, H> for BoidsSettings {
+    type Law = BoidsGuidance<S>;
+
+    fn law(&self, _: H) -> BoidsGuidance<S> {
+        BoidsGuidance::new(self.params(), cast(self.speed_mps))
     }
 }

@@ -3,6 +3,7 @@
 mod assembly;
 mod cell_follower;
 mod move_history;
+mod over_cells;
 mod protocol;
 mod shared_map;
 mod workspace;
@@ -10,7 +11,10 @@ mod workspace;
 pub use assembly::{MAX_TEMPLATE, PartError, TEMPLATE_PART, TemplateAssembler, TemplatePart};
 pub use cell_follower::CellFollower;
 pub(crate) use move_history::{MoveHistory, PATIENCE, avoid_crossing};
+pub use over_cells::OverCells;
 pub(crate) use protocol::is_over;
 pub use protocol::{Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask};
 pub use shared_map::{FarMap, SharedMap};
 pub use workspace::GridWorkspace;
+#[cfg(not(feature = "list_cells"))]
+pub use workspace::NoWorkspace;

@@ -48,3 +48,22 @@ impl<const CELLS: usize> AsMut<()> for GridWorkspace<CELLS> {
         &mut self.none
     }
 }
+
+/// In place of a [`GridWorkspace`] for a list without laws over cells.
+#[cfg(not(feature = "list_cells"))]
+#[derive(Clone, Debug, Default)]
+pub struct NoWorkspace<const CELLS: usize>(());
+
+#[cfg(not(feature = "list_cells"))]
+impl<const CELLS: usize> AsMut<Self> for NoWorkspace<CELLS> {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
+#[cfg(not(feature = "list_cells"))]
+impl<const CELLS: usize> AsMut<()> for NoWorkspace<CELLS> {
+    fn as_mut(&mut self) -> &mut () {
+        &mut self.0
+    }
+}

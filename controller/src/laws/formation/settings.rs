@@ -1,9 +1,12 @@
 //! Settings of formations.
 
-use super::{FormationGuidance, FormationParams, NEVER, Prediction, Recovery, Steering};
-use crate::law::{Around, Contradiction, Goals, Motion, Settings};
+use super::{FormationGuidance, FormationInPlane, FormationParams, NEVER, NextMove, Prediction, Recovery, Steering};
+use crate::law::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
+use crate::laws::any::{Large, large};
+use crate::laws::cells::{FarMap, OverCells};
 use crate::parameters::{Parameters, choice, switch, worded};
 use crate::route::{Replan, RouteSettings};
+use crate::scalar::{Scalar, cast};
 use crate::template::{TEMPLATE, Template};
 use serde::{Deserialize, Serialize};
 
@@ -24,11 +27,8 @@ pub struct FormationSettings {
 worded!(Prediction, Recovery);
 
 /// A formation that would keep its plans.
-pub const NO_SEARCH: Contradiction = Contradiction {
-    row: "replan",
-    what: "robots in formation search in each cell",
-    remedy: "give \"each_cell\", or leave it out",
-};
+pub const NO_SEARCH: Contradiction =
+    Contradiction::new("replan", "robots in formation search in each cell", "give \"each_cell\", or leave it out");
 
 crate::parameters! {
     impl[] FormationSettings {
@@ -51,7 +51,7 @@ impl Default for FormationSettings {
 impl FormationSettings {
     /// Creates the law on the grid with followers that steer by `steering`, and with a map.
     #[must_use]
-    pub fn law<const CELLS: usize, const M: usize, const L: usize, K: Steering, H>(
+    pub fn on_grid<const CELLS: usize, const M: usize, const L: usize, K: Steering, H>(
         &self,
         steering: K,
         map: H,
@@ -68,8 +68,6 @@ impl FormationSettings {
 impl Settings for FormationSettings {
     const NAME: &'static str = "formation";
     const WHAT: &'static str = "robots in places that travel together over land in cells (A. V. Kuznetsov, KUZ)";
-    const MOTION: Motion = Motion::Cells;
-    const GOALS: Goals = Goals::Cell;
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         visit(&mut self.params);
@@ -82,7 +80,7 @@ impl Settings for FormationSettings {
         let lags = ["halt_cells", "resume_cells"];
         if let Some(row) = lags.into_iter().find(|row| !self.waits && is_given(row)) {
             let (what, remedy) = ("with waits = false no robot waits", "leave out one of the two");
-            return Err(Contradiction { row, what, remedy });
+            return Err(Contradiction::new(row, what, remedy));
         }
         if self.route.replan == Replan::UntilChanged {
             return Err(NO_SEARCH);
@@ -93,8 +91,34 @@ impl Settings for FormationSettings {
         }
         if params.resume_lag > params.halt_lag {
             let (what, remedy) = ("more than halt_cells", "give at most halt_cells");
-            return Err(Contradiction { row: "resume_cells", what, remedy });
+            return Err(Contradiction::new("resume_cells", what, remedy));
         }
         Ok(())
+    }
+}
+
+impl SettingsOfLaw for FormationSettings {
+    const MOTION: Motion = Motion::Cells;
+    const GOALS: Goals = Goals::Cell;
+
+    fn cells(&self) -> usize {
+        self.route.cells()
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> MakesLaw<S, CELLS, M, L, H>
+    for FormationSettings
+{
+    type Law = OverCells<
+        Large<FormationInPlane<S, CELLS, M, TEMPLATE, L, H>>,
+        Large<FormationGuidance<CELLS, M, TEMPLATE, L, NextMove, H>>,
+    >;
+
+    fn law(&self, map: H) -> Self::Law {
+        let on_grid = self.on_grid(NextMove, map);
+        match self.route.speed_mps {
+            Some(speed) => OverCells::InPlane(large(FormationInPlane::new(on_grid, cast(speed)))),
+            None => OverCells::OnGrid(large(on_grid)),
+        }
     }
 }

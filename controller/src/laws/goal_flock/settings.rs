@@ -2,7 +2,7 @@
 
 use super::law::GOALS;
 use super::{GoalFlockGuidance, GoalParams};
-use crate::law::{Around, Contradiction, Goals, Motion, Settings};
+use crate::law::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
 use crate::parameters::{Parameters, TOLERANCE};
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
@@ -31,19 +31,9 @@ impl Default for GoalFlockSettings {
     }
 }
 
-impl GoalFlockSettings {
-    /// Creates the law.
-    #[must_use]
-    pub fn law<S: Scalar>(&self) -> GoalFlockGuidance<S> {
-        GoalFlockGuidance::new(self.params.cast(), cast(self.arrival_m), self.seed)
-    }
-}
-
 impl Settings for GoalFlockSettings {
     const NAME: &'static str = "goal_flock";
     const WHAT: &'static str = "together to the middle of the goals, then each to one (V. E. and V. V. Pavlovsky, PAV)";
-    const MOTION: Motion = Motion::Velocities;
-    const GOALS: Goals = Goals::Shared(GOALS as u8);
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         visit(&mut self.params);
@@ -62,8 +52,23 @@ impl Settings for GoalFlockSettings {
         }
         if params.neighborhood_m < 2.0 * params.min_distance_m {
             let (what, remedy) = ("less than 2 min_distance_m", "give more, or leave it out");
-            return Err(Contradiction { row: "neighborhood_m", what, remedy });
+            return Err(Contradiction::new("neighborhood_m", what, remedy));
         }
         Ok(())
+    }
+}
+
+impl SettingsOfLaw for GoalFlockSettings {
+    const MOTION: Motion = Motion::Velocities;
+    const GOALS: Goals = Goals::Shared(GOALS as u8);
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H> MakesLaw<S, CELLS, M, L, H>
+    for GoalFlockSettings
+{
+    type Law = GoalFlockGuidance<S>;
+
+    fn law(&self, _: H) -> GoalFlockGuidance<S> {
+        GoalFlockGuidance::new(self.params.cast(), cast(self.arrival_m), self.seed)
     }
 }

@@ -1,7 +1,7 @@
 //! Settings of the alpha flock.
 
 use super::{Algorithm, Gain, LatticeGuidance, LatticeParams, ReferenceMotion};
-use crate::law::{Around, Contradiction, Goals, Motion, Settings};
+use crate::law::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
 use crate::parameters::{Parameters, row, switch};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
@@ -55,19 +55,11 @@ impl LatticeSettings {
             false => ReferenceMotion::Static,
         }
     }
-
-    /// Creates the law.
-    #[must_use]
-    pub fn law<S: Scalar>(&self) -> LatticeGuidance<S> {
-        LatticeGuidance::following(self.params.cast(), self.motion().cast())
-    }
 }
 
 impl Settings for LatticeSettings {
     const NAME: &'static str = "lattice";
     const WHAT: &'static str = "equal distances around a common goal: the alpha flock (R. Olfati-Saber, OLF)";
-    const MOTION: Motion = Motion::Velocities;
-    const GOALS: Goals = Goals::Shared(1);
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         visit(&mut self.params);
@@ -76,7 +68,7 @@ impl Settings for LatticeSettings {
 
     /// Gains default to values that are stable with this radio's delay.
     fn adapt(&mut self, is_given: &dyn Fn(&str) -> bool, around: &Around) -> Result<(), Contradiction> {
-        let wrong = |row, what, remedy| Err(Contradiction { row, what, remedy });
+        let wrong = |row, what, remedy| Err(Contradiction::new(row, what, remedy));
         let params = &mut self.params;
         params.algorithm = match (self.algorithm, self.takes_turns) {
             (1, false) => Algorithm::One,
@@ -118,5 +110,18 @@ impl Settings for LatticeSettings {
             return wrong("goal_rest_m", what, "give goal_moves = false, or leave it out");
         }
         Ok(())
+    }
+}
+
+impl SettingsOfLaw for LatticeSettings {
+    const MOTION: Motion = Motion::Velocities;
+    const GOALS: Goals = Goals::Shared(1);
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H> MakesLaw<S, CELLS, M, L, H> for LatticeSettings {
+    type Law = LatticeGuidance<S>;
+
+    fn law(&self, _: H) -> LatticeGuidance<S> {
+        LatticeGuidance::following(self.params.cast(), self.motion().cast())
     }
 }

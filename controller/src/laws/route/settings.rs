@@ -1,8 +1,11 @@
 //! Settings of routes.
 
 use super::{ExitRule, Replan, RouteGuidance, RouteParams};
-use crate::law::{Around, Contradiction, Goals, Motion, Settings};
+use crate::law::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
+use crate::laws::any::{Large, large};
+use crate::laws::cells::{CellFollower, FarMap, OverCells};
 use crate::parameters::{Parameter, Parameters, Value, choice, row, worded};
+use crate::scalar::{Scalar, cast};
 use crate::shuffle::Sharpness;
 use serde::{Deserialize, Serialize};
 
@@ -58,26 +61,17 @@ crate::parameters! {
 impl RouteSettings {
     /// Creates the law on the grid, with a map.
     #[must_use]
-    pub const fn law<const CELLS: usize, const M: usize, const L: usize, H>(
+    pub const fn on_grid<const CELLS: usize, const M: usize, const L: usize, H>(
         &self,
         map: H,
     ) -> RouteGuidance<CELLS, M, L, H> {
         RouteGuidance::with_map(self.params, map).replan(self.replan).sharpness(self.sharpness)
-    }
-
-    /// Returns the `CELLS` of a [`CostField`](super::CostField) that it needs.
-    #[must_use]
-    pub const fn cells(&self) -> usize {
-        let side = 2 * self.params.radius as usize + 3;
-        side * side
     }
 }
 
 impl Settings for RouteSettings {
     const NAME: &'static str = "route";
     const WHAT: &'static str = "each robot over land in cells to its own goal (A. V. Kuznetsov, KUZ)";
-    const MOTION: Motion = Motion::Cells;
-    const GOALS: Goals = Goals::Cell;
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         visit(&mut self.params);
@@ -89,5 +83,28 @@ impl Settings for RouteSettings {
         (self.params.norm, self.params.corner_cutting) = (around.norm, around.corner_cutting);
         self.speed_mps = around.cruise_mps;
         Ok(())
+    }
+}
+
+impl SettingsOfLaw for RouteSettings {
+    const MOTION: Motion = Motion::Cells;
+    const GOALS: Goals = Goals::Cell;
+
+    fn cells(&self) -> usize {
+        let side = 2 * usize::from(self.params.radius) + 3;
+        side * side
+    }
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> MakesLaw<S, CELLS, M, L, H>
+    for RouteSettings
+{
+    type Law = OverCells<Large<CellFollower<S, RouteGuidance<CELLS, M, L, H>>>, RouteGuidance<CELLS, M, L, H>>;
+
+    fn law(&self, map: H) -> Self::Law {
+        match self.speed_mps {
+            Some(speed) => OverCells::InPlane(large(CellFollower::new(self.on_grid(map), cast(speed)))),
+            None => OverCells::OnGrid(self.on_grid(map)),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Settings of the law of waypoints.
 
 use super::WaypointGuidance;
-use crate::law::{Around, Contradiction, Goals, Motion, Settings};
+use crate::law::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
 use crate::parameters::Parameters;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
@@ -16,19 +16,9 @@ pub struct WaypointSettings {
     pub tolerance_m: f32,
 }
 
-impl WaypointSettings {
-    /// Creates the law.
-    #[must_use]
-    pub fn law<S: Scalar>(&self) -> WaypointGuidance<S> {
-        WaypointGuidance::new(cast(self.speed_mps), cast(self.tolerance_m))
-    }
-}
-
 impl Settings for WaypointSettings {
     const NAME: &'static str = "waypoint";
     const WHAT: &'static str = "straight through waypoints to a goal";
-    const MOTION: Motion = Motion::Velocities;
-    const GOALS: Goals = Goals::Waypoints;
 
     fn tables(&mut self, _: &mut dyn FnMut(&mut dyn Parameters)) {}
 
@@ -36,5 +26,20 @@ impl Settings for WaypointSettings {
         self.speed_mps = around.cruise_mps.unwrap_or_default();
         self.tolerance_m = around.tolerance_m;
         Ok(())
+    }
+}
+
+impl SettingsOfLaw for WaypointSettings {
+    const MOTION: Motion = Motion::Velocities;
+    const GOALS: Goals = Goals::Waypoints;
+}
+
+impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H> MakesLaw<S, CELLS, M, L, H>
+    for WaypointSettings
+{
+    type Law = WaypointGuidance<S>;
+
+    fn law(&self, _: H) -> WaypointGuidance<S> {
+        WaypointGuidance::new(cast(self.speed_mps), cast(self.tolerance_m))
     }
 }

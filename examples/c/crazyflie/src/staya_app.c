@@ -17,6 +17,7 @@
 
 #define TICK_MS 100
 #define HEIGHT_M 0.5f
+#define MAX_SPEED_MPS 1.0f
 /* Capacity of the queue of frames for the next step. */
 #define FRAMES 16
 
@@ -114,9 +115,9 @@ void appMain(void)
     setup.latency_us = TICK_MS * 1000;
     setup.max_acceleration_mps2 = 2.0f;
     setup.lag_s = 0.2f; /* measured: time until 63 % of a commanded change of velocity */
-    setup.orca.growth_mps = setup.speed_mps;
-    setup.orca.margin_m = 0.05f;
-    if (!is_well(staya_init(memory, sizeof memory, &setup, &agent)) ||
+    setup.max_speed_mps = MAX_SPEED_MPS;
+    if (!is_well(staya_set(&setup, "margin_m", 0.05f)) ||
+        !is_well(staya_init(memory, sizeof memory, &setup, &agent)) ||
         !is_well(staya_assign_waypoint(agent, 0, &goal))) {
         return;
     }
@@ -131,7 +132,7 @@ void appMain(void)
             inputs.velocity_mps[axis] = logGetFloat(speed[axis]);
         }
         inputs.now_us = (uint32_t)usecTimestamp();
-        inputs.max_speed_mps = 1.0f;
+        inputs.max_speed_mps = MAX_SPEED_MPS;
         inputs.inbox = inbox;
         inputs.inbox_bytes = fill_inbox();
         if (!is_well(staya_step(agent, &inputs, &out))) {

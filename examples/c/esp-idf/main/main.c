@@ -118,7 +118,6 @@ void app_main(void)
     staya_setup_defaults(&setup, CONFIG_STAYA_ROBOT, 0.1f, TICK_MS * 1000);
     setup.boot = (uint8_t)esp_timer_get_time(); /* better: a boot counter in NVS */
     setup.latency_us = TICK_MS * 1000;
-    setup.orca.growth_mps = setup.speed_mps;
     if (!is_well(staya_init(memory, sizeof memory, &setup, &agent)) ||
         !is_well(staya_assign_waypoint(agent, 0, &goal))) {
         return;

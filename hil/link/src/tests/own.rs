@@ -7,8 +7,8 @@ use crate::session::{About, Session};
 use crate::surroundings::PackedSurroundings;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Command, Decision, InPlane, KinematicState, Law, Protocol, Setup, Status, Task, Tools, View,
-    Waypoint,
+    Action, BadInput, Command, Decision, InAny, InPlane, KinematicState, Law, Protocol, Setup, Status, Task, Tools,
+    View, Waypoint,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::scalar::Scalar;
@@ -31,6 +31,8 @@ impl Protocol for Bytes {
     type Message = Never;
     type Order = Never;
 }
+
+impl InAny for Bytes {}
 
 impl<S: Scalar> Law<S> for East {
     type Surroundings<'a> = InPlane<'a, S>;

@@ -1,9 +1,9 @@
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use staya_controller::agent::{
-    AgentConfig, AnyHalfPlanes, AnyInputs, AnySurroundings, CellState, Grid, GridPayload, InPlane, Inputs,
-    KinematicState, LawSettings, OnGrid, Protocol as _, RouteSettings, SafetySetup, Setup, Task, Waypoint,
-    WaypointSettings,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, Grid, GridPayload, InPlane, Inputs, KinematicState,
+    LawSettings, LayerSettings, OnGrid, OrcaSettings, Protocol as _, RouteSettings, Setup, Task, UnguardedSettings,
+    Waypoint, WaypointSettings,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -30,14 +30,13 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
     let waypoint = Waypoint::fixed(Position::from_mm([30_000, 500, 0]));
     let (law, safety, task) = if robot.is_multiple_of(2) {
         let law = LawSettings::Route(RouteSettings::default());
-        (law, SafetySetup::None, Task::Cell(Cell::new(90, 40)))
+        (law, LayerSettings::None(UnguardedSettings), Task::Cell(Cell::new(90, 40)))
     } else {
         let law = LawSettings::Waypoint(WaypointSettings { speed_mps: 1.0, tolerance_m: 0.05 });
-        let safety = SafetySetup::Orca {
+        let safety = LayerSettings::Orca(OrcaSettings {
             params: AvoidParams::default(),
             inflation: StalenessInflation { growth_mps: 0.5, max_m: 0.25 },
-            source: AnyHalfPlanes::Analytic,
-        };
+        });
         let waypoints = [(0, waypoint)].into_iter().collect();
         (law, safety, Task::Waypoints(waypoints))
     };

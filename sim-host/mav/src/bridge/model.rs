@@ -1,5 +1,4 @@
 use crate::geo::Origin;
-use staya_controller::agent::SafetyKind;
 use staya_controller::grid::Cell;
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::terrain::Terrain;
@@ -36,7 +35,7 @@ impl VehicleModel {
             groups.map(of).fold(0.0, f64::max) as f32
         };
         Self {
-            flies: plane.is_some_and(|plane| plane.kinds().any(|group| group.safety.kind() == SafetyKind::Fly)),
+            flies: plane.is_some_and(|plane| plane.kinds().any(|group| group.safety.flies())),
             grid: on_grid.then(|| scenario.land.terrain.clone()),
             in_formation: on_grid && !scenario.formations.is_empty(),
             is_alone: scenario.robots.len() == 1,

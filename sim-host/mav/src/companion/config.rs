@@ -6,7 +6,7 @@ use super::offboard::{Entry, Rules};
 use crate::Endpoint;
 use crate::endpoint::EndpointError;
 use crate::geo::{Global, Origin};
-use staya_controller::agent::{Goals, SafetyKind};
+use staya_controller::agent::Goals;
 use staya_controller::robot::RobotId;
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{LawSetup, Overrides, PlaneSetup, Scenario, ScenarioError, Source};
@@ -294,14 +294,14 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioErr
     }
 }
 
-fn rules(table: &RulesTable, vehicle: &VehicleTable, safety: SafetyKind) -> Rules {
+fn rules(table: &RulesTable, vehicle: &VehicleTable, flies: bool) -> Rules {
     Rules {
         entry: table.entry,
         arm: table.arm,
         takeoff: table.takeoff && vehicle.autopilot.flies(),
         altitude_m: vehicle.altitude_m.or(table.altitude_m).filter(|_| vehicle.autopilot.flies()),
         // Flying robots avoid each other by height too, so the height is the controller's.
-        keeps_altitude: safety != SafetyKind::Fly,
+        keeps_altitude: !flies,
         stale: Duration::from_secs_f64(table.stale_s),
         link_lost: Duration::from_secs_f64(table.link_lost_s),
         setpoint_every: Duration::from_secs_f64(1.0 / table.setpoint_hz),
@@ -345,7 +345,7 @@ fn vehicles(
             let remedy = "give each vehicle its own id (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
             return Err(fail("system", format!("system {system} is used twice on this link"), remedy));
         }
-        let rules = rules(&file.rules, table, scenario.safety(index).kind());
+        let rules = rules(&file.rules, table, scenario.safety(index).flies());
         if file.rules.takeoff && table.autopilot.flies() && rules.altitude_m.is_none() {
             let what = "the takeoff height is missing";
             return Err(source.error("rules.takeoff", what, "give altitude_m"));

@@ -2,9 +2,9 @@
 
 use staya_controller::agent::{
     Agent, AgentConfig, AnyLaw, AnySafety, Command, GridWorkspace, Guided, HALF_PLANES, LEARNED, NEIGHBORS, Outputs,
-    TEMPLATE, VISITS, Wait, Wish,
+    VISITS, Wait, Wish,
 };
-use staya_controller::agent::{Goals, SafetyKind, SafetySetup};
+use staya_controller::agent::{Goals, LayerSettings};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::parameters::RADIUS;
 use staya_controller::time::Instant;
@@ -27,7 +27,7 @@ pub struct Body {
 
 /// The agent of a vehicle, with a law that an operator may switch off.
 type ControllerAgent<W> =
-    Agent<f32, Guided<f32, AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED>>, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+    Agent<f32, Guided<f32, AnyLaw<f32, WIDE, VISITS, LEARNED>>, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
 /// The agent of one vehicle with its map and senses.
 pub struct Controller<W> {
@@ -56,7 +56,7 @@ impl<W: Wire> Controller<W> {
         let config = AgentConfig { boot, seed, plausibility, is_synchronous, ..config };
         // No operator sends goals here, so speed and tolerance are unused.
         let law = Guided::new(scenario.law(index).on_device().law(()), 0.0, 0.0);
-        let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).safety(), wire));
+        let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).layer(), wire));
         // A law that takes no task refuses it; the scenario was validated for that.
         let _ = agent.assign(&task);
         let plane = scenario.plane();
@@ -67,7 +67,7 @@ impl<W: Wire> Controller<W> {
             Goals::Waypoints => places.last(),
             Goals::None | Goals::Shared(_) => places.first(),
         });
-        let safety = group.map(|group| group.safety.kind());
+        let is_in_space = group.is_some_and(|group| group.safety.flies());
         Self {
             index,
             ground: Arc::clone(ground),
@@ -75,7 +75,7 @@ impl<W: Wire> Controller<W> {
             workspace: GridWorkspace::default(),
             senses: Senses::default(),
             out: Outputs::default(),
-            is_in_space: safety == Some(SafetyKind::Fly),
+            is_in_space,
             goal_m: goal.map(|goal| goal.position_m),
             radius_m: f64::from(config.radius_m),
             stepped: None,
@@ -135,9 +135,9 @@ impl<W: Wire> Controller<W> {
     }
 }
 
-fn with_room(mut safety: SafetySetup, error_m: f64) -> SafetySetup {
-    if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut safety {
-        inflation.max_m = inflation.max_m.max(error_m as f32);
+fn with_room(mut safety: LayerSettings, error_m: f64) -> LayerSettings {
+    if let Some(orca) = safety.orca_mut() {
+        orca.inflation.max_m = orca.inflation.max_m.max(error_m as f32);
     }
     safety
 }

@@ -1,13 +1,13 @@
 //! ORCA (J. van den Berg and others 2011) of all robots at once.
 
 use super::{Neighborhood, Obstacles, Robots, array, refused, rows, vector};
-use crate::settings::{self, Fly};
+use crate::settings;
 use crate::{pool, simulation};
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt as _;
 use rayon::prelude::*;
-use staya_controller::agent::HALF_PLANES;
+use staya_controller::agent::{FlySettings, HALF_PLANES};
 use staya_controller::orca::{Avoider, InSpace};
 use staya_controller::rand::Rng;
 use std::sync::{Mutex, PoisonError};
@@ -34,7 +34,7 @@ impl Avoiders {
     /// Creates `count` robots in the plane or in space.
     #[new]
     fn new(count: usize, in_space: bool, seed: u64, given: &str) -> PyResult<Self> {
-        let (params, Fly { downwash }) = refused(settings::orca(given, in_space))?;
+        let (params, FlySettings { downwash, .. }) = refused(settings::orca(given, in_space))?;
         let avoider = match in_space {
             true => AnyAvoider::Space(Avoider::with_source(params, InSpace { downwash })),
             false => AnyAvoider::Plane(Avoider::new(params)),

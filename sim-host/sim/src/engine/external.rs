@@ -2,7 +2,7 @@
 
 use super::{Engine, Senses, Status, Tick};
 use crate::scenario::Scenario;
-use staya_controller::agent::{AnyInputs, Command, LawSettings, OUTBOX, SafetySetup, Setup, Task};
+use staya_controller::agent::{AnyInputs, Command, LawSettings, LayerSettings, OUTBOX, Setup, Task};
 use staya_controller::time::Instant;
 
 /// Controllers outside this process. Robots are numbered as in the scenario. They decide in each
@@ -46,7 +46,7 @@ pub struct Decision {
 pub(super) struct External {
     pub(super) controllers: Box<dyn ExternalController>,
     /// Sorted by index.
-    pub(super) robots: Vec<(usize, LawSettings, SafetySetup)>,
+    pub(super) robots: Vec<(usize, LawSettings, LayerSettings)>,
 }
 
 impl Engine {

@@ -191,7 +191,7 @@ fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Pe
         is_of_obstacle: index < hard,
     };
     match layer {
-        AnySafety::Orca(layer) => {
+        AnySafety::Orca(layer) | AnySafety::Template2k(layer) => {
             let (hard, planes) = layer.avoider().half_spaces(body, nearby, obstacles);
             let planes = planes.iter().enumerate();
             planes
@@ -204,6 +204,6 @@ fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Pe
             let all = |v: &Vec3<f32>| [v.x, v.y, v.z];
             spaces.map(|(at, s)| space((at, hard), all(&s.point), all(&s.normal))).collect()
         }
-        AnySafety::Unguarded(_) | AnySafety::PushOut(_) => Vec::new(),
+        AnySafety::None(_) | AnySafety::PushOut(_) => Vec::new(),
     }
 }

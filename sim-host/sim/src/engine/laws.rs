@@ -30,9 +30,9 @@ laws! {
     #[derive(Clone, Debug, Serialize, Deserialize)]
     #[expect(missing_docs, reason = "each variant's type says it")]
     pub enum ScenarioLaw[] of f32, in GridWorkspace<WIDE>, [] for [] {
-        BuiltIn(AnyLaw<f32, WIDE, VISITS, TEMPLATE, LEARNED, Map>),
-        Published(Box<PublishedFormation<WIDE, VISITS, TEMPLATE>>, large),
-        LooksAhead(Box<FormationGuidance<WIDE, VISITS, TEMPLATE, LEARNED, Course, Map>>, large),
+        BuiltIn(AnyLaw<f32, WIDE, VISITS, LEARNED, Map>),
+        Published(Box<PublishedFormation<WIDE, VISITS, TEMPLATE>>),
+        LooksAhead(Box<FormationGuidance<WIDE, VISITS, TEMPLATE, LEARNED, Course, Map>>),
         Own(Own),
     }
 }
@@ -70,7 +70,7 @@ pub fn agents(scenario: &Scenario) -> Agents {
         let (law, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
         let map = maps.filter(|_| law.is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
-        (Guided::new(law_of(law, map), *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        (Guided::new(law_of(law, map), *speed_mps, *tolerance_m), Witness::new(safety.layer()))
     })
 }
 
@@ -95,7 +95,7 @@ pub fn own_agents<L: OwnLaw>(
     Ok(Box::new(move |index| {
         let (safety, [speed_mps, tolerance_m]) = &robots[index];
         let law = ScenarioLaw::Own(Own::new(law(index)));
-        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
+        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.layer()))
     }))
 }
 

@@ -17,7 +17,7 @@ use crate::world::scouts::Scouts;
 use crate::world::window_but;
 use staya_controller::agent::{
     AgentConfig, AnyInputs, AnySurroundings, CellState, ContactLossPolicy, Goals, InCell, InCells, InPlane, Inputs,
-    KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
+    KinematicState, OnGrid, Task, WAYPOINTS,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -93,7 +93,7 @@ impl PlaneGround {
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
         let plane = plane.with_sight(sights.fold(0.0, f64::max)).in_space(setup.space());
         let is_flat = setup.starts.iter().all(|start| start.position_m[2] == 0.0)
-            && setup.kinds().all(|group| group.safety.kind() != SafetyKind::Fly);
+            && setup.kinds().all(|group| !group.safety.flies());
         let sight = scenario.sensing().map(|sensing| {
             let mut sight = Sight::new(sensing, scenario.seed, scenario.tick_us, is_flat);
             sight.look(&plane);

@@ -369,5 +369,5 @@ mod waiting_scenes;
 fn a_robot_takes_no_more_memory_than_this() {
     let computer = size_of::<OnboardComputer>();
     let parts = [computer, size_of::<HostLaw>(), size_of::<HostSafety>(), size_of::<HostWire>()];
-    assert!(parts[0] <= 1280 && parts[1] <= 464 && parts[2] <= 96, "{parts:?}");
+    assert!(parts[0] <= 1280 && parts[1] <= 376 && parts[2] <= 104, "{parts:?}");
 }

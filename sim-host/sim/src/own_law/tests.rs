@@ -2,9 +2,10 @@ use super::*;
 use crate::engine::{Moment, Outcome, operated, simulate, simulate_from, simulate_own};
 use crate::record::RobotRow;
 use crate::scenario::{Overrides, Scenario};
-use staya_controller::agent::{Action, InPlane, Status};
+use staya_controller::agent::{Action, Protocol, Status};
 use staya_controller::geom::Vec3;
 use staya_controller::parameters::{Parameter, row};
+use staya_controller::wire::{Content, ProtocolId};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -45,6 +46,8 @@ impl Protocol for Paces {
     type Message = Halve;
     type Order = staya_controller::wire::Never;
 }
+
+impl InAny for Paces {}
 
 impl Law<f32> for Convoy {
     type Surroundings<'a> = InPlane<'a, f32>;

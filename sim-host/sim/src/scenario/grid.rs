@@ -50,6 +50,11 @@ pub(super) const fn moves(grid: &GridTable) -> Moves {
 pub(super) fn around(draft: &Draft<'_>, cruise_mps: Option<f64>, tolerance_m: f64) -> Checked<Around> {
     let (delay_s, rate_hz) = draft.file.radio.news(draft.step_s());
     Ok(Around {
+        radius_m: 0.0,
+        max_speed_mps: 0.0,
+        fastest_mps: 0.0,
+        brake_s: 0.0,
+        has_goal: true,
         cruise_mps: cruise_mps.map(|speed| speed as f32),
         tolerance_m: tolerance_m as f32,
         delay_s: delay_s as f32,

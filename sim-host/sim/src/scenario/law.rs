@@ -1,19 +1,18 @@
 //! `law = "NAME"` of a group of robots, and the table `NAME` beside it with the law's values.
 
-use super::read::{Field as _, Limits, Line, Node, Table, Usual, Wrong, nearest};
-use super::source::{Checked, Section, Source};
+use super::read::{Line, Node, Table, Wrong, nearest};
+use super::rows::{Word, contradicts, fill, heading, line, read, rows, store};
+use super::source::{Checked, Section};
 use super::table::Fields;
 use crate::own_law::{NEGOTIATION, Own, Site, added, own};
 use staya_controller::agent::{
-    Around, Contradiction, FormationSettings, Goals, LawSettings, Motion, RouteSettings, Settings, TEMPLATE,
-    WaypointSettings,
+    Around, Contradiction, FormationSettings, Goals, LawSettings, Motion, RouteSettings, Settings, SettingsOfLaw,
+    TEMPLATE, WaypointSettings,
 };
 use staya_controller::negotiation::Moves;
-use staya_controller::parameters::{Absent, BY_BODY, Parameter, Parameters};
+use staya_controller::parameters::{Absent, Parameter, Parameters};
 use staya_controller::template::Template;
 use staya_papers::{LookaheadSettings, PublishedSettings};
-use std::path::Path;
-use toml::de::DeValue;
 
 /// A law of robots, with the values that it is made from.
 #[derive(Clone, Debug, PartialEq)]
@@ -243,81 +242,18 @@ impl LawSetup {
                 None => Ok(()),
                 Some(row) => {
                     let (what, remedy) = ("contradicts the other values of the law", "change it or leave it out");
-                    Err(Contradiction { row, what, remedy })
+                    Err(Contradiction::new(row, what, remedy))
                 }
             },
         }
     }
 }
 
-/// Stores the values that the table has, whatever the others are.
-fn store(table: &mut dyn Parameters, values: &[(String, f32)]) {
-    for (name, value) in values {
-        if let Some(index) = table.index(name) {
-            let _ = table.store(index, *value, false);
-        }
-    }
-}
-
-/// Calls a function with each table of a law, a layer or a behaviour.
-pub type Tables<'a> = dyn FnMut(&mut dyn FnMut(&mut dyn Parameters)) + 'a;
-
-/// A row, the fault of its value, and how to correct it.
-type Fault = (&'static str, String, String);
-
-/// The first value that is not a whole number although its row stores one.
-fn rounded(tables: &mut Tables<'_>, values: &[(String, f32)]) -> Option<Fault> {
-    /// Gains are rounded to sixteenths, lengths to parts of a cell.
-    const FINE: f32 = 0.04;
-    let mut found = None;
-    tables(&mut |table| {
-        for (name, value) in values {
-            let Some(index) = table.index(name) else { continue };
-            let stored = table.get(index).unwrap_or(*value);
-            if value.fract() != 0.0 && stored.fract() == 0.0 && (stored - value).abs() > FINE {
-                let what = format!("{value} is not a whole number");
-                let remedy = format!("give {stored}, or another whole number");
-                found.get_or_insert((table.table()[index].name, what, remedy));
-            }
-        }
-    });
-    found
-}
-
-/// Reads the values of these rows from a table.
-fn read_values(node: &Node<'_>, rows: &[&'static Parameter]) -> Result<Vec<(String, f32)>, Wrong> {
-    let names: Vec<_> = rows.iter().map(|row| row.name).collect();
-    let table = Table::new(node, &names)?;
-    let value = |row: &&'static Parameter| Ok(value(&table, row)?.map(|value| (row.name.to_owned(), value)));
-    rows.iter().filter_map(|row| value(row).transpose()).collect()
-}
-
-/// Stores the values of `text`, a table in TOML, in tables, by the rules of scenario files. Returns
-/// the names of the values. Rows of `needed` must be given, too.
-///
-/// # Errors
-/// The field, the cause and the remedy; `list` is where all fields are documented.
-pub fn store_given(
-    text: &str,
-    list: &str,
-    needed: &[&str],
-    tables: &mut Tables<'_>,
-) -> Result<Vec<&'static str>, String> {
-    let mut rows: Vec<&'static Parameter> = Vec::new();
-    tables(&mut |table| rows.extend(table.table()));
-    let source = Source::new(Path::new(""), text).map_err(|error| error.without_place())?;
-    let values = source.read_by(|node| read_values(node, &rows), list).map_err(|error| error.without_place())?;
-    let (given, others): (Vec<_>, Vec<_>) =
-        rows.into_iter().partition(|row| values.iter().any(|(name, _)| name == row.name));
-    let is_needed = |row: &&&Parameter| row.absent == Absent::Needed || needed.contains(&row.name);
-    if let Some(row) = others.iter().find(is_needed) {
-        return Err(format!("missing `{}`: {}; give {}", row.name, row.what, Limits::of(row)));
-    }
-    tables(&mut |table| store(table, &values));
-    match rounded(tables, &values) {
-        None => Ok(given.into_iter().map(|row| row.name).collect()),
-        Some((row, what, remedy)) => Err(format!("{row}: {what}; {remedy}")),
-    }
+/// The rows of a law that files give.
+fn rows_of(law: &mut LawSetup) -> Vec<(&'static Parameter, Option<f32>)> {
+    let is_added = matches!(law, LawSetup::Added(law) if law.name != NEGOTIATION);
+    let all = rows(&mut |visit| law.tables(visit)).into_iter();
+    all.filter(|(row, _)| is_added || !matches!(row.absent, Absent::OfBody(_))).collect()
 }
 
 /// `law` and the tables of laws among the fields of robots in cells, or else of a group in the
@@ -330,24 +266,13 @@ pub struct LawPart<const CELLS: bool> {
     tables: Vec<(&'static str, Vec<(String, f32)>)>,
 }
 
-/// The rows of a law that files give, each with its default value.
-fn rows(law: &mut LawSetup) -> Vec<(&'static Parameter, Option<f32>)> {
-    let (mut rows, is_added) = (Vec::new(), matches!(law, LawSetup::Added(law) if law.name != NEGOTIATION));
-    law.tables(&mut |table| {
-        let all = table.table().iter().enumerate();
-        let given = all.filter(|(_, row)| is_added || !matches!(row.absent, Absent::OfBody(_)));
-        rows.extend(given.map(|(index, row)| (row, table.get(index))));
-    });
-    rows
-}
-
 fn usual(name: &str) -> Option<LawSetup> {
     LawSetup::by_name(name, Moves::EIGHT, Some(1.0))
 }
 
 /// The names of a law's values in files; `None` for an unknown law.
 pub(super) fn names_of(law: &str) -> Option<Vec<&'static str>> {
-    Some(rows(&mut usual(law)?).into_iter().map(|(row, _)| row.name).collect())
+    Some(rows_of(&mut usual(law)?).into_iter().map(|(row, _)| row.name).collect())
 }
 
 impl<const CELLS: bool> LawPart<CELLS> {
@@ -376,21 +301,12 @@ impl<const CELLS: bool> LawPart<CELLS> {
             let remedy = format!("give law = \"{given}\", or leave this table out");
             return Err(at.error(given, format!("these robots have the law \"{name}\""), remedy));
         }
-        let missing = rows(&mut law).into_iter().find(|(row, _)| row.absent == Absent::Needed && !self.given(row.name));
-        if let Some((row, _)) = missing {
-            let remedy = format!("give {}, {}, in [{}]", row.name, Limits::of(row), at.field(name));
-            return Err(at.error(name, format!("the law \"{name}\" needs `{}`: {}", row.name, row.what), remedy));
-        }
         let values = self.tables.first().map_or(&[][..], |(_, values)| values);
-        match &mut law {
-            LawSetup::Added(law) => law.values = values.to_vec(),
-            law => law.tables(&mut |table| store(table, values)),
+        if let LawSetup::Added(law) = &mut law {
+            law.values = values.to_vec();
         }
-        if let Some((row, what, remedy)) = rounded(&mut |visit| law.tables(visit), values) {
-            return Err(at.error(&format!("{name}.{row}"), what, remedy));
-        }
-        law.adapt(&|row| self.given(row), around)
-            .map_err(|wrong| at.error(&format!("{name}.{}", wrong.row), wrong.what, wrong.remedy))?;
+        fill(&mut |visit| law.tables(visit), at, (name, &format!("the law \"{name}\"")), values)?;
+        law.adapt(&|row| self.given(row), around).map_err(|wrong| contradicts(at, name, wrong))?;
         Ok(law)
     }
 }
@@ -403,36 +319,6 @@ fn unknown(node: &Node<'_>, name: &str) -> Wrong {
     };
     let wrong = Wrong::new(node, format!("this program has no law \"{name}\""));
     Wrong { remedy: Some(remedy), is_listed: false, ..wrong }
-}
-
-fn value(table: &Table<'_>, row: &Parameter) -> Result<Option<f32>, Wrong> {
-    if row.is_switch() {
-        return Ok(table.read::<bool>(row.name, None)?.map(|is| f32::from(u8::from(is))));
-    }
-    if row.words.is_empty() {
-        return Ok(table.read::<f64>(row.name, Some(&Limits::of(row)))?.map(|value| value as f32));
-    }
-    let Some(Word(word)) = table.read::<Word>(row.name, None)? else { return Ok(None) };
-    match row.words.iter().position(|known| *known == word) {
-        Some(index) => Ok(Some(index as f32)),
-        None => {
-            let known: Vec<_> = row.words.iter().map(|word| (*word, ())).collect();
-            table.of(row.name, |node| super::word(node, &known)).map(|_| None)
-        }
-    }
-}
-
-struct Word(String);
-
-impl super::Read for Word {
-    const KIND: &'static str = "a name in quotes";
-
-    fn read(node: &Node<'_>) -> Result<Self, Wrong> {
-        match node.get_ref() {
-            DeValue::String(text) => Ok(Self(text.clone().into_owned())),
-            _ => Err(Wrong::not(node, Self::KIND)),
-        }
-    }
 }
 
 impl<const CELLS: bool> Fields for LawPart<CELLS> {
@@ -450,69 +336,25 @@ impl<const CELLS: bool> Fields for LawPart<CELLS> {
         let mut tables = Vec::new();
         for (law, _) in laws() {
             let Some(mut setup) = table.has(law).then(|| usual(law)).flatten() else { continue };
-            let rows: Vec<_> = rows(&mut setup).into_iter().map(|(row, _)| row).collect();
-            tables.push((law, table.of(law, |node| read_values(node, &rows))?));
+            let values = table.of(law, |node| {
+                let rows: Vec<_> = rows_of(&mut setup).into_iter().map(|(row, _)| row).collect();
+                let names: Vec<_> = rows.iter().map(|row| row.name).collect();
+                read(&Table::new(node, &names)?, &rows)
+            })?;
+            tables.push((law, values));
         }
         Ok(Self { name, tables })
     }
 
     fn part_lines() -> Vec<Line> {
-        let line = |name, doc: &'static str, kind, inner| Line {
-            name,
-            doc: doc.into(),
-            kind,
-            limits: None,
-            words: Vec::new(),
-            default: Usual::None,
-            reads: |node| Word::read(node).map(drop),
-            inner,
-        };
+        let law = heading("law", "The law of the robots, by name.", Vec::new());
         let sites: &[Site] = if CELLS { &[Site::Cells] } else { &[Site::Plane, Site::PlaneOverCells] };
         let tables = laws().into_iter().filter_map(|(name, what)| {
             let mut law = usual(name).filter(|law| sites.iter().any(|site| law.fits(*site)))?;
-            let rows: Vec<_> = rows(&mut law).into_iter().map(|(row, default)| self::line(row, default)).collect();
-            let reads = |node: &Node<'_>| Table::any(node).map(drop);
-            (!rows.is_empty()).then(|| Line { reads, ..line(name, what, "a table", rows) })
+            let rows = rows_of(&mut law);
+            let inner: Vec<_> = rows.into_iter().map(|(row, default)| line(row, default)).collect();
+            (!inner.is_empty()).then(|| heading(name, what, inner))
         });
-        [line("law", "The law of the robots, by name.", Word::KIND, Vec::new())].into_iter().chain(tables).collect()
+        [law].into_iter().chain(tables).collect()
     }
-}
-
-/// The documentation of the rows of tables, with the values of the tables as defaults, also of rows
-/// that in a run depend on the body.
-pub fn lines_of(tables: &mut Tables<'_>) -> Vec<Line> {
-    let mut all = Vec::new();
-    tables(&mut |table| {
-        for (index, row) in table.table().iter().enumerate() {
-            let mut line = line(row, table.get(index));
-            let of_body = matches!(row.absent, Absent::OfBody(_) | Absent::Depends(BY_BODY));
-            if let Some(value) = table.get(index).filter(|_| of_body) {
-                line.default = Usual::Value(value.to_string());
-            }
-            all.push(line);
-        }
-    });
-    all
-}
-
-/// The documentation of a row.
-pub(super) fn line(row: &'static Parameter, default: Option<f32>) -> Line {
-    let (kind, limits, reads): (_, _, fn(&Node<'_>) -> _) = match (row.is_switch(), row.words.is_empty()) {
-        (true, _) => (bool::KIND, None, |node| bool::read(node).map(drop)),
-        (_, true) => (f64::KIND, Some(Limits::of(row)), |node| f64::read(node).map(drop)),
-        _ => (Word::KIND, None, |node| Word::read(node).map(drop)),
-    };
-    let shown = |value: f32| match row.words.get(value as usize) {
-        Some(word) if row.is_switch() => (*word).to_owned(),
-        Some(word) => format!("\"{word}\""),
-        None => value.to_string(),
-    };
-    let default = match row.absent {
-        Absent::Default => default.map_or(Usual::None, |value| Usual::Value(shown(value))),
-        Absent::Depends(on) => Usual::Words(on.into()),
-        Absent::OfBody(name) => Usual::Words(format!("that of the body, `{name}`").into()),
-        Absent::Needed => Usual::None,
-    };
-    let words = if row.is_switch() { Vec::new() } else { row.words.to_vec() };
-    Line { name: row.name, doc: row.what.into(), kind, limits, words, default, reads, inner: Vec::new() }
 }

@@ -8,11 +8,11 @@ mod clocks;
 mod field;
 mod fingerprint;
 mod formation;
-mod given;
 mod grid;
 mod intervention;
 mod land;
 mod law;
+mod layer;
 mod maps;
 mod plane;
 mod plausibility;
@@ -20,6 +20,7 @@ mod ranges;
 mod read;
 mod renamed;
 mod robots;
+mod rows;
 mod schema;
 mod scouting;
 mod setting;
@@ -32,20 +33,21 @@ pub use authentication::Keys;
 pub use clocks::{Clocks, ClocksTable, Phases};
 pub use field::Field;
 pub use formation::{FormationEntry, FormationStarts};
-pub use given::{Given, Row, Rows};
 pub use grid::GridTable;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
-pub use law::{AddedLaw, LawPart, LawSetup, Tables, laws, lines_of, store_given};
+pub use law::{AddedLaw, LawPart, LawSetup, laws};
+pub use layer::{ContactTable, LayerPart};
 pub use maps::MapsTable;
 pub use plane::{
-    BallEntry, BallsEntry, CircleEntry, CloudEntry, GroupTable, HalfSpaceEntry, Intruder, IntruderEntry, OrcaTable,
-    Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, PushOutTable, RobotGroup,
-    RobotsSource, ScatteredDiscs, SensingTable, Start, Target, WallEntry,
+    BallEntry, BallsEntry, CircleEntry, CloudEntry, GroupTable, HalfSpaceEntry, Intruder, IntruderEntry, Order,
+    OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, RobotGroup, RobotsSource, ScatteredDiscs,
+    SensingTable, Start, Target, WallEntry,
 };
 pub use plausibility::PlausibilityTable;
 pub use read::{AnyTable, Field as Read, Limits, Line, Node, Table, Usual, Wrong, documented, nearest, word};
 pub use renamed::{formation_law, value as renamed_value};
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
+pub use rows::{Tables, lines_of, store_given};
 pub use schema::{
     Area, AttackKind, AttackTable, AuthenticationTable, ChangeSource, ChangeTable, Crop, DriftTable, EntropyTable,
     FaultTable, LandSource, Lie, MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, Secret,

@@ -1,12 +1,9 @@
 //! Settings that replace fields of a scenario file: `radio.loss=0.3`.
 
 use super::law::names_of;
-use super::{
-    Field, Fields as _, OrcaTable, Overrides, PushOutTable, Read as _, Scenario, ScenarioError, ScenarioFile, Source,
-};
+use super::layer::{names_in, section, sections};
+use super::{Field, Fields as _, Overrides, Read as _, Scenario, ScenarioError, ScenarioFile, Source};
 use crate::file::{TEXT, read_text};
-use staya_controller::agent::SafetyKind;
-use staya_controller::names::Named as _;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -132,12 +129,8 @@ pub fn named(
 
 /// The table of a safety layer, if it has one, with its fields; `None` for an unknown layer.
 fn layer_table(name: &str) -> Option<Option<(&'static str, Vec<&'static str>)>> {
-    let (_, kind) = SafetyKind::NAMES.iter().find(|(known, _)| *known == name)?;
-    Some(match kind {
-        SafetyKind::None => None,
-        SafetyKind::PushOut => Some(("push_out", PushOutTable::names())),
-        _ => Some(("orca", OrcaTable::names())),
-    })
+    let table = section(name)?;
+    Some(sections().contains(&table).then(|| (table, names_in(table))))
 }
 
 /// Applies settings to a scenario's text; comments are lost. `path` appears in errors.

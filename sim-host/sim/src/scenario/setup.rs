@@ -4,7 +4,7 @@ use super::law::LawSetup;
 use super::{Formation, Intervention, Movement, Scenario};
 use crate::terrain::change::ChangeKind;
 use crate::world::scouts::Scouts;
-use staya_controller::agent::{RouteSettings, SafetySetup};
+use staya_controller::agent::{LayerSettings, RouteSettings, UnguardedSettings};
 use staya_controller::grid::Cell;
 
 impl Scenario {
@@ -87,7 +87,7 @@ impl Scenario {
 
     /// Safety layer of robot `index`.
     #[must_use]
-    pub fn safety(&self, index: usize) -> SafetySetup {
-        self.plane().map_or(SafetySetup::None, |plane| plane.group(index).safety)
+    pub fn safety(&self, index: usize) -> LayerSettings {
+        self.plane().map_or(LayerSettings::None(UnguardedSettings), |plane| plane.group(index).safety)
     }
 }

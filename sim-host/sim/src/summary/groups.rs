@@ -46,7 +46,7 @@ impl GroupFigures {
             robots: part.members.len(),
             law: scenario.law_of(part.members.start).name().to_owned(),
             has_goals: scenario.law_of(part.members.start).goals().are_own(),
-            safety: scenario.safety(part.members.start).kind().name(),
+            safety: scenario.safety(part.members.start).name(),
             arrived: times.len(),
             arrival_mean_seconds: (!times.is_empty())
                 .then(|| seconds(times.iter().sum::<u64>() as f64 / times.len() as f64)),

@@ -2,9 +2,9 @@
 
 use super::{BEACON_STEPS, Body, FLOOR_M, LAG_S, Radio, SPEED_MPS, STEP_S, Scene, Swarm, Task as Wanted, Vector};
 use staya_controller::agent::{
-    AgentConfig, AnyAgent, AnyHalfPlanes, AnyInputs, CELLS, CellState, Command, ContactLossPolicy, FormationSettings,
-    GridWorkspace, InCell, InCells, InPlane, Inputs, KinematicState, LatticeSettings, LawSettings, OnGrid,
-    RouteSettings, SafetySetup, Setup, Task, VISITS, Waypoint, WaypointSettings,
+    AgentConfig, AnyAgent, AnyInputs, CELLS, CellState, Command, ContactLossPolicy, FormationSettings, GridWorkspace,
+    InCell, InCells, InPlane, Inputs, KinematicState, LatticeSettings, LawSettings, LayerSettings, OnGrid,
+    OrcaSettings, RouteSettings, Setup, Task, UnguardedSettings, VISITS, Waypoint, WaypointSettings,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -76,11 +76,10 @@ fn setup(scene: &Scene, drone: usize) -> Setup {
             })
         }
     };
-    let safety = SafetySetup::Orca {
+    let safety = LayerSettings::Orca(OrcaSettings {
         params: AvoidParams { horizon_s: HORIZON_S, ..AvoidParams::default() },
         inflation: StalenessInflation { growth_mps: SPEED_MPS as f32, max_m: (FLOOR_M / 2.0) as f32 },
-        source: AnyHalfPlanes::Analytic,
-    };
+    });
     Setup { agent, law, safety, format: Format::default() }
 }
 

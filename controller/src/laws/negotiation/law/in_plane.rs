@@ -5,6 +5,7 @@ use super::sight;
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
 use crate::law::{self, Action, BadInput, Decision, InCells, Law, Protocol, Radio, Status, Tools, View};
+use crate::laws::any_protocol::InAny;
 use crate::laws::cells::GridOrder;
 use crate::parameters::{Parameters, SPEED};
 use crate::robot::RobotId;
@@ -32,6 +33,8 @@ impl Protocol for InStep {
     type Message = Report;
     type Order = GridOrder;
 }
+
+impl InAny for InStep {}
 
 /// The payload of a robot that negotiates in the plane; at most 16 bytes on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,6 +7,7 @@ use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{
     self, Action, BadInput, CellState, Decision, Law, OnGrid, Protocol, Radio, Status, Tools, View, Wait,
 };
+use crate::laws::any_protocol::InAny;
 use crate::laws::cells::GridOrder;
 use crate::neighbor::Neighbor;
 use crate::robot::RobotId;
@@ -46,6 +47,7 @@ const STAYS: u8 = u8::MAX;
 
 impl Content for NegotiationPayload {}
 impl Content for Report {}
+impl InAny for Negotiation {}
 
 /// Robots that pass each other on the grid, with or without a map: at most `N` plan together, with
 /// distances of `F` goals. Cells cost the same, walls apart. Robots of other laws are not seen. On

@@ -1,7 +1,7 @@
 //! Robots with exact knowledge, which move by the law alone.
 
 use super::Run;
-use staya_controller::agent::{GOALS, GoalFlockSettings, LawSettings, SafetySetup};
+use staya_controller::agent::{GOALS, GoalFlockSettings, LawSettings, LayerSettings};
 use staya_controller::body::Body;
 use staya_controller::digest::{chained, digest};
 use staya_controller::geom::{Position, Vec3};
@@ -46,9 +46,9 @@ impl<'a> Crowd<'a> {
     pub(super) fn new(run: &Run, plane: &'a PlaneSetup) -> Option<Self> {
         let group = &plane.general;
         let push_out = match group.safety {
-            SafetySetup::None => None,
-            SafetySetup::PushOut { params } => Some(params.cast()),
-            SafetySetup::Orca { .. } | SafetySetup::Fly { .. } => return None,
+            LayerSettings::None(_) => None,
+            LayerSettings::PushOut(settings) => Some(settings.params.cast()),
+            _ => return None,
         };
         let (law, range_m) = match group.law.built_in()? {
             LawSettings::Lattice(lattice) if push_out.is_none() => {

@@ -156,10 +156,7 @@ fn a_vehicle_with_a_position_error_gets_more_distance() {
 fn a_silent_vehicle_gets_the_distance_that_it_needs_to_stop() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let scenario = Scenario::load(&path, &Overrides::default()).unwrap();
-    let max_m = |safety| match safety {
-        SafetySetup::Orca { inflation, .. } => inflation.max_m,
-        other => panic!("{other:?}"),
-    };
+    let max_m = |safety: LayerSettings| safety.orca().expect("ORCA").inflation.max_m;
     let usual = scenario.safety(0);
     assert_eq!(max_m(usual), 1.0, "a radius, as for robots that stop at once");
     assert_eq!(max_m(with_room(usual, 10.0)), 10.0);

@@ -3,7 +3,7 @@
 use super::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, Law, Protocol, Radio, Status, Surroundings as _, Tools, View,
+    Action, AnySurroundings, BadInput, Decision, InAny, Law, Protocol, Radio, Status, Surroundings as _, Tools, View,
 };
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Dir;
@@ -23,6 +23,8 @@ impl Protocol for Numbers {
     type Message = Never;
     type Order = Never;
 }
+
+impl InAny for Numbers {}
 
 impl Law<f32> for Sums {
     type Surroundings<'a> = AnySurroundings<'a, f32>;

@@ -2,7 +2,7 @@
 
 use super::PlaneGround;
 use crate::world::plane::{Barrier, Barriers};
-use staya_controller::agent::{Goals, SafetyKind};
+use staya_controller::agent::{Goals, LayerSettings};
 use std::collections::HashMap;
 
 /// Robots times obstacles up to which barriers are looked for; those of later robots are not known.
@@ -25,9 +25,9 @@ impl PlaneGround {
     pub(super) fn barrier(&self, index: usize, goal_m: [f64; 3], known: &mut Known) -> Option<Barrier> {
         let (disc, group) = (&self.plane.discs()[index], self.setup.group(self.number(index)));
         let [from, to] = [disc.position_m, goal_m].map(|[x, y, _]| [x, y]);
-        match group.safety.kind() {
-            SafetyKind::None => None,
-            SafetyKind::Fly => {
+        match group.safety {
+            LayerSettings::None(_) => None,
+            LayerSettings::Fly(_) => {
                 let least_m = disc.radius_m - group.tolerance_m;
                 let is_taken = self.plane.solids().iter().any(|solid| solid.distance_m(goal_m) < least_m);
                 is_taken.then_some(Barrier::GoalTaken)

@@ -4,7 +4,8 @@ use crate::scenario::{Movement, Overrides};
 use crate::world::MoveRules;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Decision, InPlane, Law, OnGrid, Protocol, Radio, Report, Status, Tools, View, WaypointGuidance,
+    Action, BadInput, Decision, InAny, InPlane, Law, OnGrid, Protocol, Radio, Report, Status, Tools, View,
+    WaypointGuidance,
 };
 use staya_controller::grid::Dir;
 use staya_controller::robot::RobotId;
@@ -23,6 +24,8 @@ impl Protocol for Numbers {
     type Message = Never;
     type Order = Never;
 }
+
+impl InAny for Numbers {}
 
 impl Law<f32> for Highest {
     type Surroundings<'a> = InPlane<'a, f32>;

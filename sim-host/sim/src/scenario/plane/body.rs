@@ -1,11 +1,11 @@
 //! The fields of a group of robots.
 
 use super::super::Draft;
-use super::super::grid::{around, moves};
+use super::super::grid::moves;
 use super::super::law::LawSetup;
 use super::super::source::{Checked, Section};
 use super::table::{BodyTable, GroupTable, PlaneRobotEntry};
-use staya_controller::agent::{LawSettings, Settings as _, WaypointSettings};
+use staya_controller::agent::{Around, LawSettings, Settings as _, WaypointSettings};
 
 /// The fields of a group of robots, with their table in the file.
 #[derive(Clone, Debug)]
@@ -42,10 +42,9 @@ impl<'a> Group<'a> {
         Self { draft, at: draft.at(path), body: body.clone(), kind, flock }
     }
 
-    /// The law of robots with this cruising speed and distance of arrival.
-    pub fn law(&self, cruise_mps: f64, tolerance_m: f64) -> Checked<LawSetup> {
-        let around = around(self.draft, Some(cruise_mps), tolerance_m)?;
-        self.body.law.build(&self.at, USUAL, moves(&self.draft.file.grid), &around)
+    /// The law of robots with this body.
+    pub fn law(&self, around: &Around) -> Checked<LawSetup> {
+        self.body.law.build(&self.at, USUAL, moves(&self.draft.file.grid), around)
     }
 
     /// Whether each robot has a goal of its own, at which it stays.

@@ -6,7 +6,7 @@ use super::super::source::{Checked, Section};
 use super::body::Group;
 use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
-use staya_controller::agent::{Goals, SafetyKind};
+use staya_controller::agent::Goals;
 
 /// The terrain and the obstacles around the robots at the start.
 pub(super) struct Surroundings<'a> {
@@ -51,7 +51,7 @@ impl<'a> Surroundings<'a> {
         }
         self.on_map(at, name, place_m)?;
         let (body, radius_m) = (&group.body, group.body.radius_m);
-        if group.kind.goals() != Goals::Waypoints || body.safety == SafetyKind::None {
+        if group.kind.goals() != Goals::Waypoints || body.layer.kind().is_none() {
             return Ok(());
         }
         let least_m = radius_m - body.tolerance_m.unwrap_or(radius_m / 10.0);

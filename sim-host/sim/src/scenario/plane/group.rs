@@ -1,17 +1,16 @@
 //! Groups of identical robots: body, law and safety layer.
 
+use super::super::grid::around;
 use super::super::law::LawSetup;
-use super::super::ranges::{duration, micros, short};
+use super::super::layer::ContactTable;
+use super::super::ranges::{duration, micros};
 use super::super::source::Checked;
 use super::body::Group;
 use super::checks;
-use super::table::OrcaTable;
 use crate::world::plane::Abilities;
-use staya_controller::agent::{ContactLossPolicy, Goals, SafetyKind, SafetySetup};
-use staya_controller::neighbor::StalenessInflation;
-use staya_controller::orca::AvoidParams;
+use staya_controller::agent::{Around, ContactLossPolicy, Goals, LayerSettings};
 use staya_controller::parameters::TOLERANCE;
-use staya_controller::push_out::{Evasion, Model, PushOutParams};
+use staya_controller::push_out::Model;
 use staya_controller::time::Duration;
 
 /// Properties that the robots of a group have in common.
@@ -30,7 +29,7 @@ pub struct RobotGroup {
     /// The law; formations add the robot's place.
     pub law: LawSetup,
     /// The safety layer.
-    pub safety: SafetySetup,
+    pub safety: LayerSettings,
     /// Whether the ball around a silent robot grows as fast as the fastest robot moves.
     grows_as_the_fastest: bool,
     /// Reaction to loss of contact.
@@ -49,22 +48,22 @@ impl RobotGroup {
     pub fn raise_lag(&mut self, lag_s: f64) {
         self.abilities.lag_s = self.abilities.lag_s.max(lag_s);
         let least_s = self.abilities.least_horizon_s() as f32;
-        if let SafetySetup::Orca { params, .. } | SafetySetup::Fly { params, .. } = &mut self.safety {
-            params.horizon_s = params.horizon_s.max(least_s);
+        if let Some(orca) = self.safety.orca_mut() {
+            orca.params.horizon_s = orca.params.horizon_s.max(least_s);
         }
     }
 
     /// Whether the safety layer avoids robots that have fallen silent.
     #[must_use]
-    pub fn tracks_silence(&self) -> bool {
-        !matches!(self.safety.kind(), SafetyKind::None | SafetyKind::PushOut)
+    pub const fn tracks_silence(&self) -> bool {
+        self.safety.orca().is_some()
     }
 
     /// Ratio of the vertical to the horizontal separation; 1 for groups that do not fly.
     #[must_use]
     pub fn downwash(&self) -> f64 {
         match self.safety {
-            SafetySetup::Fly { downwash, .. } => downwash.into(),
+            LayerSettings::Fly(fly) => fly.downwash.into(),
             _ => 1.0,
         }
     }
@@ -75,8 +74,8 @@ pub(super) fn grow_as_the_fastest(general: &mut RobotGroup, groups: &mut [RobotG
     let speed = |group: &RobotGroup| group.abilities.max_speed_mps as f32;
     let fastest_mps = groups.iter().map(speed).fold(speed(general), f32::max);
     for group in groups.iter_mut().chain([general]).filter(|group| group.grows_as_the_fastest) {
-        if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut group.safety {
-            inflation.growth_mps = fastest_mps;
+        if let Some(orca) = group.safety.orca_mut() {
+            orca.inflation.growth_mps = fastest_mps;
         }
     }
 }
@@ -96,13 +95,22 @@ impl Group<'_> {
             step_s: f64::from(micros(self.draft.step_s())) / 1e6,
             tick_s: f64::from(micros(self.draft.file.tick_s)) / 1e6,
         };
-        let orca = body.orca.clone().unwrap_or_default();
-        let law = self.law(cruise_mps, tolerance_m)?;
+        let around = Around {
+            radius_m: body.radius_m as f32,
+            max_speed_mps: body.max_speed_mps as f32,
+            fastest_mps: body.max_speed_mps as f32,
+            brake_s: abilities.least_horizon_s() as f32,
+            has_goal: self.has_goals(),
+            ..around(self.draft, Some(cruise_mps), tolerance_m)?
+        };
+        let law = self.law(&around)?;
         checks::law(self, &law)?;
-        let safety = self.safety(&abilities, &orca)?;
-        let has_orca = !matches!(body.safety, SafetyKind::None | SafetyKind::PushOut);
-        let remedy = format!("give {}.safety = \"orca\", or leave this table out", self.at.path);
-        self.at.require(has_orca || body.orca.is_none(), "orca", "these robots have another safety layer", remedy)?;
+        let safety = body.layer.build(&self.at, &around)?;
+        let jams = self.kind.goals() == Goals::Waypoints
+            && matches!(&safety, LayerSettings::PushOut(push_out) if push_out.params.model == Model::Tangential);
+        let what = "robots that go straight to a place jam for ever in each other's way";
+        self.at.require(!jams, "push_out.model", what, "give \"radial\", or safety \"orca\"")?;
+        let contact = &body.layer.contact;
         Ok(RobotGroup {
             abilities,
             radius_m: body.radius_m,
@@ -111,67 +119,16 @@ impl Group<'_> {
             sight_m: body.sight_m,
             law,
             safety,
-            grows_as_the_fastest: orca.inflation_mps.is_none(),
-            contact_loss: contact_loss(&orca),
-            listen: orca.listen_s.map(duration),
-            expects_others: orca.expects_others,
+            grows_as_the_fastest: body.layer.get("inflation_mps").is_none(),
+            contact_loss: contact_loss(contact),
+            listen: contact.listen_s.map(duration),
+            expects_others: contact.expects_others,
             flock: self.flock,
         })
     }
-
-    fn safety(&self, abilities: &Abilities, table: &OrcaTable) -> Checked<SafetySetup> {
-        let mut params = self.look_ahead();
-        let brake_s = abilities.least_horizon_s();
-        params.horizon_s = params.horizon_s.max(brake_s as f32);
-        if let Some(given) = table.params.get("horizon_s").filter(|&given| given < brake_s) {
-            let what = format!("{} is less than 2 (max_speed_mps / max_acceleration_mps2 + lag_s)", short(given));
-            let remedy = format!("give {} seconds or more, or leave it out", short(brake_s));
-            return Err(self.at.error("orca.horizon_s", what, remedy));
-        }
-        table.params.store(&mut params);
-        let inflation = StalenessInflation {
-            growth_mps: table.inflation_mps.unwrap_or(self.body.max_speed_mps) as f32,
-            max_m: table.inflation_m.unwrap_or(self.body.radius_m) as f32,
-        };
-        let mut setup = self.body.safety.setup(params, inflation, self.push_out()?);
-        match (&mut setup, table.downwash) {
-            (_, None) => {}
-            (SafetySetup::Fly { downwash, .. }, Some(value)) => *downwash = value as f32,
-            (_, Some(_)) => {
-                let what = "robots in the plane are not above each other";
-                return Err(self.at.error("orca.downwash", what, "give safety = \"fly\", or leave it out"));
-            }
-        }
-        Ok(setup)
-    }
-
-    /// A flock has the longest look-ahead: its members move together, and have no places of their
-    /// own that they could be late at. So have flyers, which jam in a downwash with less.
-    fn look_ahead(&self) -> AvoidParams<f32> {
-        if !self.has_goals() || self.body.safety == SafetyKind::Fly {
-            return AvoidParams::default();
-        }
-        AvoidParams::for_body(self.body.radius_m as f32, self.body.max_speed_mps as f32)
-    }
-
-    fn push_out(&self) -> Checked<PushOutParams<f32>> {
-        let mut params = PushOutParams::new(1.0);
-        let given = self.body.push_out.as_ref();
-        let go_together = (self.body.safety == SafetyKind::PushOut) == given.is_some();
-        let what = "safety \"push_out\" and its table go together";
-        self.at.require(go_together, "push_out", what, "give both or none of them")?;
-        let Some(given) = given else { return Ok(params) };
-        let jams = self.kind.goals() == Goals::Waypoints && given.model == Model::Tangential;
-        let what = "robots that go straight to a place jam for ever in each other's way";
-        self.at.require(!jams, "push_out.model", what, "give \"radial\", or safety \"orca\"")?;
-        given.params.store(&mut params);
-        params.model = given.model;
-        params.evasion = if given.single { Evasion::Single } else { Evasion::Multiple };
-        Ok(params)
-    }
 }
 
-fn contact_loss(table: &OrcaTable) -> ContactLossPolicy<f32> {
+fn contact_loss(table: &ContactTable) -> ContactLossPolicy<f32> {
     let usual = ContactLossPolicy::DEFAULT;
     ContactLossPolicy {
         stands_after: table.stands_after_s.map_or(usual.stands_after, duration),

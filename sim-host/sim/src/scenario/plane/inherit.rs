@@ -1,6 +1,7 @@
 //! Groups inherit fields of `[plane]`.
 
 use super::super::law::LawPart;
+use super::super::layer::{section, sections};
 use super::super::table::Fields as _;
 use super::table::BodyTable;
 use toml::Spanned;
@@ -14,19 +15,16 @@ pub fn inherit(root: &mut DeTable<'_>) {
     let general: Vec<_> = plane.iter().filter(|(key, _)| names.contains(&key.get_ref().as_ref())).collect();
     let general: Vec<_> = general.into_iter().map(|(key, value)| (key.clone(), value.clone())).collect();
     let general_of = |name: &str| general.iter().find(|(key, _)| key.get_ref() == name)?.1.get_ref().as_str();
-    let (law, layer) = (general_of("law"), general_of("safety").unwrap_or("orca"));
-    let is_orca = |safety: &str| !matches!(safety, "none" | "push_out");
+    let (law, layer) = (general_of("law"), section(general_of("safety").unwrap_or("orca")));
     let Some(DeValue::Array(groups)) = plane.get_mut("group").map(Spanned::get_mut) else { return };
     for group in groups.iter_mut() {
         let DeValue::Table(group) = group.get_mut() else { continue };
         let own = |name: &str| group.get(name).and_then(|value| value.get_ref().as_str());
         let has_law = own("law").is_none_or(|own| Some(own) == law);
-        let own_layer = own("safety").unwrap_or(layer);
-        let (has_layer, has_orca) = (own_layer == layer, is_orca(own_layer) && is_orca(layer));
+        let has_layer = own("safety").is_none_or(|own| section(own) == layer);
         for (key, value) in &general {
             let is_inherited = match key.get_ref().as_ref() {
-                "push_out" => has_layer,
-                "orca" => has_orca,
+                name if sections().contains(&name) => has_layer,
                 name => has_law || !LawPart::<false>::names().contains(&name),
             };
             if is_inherited && !group.contains_key(key.get_ref().as_ref()) {

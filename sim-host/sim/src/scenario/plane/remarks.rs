@@ -5,7 +5,7 @@ use super::super::law::LawSetup;
 use super::{PlaneSetup, RobotGroup, Start};
 use crate::radio::RadioParams;
 use crate::world::plane::{Solid, Solids, contains};
-use staya_controller::agent::{GAMMA_OF_TWO, Goals, LawSettings, SafetySetup};
+use staya_controller::agent::{GAMMA_OF_TWO, Goals, LawSettings};
 use staya_controller::lattice::{Algorithm, LatticeParams};
 
 const NAMED: usize = 3;
@@ -44,7 +44,7 @@ pub(in super::super) fn remarks(scenario: &Scenario, setup: &PlaneSetup) -> Vec<
         loops.iter().any(|corners| is_inside(corners, start.position_m) != is_inside(corners, goal_m))
     });
     let in_space = is(&|group, start, goal_m| {
-        let is_plane = matches!(group.safety, SafetySetup::Orca { .. } | SafetySetup::PushOut { .. });
+        let is_plane = !group.safety.flies() && !group.safety.is_none();
         is_plane && (goal_m[2] - start.position_m[2]).abs() > group.tolerance_m
     });
     let troubles = [
@@ -114,7 +114,7 @@ fn long_tick(group: &RobotGroup, tick_s: f64) -> Option<String> {
 
 /// Warns of robots that stand beside each other, since each may be far away when it is heard.
 fn late_news(group: &RobotGroup, scenario: &Scenario) -> Option<String> {
-    let (SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. }) = group.safety else { return None };
+    let inflation = group.safety.orca()?.inflation;
     let (delay_s, _) = scenario.radio.news(scenario.step_s());
     let unknown_s = (delay_s - scenario.step_s()).max(0.0);
     let (growth_mps, radius_m) = (f64::from(inflation.growth_mps), group.radius_m);

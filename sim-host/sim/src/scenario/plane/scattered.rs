@@ -90,7 +90,7 @@ pub(super) fn starts(
     let (least_m, spacing_m) = (2.0 * body.radius_m, entry.spacing_m.unwrap_or(3.0 * body.radius_m));
     at.within("spacing_m", spacing_m, least_m..=1e6, "metres")?;
     let [low, high] = corners(entry.from_m, entry.to_m);
-    let downwash = body.orca.as_ref().and_then(|orca| orca.downwash).unwrap_or(1.0).max(1.0);
+    let downwash = f64::from(body.layer.get("downwash").unwrap_or(1.0));
     let (mut taken, mut aims) = (Taken::new(spacing_m, downwash), Taken::new(spacing_m, downwash));
     let (first, mut starts) = (others.len() as u32, Vec::with_capacity(entry.count as usize));
     for index in 0..entry.count {

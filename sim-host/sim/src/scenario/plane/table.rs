@@ -1,14 +1,11 @@
 //! `[plane]` as written in a scenario file, with the documentation of its fields.
 
 use super::super::formation::FormationEntry;
-use super::super::given::Given;
 use super::super::law::LawPart;
+use super::super::layer::LayerPart;
 use super::super::read::{Field, Node, Wrong};
-use crate::{defaults, names, one_of, table};
-use staya_controller::agent::SafetyKind;
-use staya_controller::orca::{AvoidParams, DOWNWASH};
+use crate::{one_of, table};
 use staya_controller::parameters::{RADIUS, TOLERANCE};
-use staya_controller::push_out::{Model, PushOutParams};
 use std::ops::RangeInclusive;
 
 /// Coordinates along each axis, metres: beacons encode positions as 32-bit millimetres.
@@ -27,6 +24,7 @@ table! {
     /// lacks, and the tables of a law or a safety layer if it has the same one.
     pub struct BodyTable {
         part law: LawPart<false>;
+        part layer: LayerPart;
         /// Radius of each body, metres.
         pub radius_m: f64, RADIUS;
         /// Highest speed on easy land, m/s.
@@ -44,12 +42,6 @@ table! {
         /// Time of the first decision, a whole number of ticks below a step. Default: by
         /// `clocks.phases`.
         pub phase_s: Option<f64>, 0.0..=60.0, "seconds";
-        /// Safety layer.
-        pub safety: SafetyKind = SafetyKind::Orca;
-        /// Parameters of ORCA.
-        pub orca: Option<OrcaTable>;
-        /// Parameters of push-out; required for it.
-        pub push_out: Option<PushOutTable>;
     }
 }
 
@@ -200,10 +192,6 @@ impl Field for Place {
             _ => Err(Wrong::new(node, "expected [x, y] or [x, y, z]")),
         }
     }
-
-    fn written(&self) -> Option<String> {
-        self.0.to_vec().written()
-    }
 }
 
 table! {
@@ -322,41 +310,3 @@ table! {
         pub velocity_mps: Place = Default::default(), FAST, "m/s";
     }
 }
-
-table! {
-    /// `[plane.orca]`. All fields are optional.
-    pub struct OrcaTable {
-        // Parameters of the layer; `horizon_s` is at least twice the braking time, to which the
-        // default grows.
-        part params: Given<AvoidParams<f32>>;
-        /// Growth of the ball around a silent robot. Default: the highest speed.
-        pub inflation_mps: Option<f64>, 0.0..=1000.0, "m/s";
-        /// Largest growth of the ball around a lost robot. Default: the radius.
-        pub inflation_m: Option<f64>, 0.0..=1000.0, "metres";
-        /// In space: vertical over horizontal separation, equal for all. Default: 1.
-        pub downwash: Option<f64>, DOWNWASH;
-        /// Silence until a lost robot stands even if most are lost. Default: 60.
-        pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// How long a robot stands and listens after its start. Default: six steps, delays.
-        pub listen_s: Option<f64>, 0.0..=600.0, "seconds";
-        /// Whether a robot that has heard none stands. Default: if one starts within range.
-        pub expects_others: Option<bool>;
-        /// Speed of a robot that has lost all others; `inf`: unchanged. Default: 0.
-        pub alone_mps: Option<f64>, 0.0..=f64::INFINITY, "m/s";
-    }
-}
-
-table! {
-    /// `[plane.push_out]` (PAV).
-    pub struct PushOutTable {
-        // Parameters of the layer.
-        part params: Given<PushOutParams<f32>>;
-        /// Steps along the radius (model 1) or the border (2).
-        pub model: Model = Default::default();
-        /// Whether only the nearest robot in the way is avoided.
-        pub single: bool = false;
-    }
-}
-
-defaults!(OrcaTable);
-names!(SafetyKind, Model);

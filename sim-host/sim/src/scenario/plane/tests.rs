@@ -10,7 +10,8 @@ use super::super::law::LawSetup;
 use super::*;
 use proptest::prelude::*;
 use staya_controller::agent::{
-    AnyHalfPlanes, ContactLossPolicy, FormationSettings, LawSettings, SafetyKind, SafetySetup, WaypointSettings,
+    ContactLossPolicy, FormationSettings, LawSettings, LayerSettings, OrcaSettings, TableSettings, UnguardedSettings,
+    WaypointSettings,
 };
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
@@ -37,7 +38,7 @@ fn staleness_inflation_accepts_its_former_names() {
         let table = format!("[plane.orca]\n{growth} = 0.25\n{most} = 0.75\n");
         let (params, inflation) =
             (AvoidParams::for_body(0.2, 1.0), StalenessInflation { growth_mps: 0.25, max_m: 0.75 });
-        let safety = SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic };
+        let safety = LayerSettings::Orca(OrcaSettings { params, inflation });
         assert_eq!(setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.safety, safety);
     }
 }
@@ -47,10 +48,7 @@ fn a_given_growth_is_kept_and_others_are_those_of_the_fastest() {
     let growth = |own: &str| {
         let fast = "[[plane.group]]\nmax_speed_mps = 3\nrobots.list = [{ start_m = [9, 9] }]\n";
         let plane = setup(&format!("{HEAD}{PLANE}{own}{TWO}{fast}"));
-        [0, 2].map(|index| match plane.group(index).safety {
-            SafetySetup::Orca { inflation, .. } => inflation.growth_mps,
-            other => panic!("{other:?}"),
-        })
+        [0, 2].map(|index| plane.group(index).safety.orca().expect("ORCA").inflation.growth_mps)
     };
     assert_eq!(growth(""), [3.0, 3.0]);
     // The speed of the slow robots, which is also the default of one group alone.
@@ -86,7 +84,7 @@ fn the_smallest_plane_has_the_documented_defaults() {
     assert!((0.7399..0.7401).contains(&params.horizon_s), "0.5 s and 1.2 radii");
     let waypoint = LawSettings::Waypoint(WaypointSettings { speed_mps: 1.0, tolerance_m: 0.02 });
     assert_eq!(group.law, LawSetup::BuiltIn(waypoint));
-    assert_eq!(group.safety, SafetySetup::Orca { params, inflation, source: AnyHalfPlanes::Analytic });
+    assert_eq!(group.safety, LayerSettings::Orca(OrcaSettings { params, inflation }));
     assert!(!plane.has_terrain);
     let [one, two] = &plane.starts[..] else { panic!("two robots") };
     assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
@@ -110,7 +108,8 @@ fn the_reaction_to_silence_is_read() {
 #[test]
 fn the_documented_reaction_to_silence_is_the_usual_one() {
     let usual = |field: &str| {
-        let line = <OrcaTable as super::super::Read>::lines().into_iter().find(|line| line.name == field);
+        let line =
+            <super::super::ContactTable as super::super::Read>::lines().into_iter().find(|line| line.name == field);
         line.expect("a field").default.to_string().parse::<f64>().expect("a number")
     };
     let policy = ContactLossPolicy::<f32>::DEFAULT;

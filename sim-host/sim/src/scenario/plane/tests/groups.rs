@@ -69,7 +69,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         (group("orca = { share = 2 }"), "s.toml:9:18: plane.group[0].orca.share: 2 is out of range; give 0 to 1"),
         (
             group("safety = \"none\"\norca = { share = 0.5 }"),
-            "s.toml:10:8: plane.group[0].orca: these robots have another safety layer; give plane.group[0].safety",
+            "s.toml:10:8: plane.group[0].orca: these robots have the safety layer \"none\"; give plane.group[0].safety",
         ),
         (
             group("boids = { crowded_m = 1, closest_m = 2 }"),
@@ -158,10 +158,7 @@ fn groups_and_robots_override_fields_and_inherit_the_rest() {
     let bodies: Vec<_> = (0..4).map(|i| plane.group(i)).map(|g| (g.radius_m, g.abilities.max_speed_mps)).collect();
     assert_eq!(bodies, [(0.2, 1.0), (0.2, 0.5), (0.5, 2.0), (1.0, 2.0)]);
     let share = |index: usize| match plane.group(index).safety {
-        SafetySetup::Orca { params, source, .. } => {
-            assert_eq!(source, AnyHalfPlanes::Template2k);
-            params.share
-        }
+        LayerSettings::Template2k(TableSettings(orca)) => orca.params.share,
         other => panic!("{other:?}"),
     };
     assert_eq!([0, 1, 2, 3].map(share), [0.6; 4]);
@@ -170,7 +167,7 @@ fn groups_and_robots_override_fields_and_inherit_the_rest() {
     let ways: Vec<_> = plane.starts[1].places.iter().map(|target| target.position_m).collect();
     assert_eq!(ways, [[3.0, 3.0, 0.0], [2.0, 2.0, 0.0], [0.0; 3]]);
     assert_eq!((plane.starts.len(), plane.group(12).law.name()), (13, "boids"));
-    assert_eq!(plane.group(12).safety, SafetySetup::None);
+    assert_eq!(plane.group(12).safety, LayerSettings::None(UnguardedSettings));
 }
 
 #[test]
@@ -184,8 +181,8 @@ fn groups_in_metres_mix_with_robots_in_cells_and_may_use_routes() {
     let robots: Vec<_> = scenario.robots.iter().map(|robot| (robot.id.0, robot.start, robot.goal)).collect();
     let cell = Cell::new;
     assert_eq!(robots, [(4, cell(3, 3), cell(5, 5)), (5, cell(0, 0), cell(4, 2)), (6, cell(0, 0), cell(0, 0))]);
-    let kinds: Vec<_> = (0..3).map(|index| (scenario.law_of(index).name(), scenario.safety(index).kind())).collect();
-    let expected = [("route", SafetyKind::Orca), ("route", SafetyKind::Orca), ("waypoint", SafetyKind::None)];
+    let kinds: Vec<_> = (0..3).map(|index| (scenario.law_of(index).name(), scenario.safety(index).name())).collect();
+    let expected = [("route", "orca"), ("route", "orca"), ("waypoint", "none")];
     assert_eq!(kinds, expected);
 }
 
@@ -215,8 +212,8 @@ fn formations_differ_by_ids_and_groups_by_flocks() {
     let plane = scenario.plane().expect("a plane");
     let flocks: Vec<_> = (0..7).map(|index| plane.group(index).flock).collect();
     assert_eq!(flocks, [0, 1, 1, 2, 2, 2, 3], "a flock for each group");
-    let safety: Vec<_> = (0..7).map(|index| scenario.safety(index).kind()).collect();
-    assert_eq!((safety[1], safety[4], plane.group(4).radius_m), (SafetyKind::Orca, SafetyKind::None, 0.3));
+    let safety: Vec<_> = (0..7).map(|index| scenario.safety(index).name()).collect();
+    assert_eq!((safety[1], safety[4], plane.group(4).radius_m), ("orca", "none", 0.3));
     let parts: Vec<_> = scenario.origin.parts.iter().map(|part| (part.table.as_str(), part.members.clone())).collect();
     let of = |index: usize| ["plane", "plane.group[0]", "plane.group[1]", "plane.group[2]"][index];
     assert_eq!(parts, [(of(0), 0..1), (of(1), 1..3), (of(2), 3..6), (of(3), 6..7)]);

@@ -138,14 +138,14 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             after("[plane.boids]\ncrowded_m = 1\nclosest_m = 2\n"),
             "s.toml:8:1: plane.boids: these robots have the law \"waypoint\"",
         ),
-        (with("safety = \"push_out\"\n"), "s.toml:3:1: plane.push_out: safety \"push_out\" and its table go together"),
+        (with("safety = \"push_out\"\n"), "s.toml:3:1: plane.push_out: the layer \"push_out\" needs `min_distance_m`"),
         (
             after("[plane.push_out]\nmin_distance_m = 1\n"),
-            "s.toml:8:1: plane.push_out: safety \"push_out\" and its table go together",
+            "s.toml:8:1: plane.push_out: these robots have the safety layer \"orca\"; give plane.safety = \"push_out\"",
         ),
         (
             format!("{}[plane.orca]\nshare = 0.5\n", with("safety = \"none\"\n")),
-            "s.toml:9:1: plane.orca: these robots have another safety layer",
+            "s.toml:9:1: plane.orca: these robots have the safety layer \"none\"; give plane.safety = \"orca\"",
         ),
         (
             format!(
@@ -201,7 +201,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (after("[plane.orca]\nshare = 1.1\n"), "s.toml:9:9: plane.orca.share: 1.1 is out of range; give 0 to 1"),
         (
             after("[plane.orca]\ndownwash = 3\n"),
-            "s.toml:9:12: plane.orca.downwash: robots in the plane are not above each other; give safety = \"fly\"",
+            "s.toml:9:12: plane.orca.downwash: the layer \"orca\" has no such value; give safety = \"fly\"",
         ),
         (
             format!("{}[plane.orca]\ndownwash = 0.5\n", with("safety = \"fly\"\n")),

@@ -1,4 +1,4 @@
-//! Parameters of routes and formations across land in cells.
+//! The place of a robot in a formation.
 
 use crate::memory::{answers, plain};
 use crate::status::{Checked, StayaStatus};
@@ -9,37 +9,8 @@ use staya_controller::template::{Template, TemplateEntry, TemplateError};
 
 /// Maximum number of entries in a formation's template.
 pub const STAYA_TEMPLATE: usize = 8;
-/// Largest radius of a search over a window, cells.
-pub const STAYA_MAX_RADIUS: u8 = 5;
 
 const _: () = assert!(STAYA_TEMPLATE == TEMPLATE);
-
-/// The costs of a route across cells (A. V. Kuznetsov 2017); gains are in sixteenths of a tick.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct StayaRoute {
-    /// Weight of travel time (a0), sixteenths.
-    pub time_gain_16ths: u16,
-    /// Additional cost of a cell with another robot (a1), sixteenths of a tick.
-    pub others_gain_16ths: u16,
-    /// Additional cost of a cell for each earlier visit (a2), sixteenths of a tick.
-    pub visits_gain_16ths: u16,
-    /// Price of a cell between window and target (a3), sixteenths of a tick: about the time that a
-    /// cell takes on a good route.
-    pub way_gain_16ths: u16,
-    /// A move that costs this much more, in 16ths of a tick, comes first half as often; 0: never.
-    pub halved_per_16ths: u16,
-    /// Radius of the window that is searched, cells; 1 to STAYA_MAX_RADIUS.
-    pub radius_cells: u8,
-    /// Other than 0: the window's exit is on the ray to the target; otherwise it is the best one.
-    pub exit_on_ray: u8,
-    /// Other than 0: a diagonal move is as long as a straight one.
-    pub diagonals_count_as_one: u8,
-    /// Other than 0: diagonal moves may pass a blocked corner.
-    pub cuts_corners: u8,
-    /// Other than 0: plans again only when the land on its route has changed, for fewer searches.
-    pub keeps_plan: u8,
-}
 
 /// A cell of the grid, or the difference of two.
 #[repr(C)]
@@ -75,8 +46,7 @@ pub struct StayaPlace {
     pub hops: u8,
 }
 
-/// Formation keeping (A. V. Kuznetsov 2017); a unit is 1/70 of a cell. `staya_formation_from_graph`
-/// fills in the place.
+/// The place of a robot in a formation, as `staya_formation_from_graph` fills it in.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaFormation {
@@ -88,26 +58,6 @@ pub struct StayaFormation {
     pub slot: u8,
     /// The place's cell minus the top leader's.
     pub offset: StayaCell,
-    /// Price of being off the own place, sixteenths of a tick per cell.
-    pub gain_16ths: u16,
-    /// How far a robot may fall behind before the top leader waits, units.
-    pub halt_lag_units: u16,
-    /// Lag at which the leader continues, units; at most `halt_lag_units`.
-    pub resume_lag_units: u16,
-    /// Number of decisions (in the plane seconds) for which robots wait for each other.
-    pub patience: u16,
-    /// Distance from its place up to which a neighbour is found, cells.
-    pub eps_cells: u8,
-    /// How far ahead of the leader the others aim, cells.
-    pub lead_cells: u8,
-    /// Share of the others' land in the leader's price, sixteenths.
-    pub footprint_16ths: u8,
-    /// Other than 0: robots behind a dead robot move up.
-    pub closes_ranks: u8,
-    /// Other than 0: predicts others by computing their moves in their place; expensive.
-    pub foresees_others: u8,
-    /// Other than 0: instead of waiting, the leader heads for where the others are displaced.
-    pub turns_back: u8,
 }
 
 /// Two neighbouring places of a formation, by their indices.
@@ -120,11 +70,11 @@ pub struct StayaEdge {
     pub b: u16,
 }
 
-plain!(StayaRoute, StayaCell, StayaPlace, StayaFormation, StayaEdge);
+plain!(StayaCell, StayaPlace, StayaFormation, StayaEdge);
 
 impl StayaFormation {
-    #[cfg(feature = "grid")]
-    pub(super) fn template(&self) -> Checked<Template<TEMPLATE>> {
+    #[cfg_attr(not(feature = "grid"), expect(dead_code))]
+    pub(crate) fn template(&self) -> Checked<Template<TEMPLATE>> {
         let places = self.neighbors.get(..self.neighbor_count.into()).ok_or(StayaStatus::TooMany)?;
         let mut template = Template { slot: self.slot, offset: self.offset.into(), entries: heapless::Vec::new() };
         for &StayaPlace { robot, offset, hops } in places {
@@ -137,13 +87,13 @@ impl StayaFormation {
         Ok(template)
     }
 
-    fn place(&mut self, template: &Template<TEMPLATE>) {
-        (self.slot, self.offset) = (template.slot, template.offset.into());
-        self.neighbors = [StayaPlace::default(); STAYA_TEMPLATE];
-        self.neighbor_count = template.entries.len() as u8;
-        for (to, from) in self.neighbors.iter_mut().zip(&template.entries) {
+    fn of(template: &Template<TEMPLATE>) -> Self {
+        let mut neighbors = [StayaPlace::default(); STAYA_TEMPLATE];
+        for (to, from) in neighbors.iter_mut().zip(&template.entries) {
             *to = StayaPlace { robot: from.id.0, offset: from.offset.into(), hops: from.hops };
         }
+        let (neighbor_count, slot) = (template.entries.len() as u8, template.slot);
+        Self { neighbors, neighbor_count, slot, offset: template.offset.into() }
     }
 }
 
@@ -163,9 +113,7 @@ pub unsafe extern "C" fn staya_formation_from_graph(
 ) -> StayaStatus {
     answers!(|call| {
         let template = from_graph(call.row(places, place_count)?, call.row(edges, edge_count)?, own, hops)?;
-        let mut filled = *call.shared(formation)?;
-        filled.place(&template);
-        call.write(formation, filled)
+        call.write(formation, StayaFormation::of(&template))
     })
 }
 
