@@ -166,7 +166,7 @@ fn every_law_works_with_every_safety_layer_and_radio() {
         .filter_map(|&(law, safety, (radio, fields))| {
             let verdict = verdict(law, safety, fields);
             let complaint = complaint(law, safety, radio, &verdict);
-            let (layer, model) = (safety.0.name(), safety.1.name());
+            let (layer, model) = (safety.0, safety.1.name());
             let pair = format!("{} behind {layer} ({model}), {radio} radio", law);
             (!complaint.is_empty()).then(|| format!("{pair}: {complaint}: {verdict:?}"))
         })

@@ -4,7 +4,7 @@ use super::{BEACON_STEPS, Body, FLOOR_M, LAG_S, Radio, SPEED_MPS, STEP_S, Scene,
 use staya_controller::agent::{
     AgentConfig, AnyAgent, AnyInputs, CELLS, CellState, Command, ContactLossPolicy, FormationSettings, GridWorkspace,
     InCell, InCells, InPlane, Inputs, KinematicState, LatticeSettings, LawSettings, LayerSettings, OnGrid,
-    OrcaSettings, RouteSettings, Setup, Task, UnguardedSettings, VISITS, Waypoint, WaypointSettings,
+    OrcaSettings, RouteSettings, Setup, Task, VISITS, Waypoint, WaypointSettings,
 };
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
