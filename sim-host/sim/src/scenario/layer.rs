@@ -31,7 +31,7 @@ pub struct LayerPart {
     name: Option<String>,
     /// The tables that are given, with their values.
     tables: Vec<(&'static str, Vec<(String, f32)>)>,
-    /// What a robot does without contact.
+    /// The reaction to lost contact.
     pub contact: ContactTable,
 }
 
