@@ -15,14 +15,14 @@ Layer = Literal["none", "orca", "template_2k", "fly", "push_out"]
 class Orca(TypedDict, total=False):
     """Settings of `staya.Orca` and `staya.orca`, with `downwash` only in space.
 
-    - `horizon_s`: look-ahead for robots; 0.01 to 60 seconds; default 2.
+    - `horizon_s`: time ahead without a collision with a robot; 0.01 to 60 seconds; default 2.
     - `wall_horizon_s`: time ahead without a collision with an obstacle; 0.01 to 60 seconds; default
       1.
     - `share`: own share of a correction; 0 to 1; default 0.5.
     - `margin_m`: distance kept on top of the radii; 0 to 10 metres; default 0.004.
     - `lean_rad`: how far to turn right when a robot is in the way; 0 to 1.5 radians; default 0.46.
     - `patience_radii`: how long to wait for the robots whose turn it is; 0 to 100 radii; default 5.
-    - `downwash`: in space: vertical separation over the horizontal one; 1 to 10; default 1.
+    - `downwash`: in space: ratio of the vertical to the horizontal separation; 1 to 10; default 1.
     """
 
     horizon_s: float

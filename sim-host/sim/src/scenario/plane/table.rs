@@ -192,6 +192,10 @@ impl Field for Place {
             _ => Err(Wrong::new(node, "expected [x, y] or [x, y, z]")),
         }
     }
+
+    fn written(&self) -> Option<String> {
+        self.0.to_vec().written()
+    }
 }
 
 table! {
