@@ -1650,9 +1650,9 @@ StayaStatus staya_get_parameter(struct StayaAgent *agent, const char *name, floa
 StayaStatus staya_set_parameter(struct StayaAgent *agent, const char *name, float value);
 
 /**
- * Fills a setup for robot `id` with defaults: the law "waypoint" at 0.5 m/s behind the layer "orca",
- * a beacon each step, no inertia, no latency. `radius_m` is that of the ball around the body,
- * `tick_us` the time between two steps. `staya_init` checks them.
+ * Fills a setup for robot `id` with defaults: the law "waypoint" at 0.5 m/s behind the layer
+ * "orca", a beacon each step, no inertia, no latency. `radius_m` is that of the ball around the
+ * body, `tick_us` the time between two steps. `staya_init` checks them.
  */
 StayaStatus staya_setup_defaults(struct StayaSetup *setup, uint32_t id, float radius_m, int32_t tick_us);
 

@@ -1,5 +1,5 @@
-//! The configuration of a robot: `staya_setup_defaults` fills it, then the caller changes fields and
-//! chooses law and layer by name.
+//! The configuration of a robot: `staya_setup_defaults` fills it, then the caller changes fields
+//! and chooses law and layer by name.
 
 mod formation;
 
@@ -235,9 +235,9 @@ impl StayaSetup {
     }
 }
 
-/// Fills a setup for robot `id` with defaults: the law "waypoint" at 0.5 m/s behind the layer "orca",
-/// a beacon each step, no inertia, no latency. `radius_m` is that of the ball around the body,
-/// `tick_us` the time between two steps. `staya_init` checks them.
+/// Fills a setup for robot `id` with defaults: the law "waypoint" at 0.5 m/s behind the layer
+/// "orca", a beacon each step, no inertia, no latency. `radius_m` is that of the ball around the
+/// body, `tick_us` the time between two steps. `staya_init` checks them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_setup_defaults(
     setup: *mut StayaSetup,

@@ -1,4 +1,5 @@
-//! The laws that can be chosen at run time, by a scenario, over a host link, from C and from Python.
+//! The laws that can be chosen at run time, by a scenario, over a host link, from C and from
+//! Python.
 
 use super::boids::BoidsSettings;
 use super::cells::FarMap;

@@ -1,4 +1,4 @@
-//! The file of settings, and what the reader refuses of them.
+//! The file of settings, and values that the reader refuses.
 
 use _staya::settings;
 use staya_controller::grid::Norm;

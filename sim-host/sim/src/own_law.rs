@@ -1,4 +1,5 @@
-//! Laws of other crates beside those of Staya. Scenario files name the laws that a program adds ([`add_law`]).
+//! Laws of other crates beside those of Staya. Scenario files name the laws that a program adds
+//! ([`add_law`]).
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

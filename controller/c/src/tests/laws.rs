@@ -216,8 +216,8 @@ fn twin(setup: &StayaSetup, law: (&str, &Values), layer: (&str, &Values)) -> Opt
 
 const SIDE: u16 = 11;
 
-/// Steps two robots in C and two in Rust; all receive the same frames. Returns whether the setup was
-/// accepted.
+/// Steps two robots in C and two in Rust; all receive the same frames. Returns whether the setup
+/// was accepted.
 fn twins_agree(law: (&str, &Values), layer: (&str, &Values), on_grid: u8) -> bool {
     let case = format!("{law:?} {layer:?} {on_grid}");
     let (mut memories, mut twins) = (Vec::new(), Vec::new());

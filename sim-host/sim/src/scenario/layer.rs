@@ -1,4 +1,5 @@
-//! `safety = "NAME"` of a group of robots, and the tables with the values of safety layers beside it.
+//! `safety = "NAME"` of a group of robots, and the tables with the values of safety layers beside
+//! it.
 
 use super::read::{Line, Table, Usual, Wrong};
 use super::rows::{Word, contradicts, fill, heading, line, read, rows};

@@ -23,7 +23,8 @@ pub(super) fn store(table: &mut dyn Parameters, values: &Values) {
     }
 }
 
-/// The first value that is not a whole number although a whole one is stored, with the stored number.
+/// The first value that is not a whole number although a whole one is stored, with the stored
+/// number.
 fn rounded(tables: &mut Tables<'_>, values: &Values) -> Option<(&'static str, f32, f32)> {
     /// Gains are rounded to sixteenths, lengths to parts of a cell.
     const FINE: f32 = 0.04;
