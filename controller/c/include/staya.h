@@ -72,16 +72,6 @@
 #define STAYA_NEARBY 16
 
 /**
- * Number of values of a law in a setup.
- */
-#define STAYA_LAW_VALUES 24
-
-/**
- * Number of values of a safety layer in a setup.
- */
-#define STAYA_LAYER_VALUES 12
-
-/**
  * Maximum length of a message to one robot in bytes.
  */
 #define STAYA_MESSAGE 12
@@ -110,6 +100,16 @@
  * Size of StayaOutputs in bytes, on every machine.
  */
 #define STAYA_OUTPUTS_SIZE 444
+
+/**
+ * Number of values of a law in a setup.
+ */
+#define STAYA_LAW_VALUES 24
+
+/**
+ * Number of values of a safety layer in a setup.
+ */
+#define STAYA_LAYER_VALUES 12
 
 /**
  * Length of a swarm's key in bytes.

@@ -2,8 +2,8 @@
 
 use crate::law::Law;
 use crate::memory::{answers, plain};
-use crate::parameter::{StayaParameter, text};
-use crate::setup::{STAYA_MAX_RADIUS, StayaSetup};
+use crate::row::{StayaParameter, text};
+use crate::setup::{STAYA_LAW_VALUES, STAYA_LAYER_VALUES, STAYA_MAX_RADIUS, StayaSetup};
 use crate::status::{Checked, StayaStatus};
 use core::ffi::c_char;
 use heapless::Vec;
@@ -11,11 +11,6 @@ use staya_controller::agent::{Around, Contradiction, External, Goals, LawSetting
 use staya_controller::grid::Norm;
 use staya_controller::parameters::{Absent, Parameter, Parameters, TOLERANCE};
 use staya_controller::wire::ProtocolId;
-
-/// Number of values of a law in a setup.
-pub const STAYA_LAW_VALUES: usize = 24;
-/// Number of values of a safety layer in a setup.
-pub const STAYA_LAYER_VALUES: usize = 12;
 
 /// The law of the caller, behind those of the controller.
 const EXTERNAL: (&str, &str) = ("external", "your own: `staya_decide` gives the decision of each step");

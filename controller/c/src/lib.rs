@@ -36,6 +36,7 @@ pub mod law;
 mod memory;
 mod one_of;
 pub mod parameter;
+pub mod row;
 pub mod setup;
 pub mod speech;
 pub mod status;

@@ -7,7 +7,6 @@ pub use formation::*;
 
 use crate::Number;
 use crate::choices::StayaWire;
-use crate::chosen::{STAYA_LAW_VALUES, STAYA_LAYER_VALUES};
 use crate::memory::{answers, plain};
 use crate::speech::Speech;
 use crate::status::{Checked, StayaStatus};
@@ -18,6 +17,11 @@ use staya_controller::neighbor::{Ages, PlausibilityLimits};
 use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
 use staya_controller::wire::{Postcard, Retry};
+
+/// Number of values of a law in a setup.
+pub const STAYA_LAW_VALUES: usize = 24;
+/// Number of values of a safety layer in a setup.
+pub const STAYA_LAYER_VALUES: usize = 12;
 
 /// Length of a swarm's key in bytes.
 pub const STAYA_KEY: usize = 32;

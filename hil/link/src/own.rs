@@ -18,8 +18,8 @@ pub type OwnLarge<G> = Own<f32, G, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
 pub type OwnSmall<G> = Own<Q16, G, 8, 16, 16, AnyWire>;
 
 /// A user-defined guidance law, in the plane or in space, whose state a host can send to a device.
-/// Its orders come from the [`Task`] of the host: [`Never`](staya_controller::wire::Never),
-/// [`WaypointOrder`](staya_controller::agent::WaypointOrder), or a type made from [`AnyOrder`].
+/// Its orders come from the [`Task`] of the host, for example
+/// [`WaypointOrder`](staya_controller::agent::WaypointOrder).
 pub trait LinkedLaw<S: Scalar>:
     for<'a> Law<S, Surroundings<'a> = InPlane<'a, S>, Protocol: InAny, Workspace = ()>
     + Serialize
