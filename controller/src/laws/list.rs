@@ -58,6 +58,7 @@ macro_rules! list {
             }
 
             /// Creates the law; laws over cells take the `map`.
+            #[inline(never)]
             #[must_use]
             pub fn law<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap>(
                 &self,

@@ -40,6 +40,7 @@ macro_rules! list {
 
         impl LayerSettings {
             /// Creates the layer.
+            #[inline(never)]
             #[must_use]
             pub fn layer<S: Scalar, const K: usize>(&self) -> AnySafety<S, K> {
                 match self { $($(#[$on])* Self::$variant(settings) => AnySafety::$variant(MakesLayer::<S, K>::layer(settings))),+ }
