@@ -90,9 +90,9 @@ impl Law<f32> for Auction {
         self.bid = kept.or_else(open);
         let Some(bid) = self.bid else { return Ok(Decision::default()) };
         let way_m: Vec3<f32> = way_m(bid.task);
-        let status = Status { is_at_goal: way_m.norm() <= NEAR_M, ..Status::default() };
+        let progress = Progress::at_goal(way_m.norm() <= NEAR_M);
         let action = Action::Velocity { wish_mps: (way_m * 2.0).clamp_norm(0.8), way_m: Some(way_m) };
-        Ok(Decision { action, status })
+        Ok(Decision::new(action, progress))
     }
 
     fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Bids>) -> Option<Bid> {

@@ -69,10 +69,7 @@ impl Law<f32> for Meeting {
         let way_m = Vec3::new(x, y, 0.0) - place;
         let goes = view.now.since(Instant::from_micros(0)).as_micros() >= (TALK_S * 1e6) as i32;
         let wish_mps = if goes { way_m.clamp_norm(0.5) } else { Vec3::ZERO };
-        Ok(Decision {
-            action: Action::Velocity { wish_mps, way_m: goes.then_some(way_m) },
-            status: Status::default(),
-        })
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: goes.then_some(way_m) }, Progress::Going))
     }
 
     fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Estimates>) -> Estimate {

@@ -66,7 +66,7 @@ impl Law<f32> for Convoy {
             self.has_told = tools.radio.send(ahead.id, &Count(self.counted + 1), valid);
         }
         let wish_mps = Vec3::new(f32::from(self.pace.0) / 1000.0, 0.0, 0.0);
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: None }, Progress::Going))
     }
 
     fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Words>) -> Pace {

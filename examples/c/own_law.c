@@ -44,7 +44,8 @@ static void decide(Robot *robot)
             must(staya_send(robot->agent, others[i].id, &halt, 1, 1000000)); /* resent until it arrives */
         }
     }
-    StayaDecision decision = {.kind = STAYA_ACTION_VELOCITY, .is_at_goal = robot->has_halted};
+    const uint8_t progress = robot->has_halted ? STAYA_PROGRESS_ARRIVED : STAYA_PROGRESS_GOING;
+    StayaDecision decision = {.kind = STAYA_ACTION_VELOCITY, .progress = progress};
     decision.velocity_mps[0] = (float)robot->pace_cmps / 100.0f;
     must(staya_set_payload(robot->agent, &robot->own_cmps, 1));
     must(staya_decide(robot->agent, &decision));

@@ -18,7 +18,7 @@ use crate::criteria::{Kept, PublishedParams, smallest_below, sum_of_deviations, 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
     Action, BadInput, Decision, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace, Law,
-    OnGrid, Radio, Report, Status, TemplateAssembler, Tools, View, Wait,
+    OnGrid, Progress, Radio, Report, TemplateAssembler, Tools, View, Wait,
 };
 use staya_controller::cost::{Gain, Weights};
 use staya_controller::formation::{
@@ -205,12 +205,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         let field = workspace.field_mut();
         let target = window.reachable(goal);
         let is_redirected = core::mem::take(&mut self.is_redirected);
-        let mut decision = Decision::default();
         self.task.show(goal, target);
         (self.task.shown.leader, self.task.shown.slot) = (self.leader, self.template.slot);
         if cell == target {
-            decision.status.is_at_goal = true;
-            return Ok(decision);
+            return Ok(Decision::new(Action::Stay, Progress::Arrived));
         }
         // Lines 3 to 6.
         let found = self.found(input, &window, cell, field);
@@ -229,7 +227,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
             let others = input.on_grid().map(|neighbor| neighbor.cell);
             field.weights(&self.route, &window, cell, heads_for, others, Some(&self.visits)).ok()
         };
-        decision.status.is_stuck = ways.is_none();
+        let is_stuck = ways.is_none();
         let mut weights = ways.unwrap_or(Weights::CLOSED).plus(&price);
         if is_redirected {
             weights = weights.without(self.choice);
@@ -252,14 +250,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
             radio.send(to, &GridMessage::Redirect, valid);
         }
         let stands = self.task.is_stopped(input.now) && !continues;
-        decision.status = Status {
-            waits_for: stands.then_some(Wait::Stopped),
-            recovers: !stands,
-            is_off_place: self.detour.is_some(),
-            ..decision.status
+        let progress = match self.detour {
+            _ if stands => Progress::Waiting(Wait::Stopped),
+            _ if is_stuck => Progress::Stuck,
+            Some(_) => Progress::Forming,
+            None => Progress::Going,
         };
-        decision.action = Action::Moves(moves);
-        Ok(decision)
+        Ok(Decision::new(Action::Moves(moves), progress))
     }
 
     fn payload(&mut self, here: &OnGrid<'_>, heading: Dir, _: &mut Radio<'_, Grid>) -> GridPayload {
@@ -289,8 +286,9 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Law<S> for P
         self.template.entries.iter().any(|entry| entry.id == id)
     }
 
+    /// The law decides itself which requests to stop it follows.
     fn report(&self) -> Report {
-        self.task.report()
+        Report { stopped_until: None, ..self.task.report() }
     }
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {

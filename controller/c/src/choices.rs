@@ -18,6 +18,23 @@ pub enum StayaAction {
     Moves = 3,
 }
 
+/// How far a law of your own is with its task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum StayaProgress {
+    /// It goes to its goal, or as its law without a goal says.
+    Going = 0,
+    /// It is too far from its place in a formation, and goes there: STAYA_MODE_FORMING.
+    Forming = 1,
+    /// It stands for the reason `wait`: STAYA_MODE_HOLD; beside its occupied goal
+    /// (STAYA_WAIT_GOAL_TAKEN) STAYA_MODE_ARRIVED.
+    Waiting = 2,
+    /// No route is open, and it stands: STAYA_MODE_HOLD.
+    Stuck = 3,
+    /// It is at its goal, and stands: STAYA_MODE_ARRIVED.
+    Arrived = 4,
+}
+
 /// Wire format; the same for all robots of a swarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -169,6 +186,7 @@ macro_rules! numbered {
 
 numbered! {
     StayaAction { Idle, Stay, Velocity, Moves }
+    StayaProgress { Going, Forming, Waiting, Stuck, Arrived }
     StayaWire { Postcard, Mavlink, Sealed }
     StayaShape { Wall, Ball, Plane }
 }

@@ -2,12 +2,12 @@
 
 use crate::Number;
 use crate::agent::{Part, StayaAgent, act};
-use crate::choices::{StayaAction, StayaDir, StayaWait};
+use crate::choices::{StayaAction, StayaDir, StayaProgress, StayaWait};
 use crate::io::{StayaInputs, StayaOutputs, finite};
 use crate::law::Law;
 use crate::memory::{Call, answers, plain};
 use crate::status::{Checked, StayaStatus};
-use staya_controller::agent::{Action, Decision, External, Status};
+use staya_controller::agent::{Action, Decision, External, Progress};
 use staya_controller::grid::Dir;
 use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
@@ -34,12 +34,12 @@ pub struct StayaDecision {
     pub kind: u8,
     /// Other than 0: the robot heads straight for a point, and may turn aside to let others pass.
     pub has_way: u8,
-    /// Other than 0: the robot is at its goal, and stands (STAYA_MODE_ARRIVED).
-    pub is_at_goal: u8,
-    /// Other than 0: no route is open, and the robot stands (STAYA_MODE_HOLD).
-    pub is_stuck: u8,
-    /// Why the robot stands and waits (STAYA_MODE_HOLD): StayaWait.
+    /// StayaProgress; does not count with STAYA_ACTION_IDLE.
+    pub progress: u8,
+    /// With STAYA_PROGRESS_WAITING, and only then: StayaWait.
     pub wait: u8,
+    /// Other than 0: the robot carries out the action although it has arrived or waits.
+    pub makes_way: u8,
     /// Length of `moves`, at most 8.
     pub move_count: u8,
     /// With STAYA_ACTION_MOVES: the moves (StayaDir), best first.
@@ -67,8 +67,7 @@ plain!(StayaDecision, StayaMessage);
 impl StayaDecision {
     fn decision(&self) -> Checked<Decision<Number>> {
         let action = match StayaAction::of(self.kind)? {
-            StayaAction::Idle => Action::Idle,
-            StayaAction::Stay => Action::Stay,
+            StayaAction::Idle | StayaAction::Stay => Action::Stay,
             StayaAction::Velocity => {
                 let way_m = if self.has_way == 0 { None } else { Some(finite(self.way_m)?) };
                 Action::Velocity { wish_mps: finite(self.velocity_mps)?, way_m }
@@ -82,9 +81,18 @@ impl StayaDecision {
                 Action::Moves(moves)
             }
         };
-        let (is_at_goal, is_stuck) = (self.is_at_goal != 0, self.is_stuck != 0);
-        let waits_for = StayaWait::chosen(self.wait)?;
-        Ok(Decision { action, status: Status { is_at_goal, is_stuck, waits_for, ..Status::default() } })
+        let progress = match (StayaProgress::of(self.progress)?, StayaWait::chosen(self.wait)?) {
+            (StayaProgress::Waiting, Some(wait)) => Progress::Waiting(wait),
+            (StayaProgress::Waiting, None) | (_, Some(_)) => return Err(StayaStatus::Choice),
+            (StayaProgress::Going, None) => Progress::Going,
+            (StayaProgress::Forming, None) => Progress::Forming,
+            (StayaProgress::Stuck, None) => Progress::Stuck,
+            (StayaProgress::Arrived, None) => Progress::Arrived,
+        };
+        if self.kind == StayaAction::Idle as u8 {
+            return Ok(Decision::idle());
+        }
+        Ok(Decision { makes_way: self.makes_way != 0, ..Decision::new(action, progress) })
     }
 }
 

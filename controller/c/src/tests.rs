@@ -27,9 +27,9 @@ const IDLE: StayaDecision = StayaDecision {
     way_m: [0.0; 3],
     kind: 0,
     has_way: 0,
-    is_at_goal: 0,
-    is_stuck: 0,
+    progress: 0,
     wait: 0,
+    makes_way: 0,
     move_count: 0,
     moves: [0; 8],
 };

@@ -116,7 +116,7 @@ mod tests;
 pub use crate::law::{
     Action, AnySurroundings, Around, BadInput, CellFrame, CellState, Contradiction, Decision, Goals, InCell, InCells,
     InPlane, KinematicState, Known, Law, MakesLaw, MessageOf, Motion, OfAnotherLaw, OnGrid, OrderOf, Outgoing,
-    PayloadOf, Protocol, Radio, Report, Scene, Settings, SettingsOfLaw, Status, Surroundings, Tools, View, Wait,
+    PayloadOf, Progress, Protocol, Radio, Report, Scene, Settings, SettingsOfLaw, Surroundings, Tools, View, Wait,
     WrongTask,
 };
 pub use crate::laws::any::{Large, dispatch};
@@ -246,19 +246,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             link: Link::new(config, wire),
             mode: Mode::Idle,
             decisions: 0,
-            last: Last {
-                situation: Situation {
-                    is_passive: false,
-                    has_fault: false,
-                    has_goal: false,
-                    is_at_goal: false,
-                    is_stopped: false,
-                    is_stuck: false,
-                    is_off_place: false,
-                },
-                cell: Cell::new(0, 0),
-                heading: Dir::Stay,
-            },
+            last: Last { situation: Situation::Idle, cell: Cell::new(0, 0), heading: Dir::Stay },
             commanded_mps: Vec3::ZERO,
         }
     }

@@ -4,7 +4,7 @@ use super::contact_loss::ContactState;
 use super::link::{Hearing, ReceiveContext, Received, beacon, report};
 use super::{
     Action, Agent, AgentConfig, Command, Decision, Event, Inputs, KinematicState, Known, Last, Law, OrderOf, Outgoing,
-    Outputs, Perception, Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
+    Outputs, Perception, Progress, Radio, Report, Safety, SafetyInput, Scene, Surroundings, Tools, View, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
@@ -15,7 +15,7 @@ use crate::rand::Rng;
 use crate::robot::Mode;
 use crate::safety::is_hindered;
 use crate::scalar::Scalar;
-use crate::supervisor::{moves, next_mode};
+use crate::supervisor::{Situation, moves, next_mode};
 use crate::time::{Duration, Instant};
 use crate::wire::{Frame, Wire};
 use heapless::Vec;
@@ -244,15 +244,17 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         let target = self.law.report().target;
         let decision = self.law.decide(&view, &inputs.surroundings, tools);
         self.link.send(&outgoing, now, out);
-        let situation = &mut self.last.situation;
-        situation.has_goal = !matches!(decision, Ok(Decision { action: Action::Idle, .. }));
-        if !situation.has_goal {
-            (situation.is_passive, situation.has_fault) = (false, false);
+        let before = self.last.situation;
+        let Ok(decision) = decision else {
+            self.decisions = self.decisions.wrapping_add(1);
+            self.last.situation = Situation::Fault;
+            return None;
+        };
+        if decision.progress == Progress::Idle {
+            self.last.situation = Situation::Idle;
             return None;
         }
         self.decisions = self.decisions.wrapping_add(1);
-        situation.has_fault = decision.is_err();
-        let decision = decision.ok()?;
         let shown = self.law.report();
         if let Report { goal: Some(from), target: Some(to), .. } = shown
             && from != to
@@ -260,18 +262,21 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         {
             report(out, Event::TargetMoved { from, to });
         }
-        let status = decision.status;
-        if status.is_stuck && !situation.is_stuck {
+        let is_stopped = !shown.leader.is_some() && shown.stopped_until.is_some_and(|until| !is_over(until, now));
+        let is_held = self.is_left() || (is_stopped && decision.progress != Progress::Recovering);
+        self.last.situation = match decision.progress {
+            _ if decision.action == Action::Release => Situation::Passive,
+            Progress::Idle => Situation::Idle,
+            progress if progress.has_arrived() => Situation::Arrived,
+            Progress::Stuck => Situation::Stuck,
+            Progress::Waiting(_) => Situation::Waiting,
+            _ if is_held => Situation::Stopped,
+            Progress::Forming => Situation::Forming,
+            _ => Situation::Going,
+        };
+        if self.last.situation == Situation::Stuck && before != Situation::Stuck {
             report(out, Event::NoRoute);
         }
-        let is_stopped = !shown.leader.is_some() && shown.stopped_until.is_some_and(|until| !is_over(until, now));
-        situation.is_passive = matches!(decision.action, Action::Release);
-        situation.is_at_goal = status.is_at_goal;
-        situation.is_stuck = status.is_stuck;
-        situation.is_off_place = status.is_off_place;
-        let (is_left, stays) = (self.is_left(), matches!(status.waits_for, Some(wait) if wait != Wait::GoalTaken));
-        let situation = &mut self.last.situation;
-        situation.is_stopped = stays || is_left || (is_stopped && !status.recovers);
         Some(decision)
     }
 
@@ -292,19 +297,18 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             report(out, Event::ModeChanged { from, to });
         }
         let Some(decision) = decision else { return };
-        let goes = moves(to) || (decision.status.makes_way && to.gives_way());
+        let goes = moves(to) || (decision.makes_way && to.gives_way());
         let cell = inputs.surroundings.on_grid().map_or_else(Cell::default, |grid| grid.cell.cell);
         let before = core::mem::replace(&mut self.last.cell, cell);
         let heading = core::mem::replace(&mut self.last.heading, Dir::Stay);
-        let status = decision.status;
-        out.wait = match to {
-            Mode::Arrived => status.waits_for.filter(|&wait| wait == Wait::GoalTaken),
-            Mode::Hold if self.is_left() => Some(Wait::Radio),
-            Mode::Hold if status.waits_for.is_some() => status.waits_for,
-            Mode::Hold if status.is_stuck => Some(Wait::Route),
-            Mode::Hold => Some(Wait::Stopped),
+        out.wait = match (to, decision.progress) {
+            (Mode::Hold, _) if self.is_left() => Some(Wait::Radio),
+            (Mode::Hold | Mode::Arrived, Progress::Waiting(wait)) => Some(wait),
+            (Mode::Arrived, _) => None,
+            (Mode::Hold, Progress::Stuck) => Some(Wait::Route),
+            (Mode::Hold, _) => Some(Wait::Stopped),
             _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Robots),
-            Mode::Cruise if status.makes_way && inputs.surroundings.in_plane().is_some() => Some(Wait::Turn),
+            (Mode::Cruise, _) if decision.makes_way && inputs.surroundings.in_plane().is_some() => Some(Wait::Turn),
             _ => None,
         };
         match &decision.action {
@@ -366,7 +370,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 wish_mps = wish_mps.clamp_norm(config.contact_loss.alone_mps);
             }
         }
-        let is_agreed = decision.is_some_and(|decision| decision.status.is_agreed);
+        let is_agreed = decision.is_some_and(|decision| decision.is_agreed);
         if is_agreed {
             let known = table.as_slice();
             let shares = |id| known.find(id).is_some_and(|other| other.payload.is_some());
@@ -460,7 +464,9 @@ fn order<S: Scalar, L: Law<S>>(law: &mut L, last: &mut Last, order: &OrderOf<L, 
     let takes = law.order(order);
     if takes {
         // At once, even if it decides only after it has crossed its cell.
-        last.situation.has_goal |= law.report().goal.is_some();
+        if last.situation == Situation::Idle && law.report().goal.is_some() {
+            last.situation = Situation::Going;
+        }
     }
     takes
 }

@@ -1,10 +1,12 @@
 //! The interface between the agent and its law, which chooses where the robot goes.
 
+mod progress;
 mod protocol;
 mod settings;
 mod surroundings;
 mod wait;
 
+pub use progress::Progress;
 pub(crate) use protocol::Queued;
 pub use protocol::{OfAnotherLaw, Outgoing, Protocol, Radio};
 pub(crate) use settings::settings;
@@ -104,7 +106,7 @@ pub trait Law<S: Scalar>: Sized {
     type Workspace;
 
     /// Decides on the next action. Called in each step in which the body is free to move. Without
-    /// a goal the action is [`Action::Idle`].
+    /// a goal the progress is [`Progress::Idle`].
     ///
     /// # Errors
     /// [`BadInput`] puts the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
@@ -296,8 +298,8 @@ pub struct Report {
     pub leader: RobotId,
     /// Its place in the formation.
     pub slot: u8,
-    /// Until when another robot asked it to stop. The agent stops a robot without a leader, unless
-    /// [`Status::recovers`].
+    /// Until when another robot asked it to stop. The agent stops a robot that has no leader, as
+    /// [`Progress`] says, unless it makes way.
     pub stopped_until: Option<Instant>,
 }
 
@@ -315,13 +317,25 @@ pub struct Decision<S> {
     /// The intended action; the supervisor and the safety layer may change it.
     pub action: Action<S>,
     /// Progress towards the goal.
-    pub status: Status,
+    pub progress: Progress,
+    /// It carries out the action although it has arrived, waits or was asked to stop: it makes way,
+    /// or its goal moves.
+    pub makes_way: bool,
+    /// The motion is agreed with the robots that share the law's protocol: the safety layer leaves
+    /// them to the limit of gaps.
+    #[serde(skip)]
+    pub is_agreed: bool,
 }
 
 impl<S> Decision<S> {
-    /// The decision of a law without a goal.
-    pub fn idle() -> Self {
-        Self { action: Action::Idle, status: Status::default() }
+    /// An action with the progress.
+    pub const fn new(action: Action<S>, progress: Progress) -> Self {
+        Self { action, progress, makes_way: false, is_agreed: false }
+    }
+
+    /// The decision of a robot without a goal.
+    pub const fn idle() -> Self {
+        Self::new(Action::Stay, Progress::Idle)
     }
 }
 
@@ -332,8 +346,6 @@ pub enum Action<S> {
     /// Stand still.
     #[default]
     Stay,
-    /// Stand without a goal ([`Mode::Idle`](crate::robot::Mode::Idle)).
-    Idle,
     /// Take the first of these moves, best first, that leads into a free cell.
     Moves(Vec<Dir, 8>),
     /// Move with a velocity.
@@ -354,31 +366,9 @@ impl<S> Action<S> {
     pub fn moves(&self) -> &[Dir] {
         match self {
             Self::Moves(moves) => moves,
-            Self::Stay | Self::Idle | Self::Velocity { .. } | Self::Release => &[],
+            Self::Stay | Self::Velocity { .. } | Self::Release => &[],
         }
     }
-}
-
-/// The state of a robot relative to its goal and its formation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Status {
-    /// It is at its goal, or beside its occupied goal.
-    pub is_at_goal: bool,
-    /// The reason to stand and wait; [`Wait::GoalTaken`] beside an occupied goal.
-    pub waits_for: Option<Wait>,
-    /// No exit of the window is reachable.
-    pub is_stuck: bool,
-    /// It heads for scattered followers, and therefore ignores their stops.
-    pub recovers: bool,
-    /// It is too far from its place in the formation.
-    pub is_off_place: bool,
-    /// It moves although it arrived or waits: it makes way, or its waypoint moves.
-    pub makes_way: bool,
-    /// Its motion is agreed with the robots that share its protocol: the safety layer leaves them
-    /// to the limit of gaps.
-    #[serde(skip)]
-    pub is_agreed: bool,
 }
 
 /// A required input of the guidance law is missing or contradicts another one.

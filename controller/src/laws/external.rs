@@ -2,7 +2,7 @@
 
 use super::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, OtherPayload, Raw};
 use crate::grid::Dir;
-use crate::law::{Action, AnySurroundings, BadInput, Decision, Law, OnGrid, Radio, Tools, View};
+use crate::law::{Action, AnySurroundings, BadInput, Decision, Law, OnGrid, Progress, Radio, Tools, View};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Duration;
@@ -147,14 +147,14 @@ impl<S: Scalar> Law<S> for External<S> {
         mut tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
         self.post(&mut tools.radio);
-        if self.next.action == Action::Idle {
+        if self.next.progress == Progress::Idle {
             return Ok(self.next.clone());
         }
         let decision = core::mem::take(&mut self.next);
         match decision.action {
             Action::Velocity { .. } => view.can_move()?,
             Action::Moves(_) => OnGrid::try_from(*here)?.seen().map(|_| ())?,
-            Action::Stay | Action::Idle | Action::Release => {}
+            Action::Stay | Action::Release => {}
         }
         Ok(decision)
     }

@@ -4,8 +4,8 @@ use super::waypoint::{Waypoint, WaypointGuidance};
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::law::{
-    Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Radio, Report, Scene, Status, Surroundings, Tools,
-    View, Wait, WrongTask,
+    Action, BadInput, Decision, Law, MessageOf, OrderOf, PayloadOf, Progress, Radio, Report, Scene, Surroundings,
+    Tools, View, Wait, WrongTask,
 };
 use crate::parameters::Parameters;
 use crate::robot::RobotId;
@@ -122,10 +122,7 @@ impl<S: Scalar, L> Guided<S, L> {
 
 fn on_order<S>(action: Action<S>) -> Decision<S> {
     let stays = matches!(action, Action::Stay);
-    Decision {
-        action,
-        status: Status { waits_for: stays.then_some(Wait::Stopped), recovers: !stays, ..Status::default() },
-    }
+    Decision::new(action, if stays { Progress::Waiting(Wait::Stopped) } else { Progress::Recovering })
 }
 
 /// Distance of the way point of a commanded velocity, own radii: farther than robots swerve.
@@ -159,7 +156,9 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
             }
             Wish::Waypoint { .. } => {
                 let mut decision = self.straight.head(view)?;
-                decision.status.recovers = true;
+                if !decision.progress.has_arrived() {
+                    decision.progress = Progress::Recovering;
+                }
                 Ok(decision)
             }
             Wish::Cell(goal) => {

@@ -50,6 +50,6 @@ impl<S: Scalar> Law<S> for Patrol {
             number(self.cruise_mps) + ((ahead - behind) * number(4.0)).clamp(-number(0.4), number(0.4));
         let wish_mps = along * pace + out * (number(self.ring_m) - place.norm());
         let wish_mps = wish_mps.clamp_norm(view.body.max_speed_mps);
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: None }, Progress::Going))
     }
 }

@@ -11,6 +11,7 @@ use staya_controller::names::Named;
 use staya_controller::robot;
 use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
+use staya_sim::words;
 use staya_sim::world::plane::{self, Shape};
 
 /// A fraction of a cell.
@@ -234,6 +235,29 @@ pub struct Words {
     pub modes: Vec<String>,
     /// Names of the reasons to wait.
     pub waits: Vec<String>,
+    /// By group and mode: what a robot does.
+    #[serde(default)]
+    pub does: Vec<Vec<String>>,
+    /// By reason to wait: the reason as a clause.
+    #[serde(default)]
+    pub because: Vec<String>,
+}
+
+impl Words {
+    /// The words of a scenario whose robots are in these groups. O(robots).
+    fn new(scenario: &Scenario, groups: &[u32]) -> Self {
+        let most = groups.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut does = vec![Vec::new(); most];
+        for (index, group) in groups.iter().enumerate() {
+            let does = &mut does[*group as usize];
+            if does.is_empty() {
+                let goals = scenario.law_of(index).goals();
+                *does = robot::Mode::NAMES.iter().map(|(_, mode)| words::does(*mode, goals).to_owned()).collect();
+            }
+        }
+        let because = Wait::NAMES.iter().map(|(_, wait)| words::because(*wait).to_owned());
+        Self { modes: names::<robot::Mode>(), waits: names::<Wait>(), does, because: because.collect() }
+    }
 }
 
 impl Scene {
@@ -245,6 +269,7 @@ impl Scene {
         let origin = origin_m(scenario);
         let (bounds_m, height_m) = bounds(scenario, origin);
         let robots = robots(scenario);
+        let words = Words::new(scenario, &robots.group);
         Self {
             name: scenario.name.clone(),
             seed: scenario.seed,
@@ -269,7 +294,7 @@ impl Scene {
                 .then(|| Formation { edges: scenario.edges().map(|edge| edge.map(|at| at as u32)).collect() }),
             radio: Radio::of(scenario),
             parameters: Vec::new(),
-            words: Words { modes: names::<robot::Mode>(), waits: names::<Wait>() },
+            words,
             minds: Vec::new(),
             description: String::new(),
         }

@@ -11,24 +11,6 @@ const MOST_OBSTACLES = 4;
 // A velocity this far beyond a border, as a fraction of the greatest speed, is forbidden.
 const TOLERANCE = 1e-3;
 
-const MODES = {
-  idle: "has no goal",
-  forming: "takes its place in the formation",
-  hold: "stands",
-  arrived: "is at its goal",
-  down: "stands: it is down, or an input is missing",
-  passive: "is not steered by its own controller",
-};
-const WAITS = {
-  team: "its leader or its followers are not in their places yet",
-  stopped: "another robot asked it to stop",
-  route: "terrain or walls block its way",
-  radio: "it does not know where silent robots are",
-  turn: "other robots go first",
-  robots: "other robots are in its way",
-  goal_taken: "another robot occupies its goal",
-};
-
 /** The borders that forbid `velocity`. */
 function broken({ lines, max_speed_mps: fastest }, velocity) {
   const past = ({ point, normal }) =>
@@ -55,11 +37,12 @@ export class Mind {
     }
     if (robot.wait !== null) {
       const wait = scene.words.waits[robot.wait];
-      return `${Name} waits: ${this.blocker(wait) ?? WAITS[wait] ?? wait}`;
+      return `${Name} waits: ${this.blocker(wait) ?? scene.words.because?.[robot.wait] ?? wait}`;
     }
     const mode = scene.words.modes[robot.mode];
-    if (mode !== "cruise") return `${Name} ${MODES[mode] ?? mode}`;
-    const moves = leader === null ? "moves to its goal" : `follows robot ${this.app.idOf(leader)}`;
+    const does = scene.words.does?.[scene.robots.group[robot.index]]?.[robot.mode] ?? mode;
+    if (mode !== "cruise") return `${Name} ${does}`;
+    const moves = leader === null ? does : `follows robot ${this.app.idOf(leader)}`;
     const [first] = orca ? broken(orca, orca.preferred_mps) : [];
     return `${Name} ${moves}${first ? ` and evades ${first.hard ? "an obstacle" : "other robots"}` : ""}`;
   }

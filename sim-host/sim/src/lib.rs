@@ -28,4 +28,5 @@ pub mod shown;
 pub mod summary;
 pub mod terrain;
 pub mod walk;
+pub mod words;
 pub mod world;

@@ -9,6 +9,7 @@ use crate::metrics::waits::WaitCount;
 use crate::record::PacketCounts;
 use crate::scenario::Scenario;
 use crate::shown::Shown as _;
+use crate::words::because;
 use crate::world::plane::Solid;
 use groups::GroupFigures;
 use reasons::Reasons;
@@ -127,25 +128,13 @@ impl Waited {
             longest_seconds: f64::from(count.longest_ticks) * tick_s,
         }
     }
-
-    /// The cause, as the end of a sentence.
-    const fn words(&self) -> &'static str {
-        match self.reason {
-            Wait::Team => "for their formation",
-            Wait::Stopped => "because of a request",
-            Wait::Route => "for an open route",
-            Wait::Radio => "for contact by radio",
-            Wait::Turn => "for their turn at a door",
-            Wait::Robots => "for robots in the way",
-            Wait::GoalTaken => "beside a goal that is taken",
-        }
-    }
 }
 
 impl Display for Waited {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let Self { robots, at_the_end, robot_seconds, longest_seconds, .. } = self;
-        write!(f, "{robots} {}: {robot_seconds:.1} s in all, at most {longest_seconds:.1} s", self.words())?;
+        let why = because(self.reason);
+        write!(f, "{why}: {robots} robots, {robot_seconds:.1} s in all, at most {longest_seconds:.1} s")?;
         if *at_the_end > 0 { write!(f, "; {at_the_end} still do") } else { Ok(()) }
     }
 }

@@ -11,7 +11,7 @@ use crate::status::StayaStatus;
 use crate::{NEIGHBORS, Number};
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, Agent, BadInput, Decision, InPlane, Inputs, KinematicState, Law, Protocol, Radio, Status, Tools, View,
+    Action, Agent, BadInput, Decision, InPlane, Inputs, KinematicState, Law, Progress, Protocol, Radio, Tools, View,
 };
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::grid::Dir;
@@ -107,7 +107,7 @@ impl Law<Number> for Patrol {
         }
         let wish_mps = Vec3::new(cast(act.east_mps), cast(0.0), cast(0.0));
         let way_m = Some(wish_mps);
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m }, status: Status::default() })
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m }, Progress::Going))
     }
 
     fn payload(&mut self, _: &InPlane<'_, Number>, _: Dir, _: &mut Radio<'_, Patrols>) -> Pace {

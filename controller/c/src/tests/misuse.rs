@@ -206,6 +206,9 @@ fn invalid_decisions_and_messages_change_nothing() {
         for (decision, status) in [
             (StayaDecision { kind: 4, ..IDLE }, StayaStatus::Choice),
             (StayaDecision { wait: 8, ..IDLE }, StayaStatus::Choice),
+            (StayaDecision { progress: 5, ..IDLE }, StayaStatus::Choice),
+            (StayaDecision { wait: 1, ..velocity }, StayaStatus::Choice),
+            (StayaDecision { progress: 2, ..velocity }, StayaStatus::Choice),
             (StayaDecision { velocity_mps: [f32::NAN, 0.0, 0.0], ..velocity }, StayaStatus::Number),
             (StayaDecision { has_way: 1, way_m: [0.0, f32::INFINITY, 0.0], ..velocity }, StayaStatus::Number),
             (StayaDecision { move_count: 9, ..moves }, StayaStatus::TooMany),

@@ -30,7 +30,7 @@ impl Law<f32> for Counting {
         self.decisions += 1;
         tools.radio.send(RobotId(9), &GridMessage::Redirect, tools.radio.valid);
         let action = Action::Moves([Dir::NorthEast, Dir::South].into_iter().collect());
-        Ok(Decision { action, status: Status::default() })
+        Ok(Decision::new(action, Progress::Going))
     }
 
     fn receive(&mut self, _: RobotId, message: &GridMessage, radio: &mut Radio<'_, Grid>) -> bool {

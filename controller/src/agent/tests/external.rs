@@ -23,7 +23,7 @@ fn step(agent: &mut Externals, n: u32, inbox: &[u8]) -> Outputs<f32> {
 }
 
 fn going(wish_mps: Vec3<f32>) -> Decision<f32> {
-    Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() }
+    Decision::new(Action::Velocity { wish_mps, way_m: None }, Progress::Going)
 }
 
 /// A frame of robot 2 with a message to robot `to`.
@@ -59,22 +59,22 @@ fn a_decision_is_used_once_and_then_the_robot_stays() {
 }
 
 #[test]
-fn a_status_reaches_the_supervisor() {
+fn progress_reaches_the_supervisor() {
     let mut agent = external(1);
-    let mut mode = |n: u32, status: Status| {
-        agent.law_mut().set_decision(Decision { status, ..going(EAST) });
+    let mut mode = |n: u32, progress: Progress| {
+        agent.law_mut().set_decision(Decision { progress, ..going(EAST) });
         let out = step(&mut agent, n, &[]);
         (agent.mode(), out.wait)
     };
-    assert_eq!(mode(0, Status { is_at_goal: true, ..Status::default() }), (Mode::Arrived, None));
-    assert_eq!(mode(1, Status { is_stuck: true, ..Status::default() }), (Mode::Hold, Some(Wait::Route)));
-    let waits = Status { waits_for: Some(Wait::Team), ..Status::default() };
+    assert_eq!(mode(0, Progress::Arrived), (Mode::Arrived, None));
+    assert_eq!(mode(1, Progress::Stuck), (Mode::Hold, Some(Wait::Route)));
+    let waits = Progress::Waiting(Wait::Team);
     assert_eq!(mode(2, waits), (Mode::Hold, Some(Wait::Team)));
 }
 
 #[test]
 fn without_the_input_that_a_decision_needs_the_robot_is_in_fault() {
-    let moves = || Decision { action: Action::Moves([Dir::East].into()), status: Status::default() };
+    let moves = || Decision::new(Action::Moves([Dir::East].into()), Progress::Going);
     let on_grid = inputs(&FLAT, Cell::new(5, 5), &[]).any();
     let blind = Inputs {
         surroundings: OnGrid { window: None, ..inputs(&FLAT, Cell::new(5, 5), &[]).surroundings },

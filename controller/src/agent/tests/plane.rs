@@ -361,13 +361,9 @@ fn a_desired_velocity_of_nan_is_ignored() {
             _: &InPlane<'_, f32>,
             _: Tools<'_, f32, Self>,
         ) -> Result<Decision<f32>, BadInput> {
-            Ok(Decision {
-                action: Action::Velocity {
-                    wish_mps: Vec2::new(f32::NAN, 1.0).extend(0.0),
-                    way_m: Some(Vec3::new(f32::NAN, 1.0, 0.0)),
-                },
-                status: Status::default(),
-            })
+            let wish_mps = Vec2::new(f32::NAN, 1.0).extend(0.0);
+            let way_m = Some(Vec3::new(f32::NAN, 1.0, 0.0));
+            Ok(Decision::new(Action::Velocity { wish_mps, way_m }, Progress::Going))
         }
     }
     let mut robot = Robot::new(&in_plane(1), Mad, orca(), [0.0; 2]);

@@ -2,7 +2,7 @@
 
 use super::BoidsParams;
 use crate::geom::Vec2;
-use crate::law::{Action, BadInput, Decision, InPlane, Law, Status, Tools, View};
+use crate::law::{Action, BadInput, Decision, InPlane, Law, Progress, Tools, View};
 use crate::laws::waypoint::Waypoints;
 use crate::parameters::{Parameters, SPEED};
 use crate::scalar::Scalar;
@@ -49,10 +49,8 @@ impl<S: Scalar> Law<S> for BoidsGuidance<S> {
         let heading = moving.or(self.heading).unwrap_or_else(&mut draw);
         let heading = self.params.steer(view.id, heading, view.nearby);
         self.heading = Some(heading);
-        Ok(Decision {
-            action: Action::Velocity { wish_mps: (heading * self.speed_mps).extend(S::ZERO), way_m: None },
-            status: Status::default(),
-        })
+        let wish_mps = (heading * self.speed_mps).extend(S::ZERO);
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: None }, Progress::Going))
     }
 
     fn parameters(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {

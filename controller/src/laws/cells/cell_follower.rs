@@ -3,8 +3,8 @@
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
 use crate::law::{
-    Action, BadInput, CellState, Decision, InCells, Law, MessageOf, OnGrid, OrderOf, PayloadOf, Radio, Report, Scene,
-    Tools, View,
+    Action, BadInput, CellState, Decision, InCells, Law, MessageOf, OnGrid, OrderOf, PayloadOf, Progress, Radio,
+    Report, Scene, Tools, View,
 };
 use crate::parameters::{Parameters, SPEED};
 use crate::robot::RobotId;
@@ -171,7 +171,7 @@ fn follow<S: Scalar>(
             *last = None;
             let grid = OnGrid { cell: CellState { cell, ..here.grid.cell }, ..here.grid };
             let (decision, target) = decide(grid)?;
-            if decision.action == Action::Idle {
+            if decision.progress == Progress::Idle {
                 return Ok(decision);
             }
             *last = Some(Last { cell, at: input.now, decision: decision.clone(), target });

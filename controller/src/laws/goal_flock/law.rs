@@ -2,7 +2,7 @@
 
 use super::{GoalParams, Goals, Stage, wish};
 use crate::geom::{Position, Vec3};
-use crate::law::{Action, BadInput, Decision, InPlane, Law, Status, Tools, View};
+use crate::law::{Action, BadInput, Decision, InPlane, Law, Progress, Tools, View};
 use crate::laws::waypoint::{WAYPOINTS, Waypoint, WaypointOrder, Waypoints};
 use crate::parameters::{Parameters, TOLERANCE};
 use crate::scalar::Scalar;
@@ -79,10 +79,9 @@ impl<S: Scalar> Law<S> for GoalFlockGuidance<S> {
         let goal = self.goals.current();
         let wish_mps = wish(&self.params, &view.body, own, goal, view.nearby);
         let way_m = goal.map(|goal| goal.since(own));
-        Ok(Decision {
-            action: Action::Velocity { wish_mps, way_m: None },
-            status: Status { is_at_goal: self.is_there(own, way_m, wish_mps), ..Status::default() },
-        })
+        let is_there = self.is_there(own, way_m, wish_mps);
+        let progress = Progress::at_goal(is_there);
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: None }, progress))
     }
 
     fn order(&mut self, &WaypointOrder { index, waypoint }: &WaypointOrder) -> bool {

@@ -1,7 +1,7 @@
 //! The alpha flock as a law.
 
 use super::{LatticeParams, Reference, ReferenceMotion, acceleration};
-use crate::law::{Action, BadInput, Decision, InPlane, Law, Status, Tools, View};
+use crate::law::{Action, BadInput, Decision, InPlane, Law, Progress, Tools, View};
 use crate::laws::waypoint::{Waypoint, WaypointOrder, Waypoints};
 use crate::parameters::Parameters;
 use crate::scalar::Scalar;
@@ -57,7 +57,7 @@ impl<S: Scalar> Law<S> for LatticeGuidance<S> {
         if !wish_mps.is_finite() {
             return Err(BadInput);
         }
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: None }, Progress::Going))
     }
 
     fn order(&mut self, &WaypointOrder { index, waypoint }: &WaypointOrder) -> bool {

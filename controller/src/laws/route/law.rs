@@ -3,7 +3,7 @@
 use super::{Replan, RouteParams, Router};
 use crate::cost::{Gain, Weights};
 use crate::grid::{Cell, Dir, Window};
-use crate::law::{Action, BadInput, Decision, Law, OnGrid, Radio, Report, Status, Tools, View};
+use crate::law::{Action, BadInput, Decision, Law, OnGrid, Progress, Radio, Report, Tools, View};
 use crate::laws::cells::{
     FarMap, Grid, GridMessage, GridOrder, GridPayload, GridTask, GridWorkspace, MoveHistory, avoid_crossing,
 };
@@ -130,11 +130,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> L
         self.task.show(goal, target);
         self.router.observe(&self.params, cell, target);
         let makes_way = self.travel.take_redirection();
-        let mut status = Status { is_at_goal: cell == target, makes_way, ..Status::default() };
+        let mut progress = Progress::at_goal(cell == target);
         let mut moves = Vec::new();
-        if !status.is_at_goal || makes_way {
+        if progress == Progress::Going || makes_way {
             let open = self.moves(input, &window, (cell, target), makes_way, rng, workspace);
-            status.is_stuck = open.is_none();
+            if open.is_none() && progress == Progress::Going {
+                progress = Progress::Stuck;
+            }
             moves = open.unwrap_or_default();
             avoid_crossing(&mut moves, input, (&window, self.params.norm), cell);
         }
@@ -143,7 +145,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize, H: FarMap> L
         if let Some(blocker) = self.travel.note(input, cell, choice, idle) {
             radio.send(blocker, &GridMessage::Redirect, radio.valid);
         }
-        Ok(Decision { action: Action::Moves(moves), status })
+        Ok(Decision { makes_way, ..Decision::new(Action::Moves(moves), progress) })
     }
 
     fn payload(&mut self, here: &OnGrid<'_>, heading: Dir, radio: &mut Radio<'_, Grid>) -> GridPayload {

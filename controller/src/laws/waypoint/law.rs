@@ -4,7 +4,7 @@ use super::goal_occupancy::{Claim, GoalOccupancy};
 use super::make_way::MakeWay;
 use super::protocol::{WAYPOINTS, Waypoint, WaypointOrder, Waypoints};
 use crate::geom::{Vec2, Vec3};
-use crate::law::{Action, BadInput, Decision, InPlane, Law, Scene, Status, Tools, View, Wait};
+use crate::law::{Action, BadInput, Decision, InPlane, Law, Progress, Scene, Tools, View};
 use crate::list::SparseVec;
 use crate::parameters::{Parameters, SPEED, TOLERANCE};
 use crate::scalar::Scalar;
@@ -126,20 +126,13 @@ impl<S: Scalar> WaypointGuidance<S> {
         let is_at_goal = is_near && from_body.norm() <= self.tolerance_m || is_beside;
         // A point ahead that is a little past the goal does not turn the body back.
         let pace = if is_near && way.dot(from_body) < S::ZERO { S::ZERO } else { pace };
-        Ok(Decision {
-            // A robot that lets another one go first does not head anywhere, so it is not in a jam.
-            action: Action::Velocity {
-                wish_mps: velocity_mps + ahead * pace,
-                way_m: (!matches!(claim, Claim::Yields(_))).then_some(way),
-            },
-            status: Status {
-                is_at_goal,
-                waits_for: is_beside.then_some(Wait::GoalTaken),
-                // A robot that stopped at a moving waypoint would lose it.
-                makes_way: is_at_goal && velocity_mps != Vec3::ZERO,
-                ..Status::default()
-            },
-        })
+        // A robot that lets another one go first does not head anywhere, so it is not in a jam.
+        let way_m = (!matches!(claim, Claim::Yields(_))).then_some(way);
+        let action = Action::Velocity { wish_mps: velocity_mps + ahead * pace, way_m };
+        let progress = if is_at_goal { Progress::arrived(is_beside) } else { Progress::Going };
+        // A robot that stopped at a moving waypoint would lose it.
+        let makes_way = is_at_goal && velocity_mps != Vec3::ZERO;
+        Ok(Decision { makes_way, ..Decision::new(action, progress) })
     }
 }
 
@@ -162,15 +155,15 @@ impl<S: Scalar> Law<S> for WaypointGuidance<S> {
             Action::Velocity { way_m: Some(way), .. } => way.xy(),
             _ => Vec2::ZERO,
         };
-        let stays = decision.status.is_at_goal && !decision.status.makes_way;
+        let stays = decision.progress.has_arrived() && !decision.makes_way;
         let away = self.make_way.way(view, here.obstacles, stays, to_goal, tools.rng);
         if self.leg > 0 && MakeWay::is_blocked(view, here.obstacles) {
             self.goes_back(view, away.is_some());
         }
         if let Some(way) = away {
-            decision.status = Status { makes_way: true, ..Status::default() };
             let wish_mps = way * self.speed_mps.min(view.body.max_speed_mps);
-            decision.action = Action::Velocity { wish_mps, way_m: None };
+            let action = Action::Velocity { wish_mps, way_m: None };
+            decision = Decision { makes_way: true, ..Decision::new(action, Progress::Going) };
         }
         Ok(decision)
     }

@@ -7,7 +7,7 @@ use crate::session::{About, Session};
 use crate::surroundings::PackedSurroundings;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Command, Decision, InAny, InPlane, KinematicState, Law, Protocol, Setup, Status, Task, Tools,
+    Action, BadInput, Command, Decision, InAny, InPlane, KinematicState, Law, Progress, Protocol, Setup, Task, Tools,
     View, Waypoint,
 };
 use staya_controller::geom::{Position, Vec3};
@@ -48,7 +48,7 @@ impl<S: Scalar> Law<S> for East {
         self.mmps += self.gain_mmps;
         let x = S::from_f32(f32::from(self.mmps) / 1000.0).unwrap_or(S::ZERO);
         let wish_mps = Vec3 { x, ..Vec3::ZERO };
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: None }, Progress::Going))
     }
 }
 

@@ -4,8 +4,8 @@ use crate::scenario::Overrides;
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, Grid as OnCells, GridOrder, GridPayload, Law, Radio, Report,
-    Status as Standing, Surroundings as _, Tools, View,
+    Action, AnySurroundings, BadInput, Decision, Grid as OnCells, GridOrder, GridPayload, Law, Progress, Radio, Report,
+    Surroundings as _, Tools, View,
 };
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::rand::Rng;
@@ -64,10 +64,8 @@ impl Law<f32> for Scout {
             window: (window.origin(), window.width(), window.height()),
             others: view.on_grid().map(|n| (n.id.0, n.cell)).collect(),
         });
-        Ok(Decision {
-            action: Action::Moves([Dir::East].into_iter().collect()),
-            status: Standing { is_at_goal: cell == self.1.unwrap_or_default(), ..Standing::default() },
-        })
+        let action = Action::Moves([Dir::East].into_iter().collect());
+        Ok(Decision::new(action, Progress::at_goal(cell == self.1.unwrap_or_default())))
     }
 
     fn payload(&mut self, here: &AnySurroundings<'_, f32>, heading: Dir, _: &mut Radio<'_, OnCells>) -> GridPayload {

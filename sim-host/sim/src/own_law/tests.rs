@@ -2,7 +2,7 @@ use super::*;
 use crate::engine::{Moment, Outcome, operated, simulate, simulate_from, simulate_own};
 use crate::record::RobotRow;
 use crate::scenario::{Overrides, Scenario};
-use staya_controller::agent::{Action, Protocol, Status};
+use staya_controller::agent::{Action, Progress, Protocol};
 use staya_controller::geom::Vec3;
 use staya_controller::parameters::{Parameter, row};
 use staya_controller::wire::{Content, ProtocolId};
@@ -68,7 +68,7 @@ impl Law<f32> for Convoy {
         }
         let others = view.peers().map(|(_, pace)| f32::from(pace.0) / 1000.0);
         let wish_mps = Vec3::new(others.fold(self.pace_mps, f32::min), 0.0, 0.0);
-        Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, status: Status::default() })
+        Ok(Decision::new(Action::Velocity { wish_mps, way_m: None }, Progress::Going))
     }
 
     fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Paces>) -> Pace {

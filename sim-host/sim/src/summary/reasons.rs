@@ -3,8 +3,9 @@
 use crate::engine::{End, EndBody, Outcome};
 use crate::nearby::{Cells, Found, Query, Search as _, Space};
 use crate::scenario::Scenario;
+use crate::words::{because, does};
 use crate::world::plane::Barrier;
-use staya_controller::agent::{Goals, Wait};
+use staya_controller::agent::Wait;
 use staya_controller::robot::Mode;
 
 /// States at the end of a run, and the places of bodies.
@@ -36,24 +37,14 @@ impl<'a> Reasons<'a> {
     /// Why robot `index` has not arrived.
     pub fn of(&self, index: usize) -> &'static str {
         let end = &self.ends[index];
+        let goals = self.scenario.law_of(index).goals();
         match (end.barrier, end.wait, end.mode) {
-            (_, None, Mode::Idle) => "it has no goal",
-            (_, None, Mode::Fault) => "down, or off the map",
-            (_, None, Mode::Passive) => "not steered by its agent",
+            (_, None, mode @ (Mode::Idle | Mode::Fault | Mode::Passive)) => does(mode, goals),
             (Some(Barrier::GoalTaken), ..) => "its goal is in an obstacle",
             (Some(Barrier::Enclosed), ..) => "obstacles enclose it or its goal",
-            (None, Some(Wait::Team), _) => "waits for its formation",
-            (None, Some(Wait::Stopped), _) => "stopped on request",
-            (None, Some(Wait::Radio), _) => "no contact with other robots",
-            (None, Some(Wait::Turn), _) => "waits for its turn at a door",
-            (None, Some(Wait::Robots), _) if self.has_company(index) => "other robots in its way",
-            (None, Some(Wait::Route | Wait::Robots), _) => "no way to its goal in sight",
-            (None, Some(Wait::GoalTaken), _) => "its goal is taken",
-            (None, None, _) => match self.scenario.law_of(index).goals() {
-                Goals::None => "its law has no goal",
-                Goals::Shared(_) => "moves with its flock",
-                Goals::Cell | Goals::Waypoints => "still on its way",
-            },
+            (None, Some(Wait::Robots), _) if !self.has_company(index) => because(Wait::Route),
+            (None, Some(wait), _) => because(wait),
+            (None, None, mode) => does(mode, goals),
         }
     }
 

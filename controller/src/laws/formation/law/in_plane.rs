@@ -4,7 +4,7 @@ use super::{FormationGuidance, comes_after};
 use crate::formation::{Drive, NextMove, behind, is_straight, scaled};
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
-use crate::law::{Action, BadInput, Decision, InCells, Law, Radio, Report, Status, Tools, View, Wait};
+use crate::law::{Action, BadInput, Decision, InCells, Law, Progress, Radio, Report, Tools, View, Wait};
 use crate::laws::cells::{CellFollower, FarMap, Grid, GridMessage, GridOrder, GridPayload, GridWorkspace};
 use crate::laws::waypoint::{Claim, GoalOccupancy};
 use crate::neighbor::Neighbor;
@@ -138,9 +138,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let view = self.inside().view(input.id, input.on_grid());
         let target = Law::<S>::report(&self.cells).target;
         let to_goal_m = step.to_middle(target.ok_or(BadInput)?);
-        let status = &mut decision.status;
+        let keeps = decision.makes_way || decision.progress == Progress::Recovering;
         let is_straight;
         let mut wish_mps;
+        let mut progress = match decision.progress {
+            Progress::Waiting(wait) => Progress::Waiting(wait),
+            _ => Progress::Going,
+        };
         if let Some((leader, offset)) = self.leader(input, &view) {
             let has_arrived = leader.mode == Mode::Arrived;
             let (way_m, place_mps) = if has_arrived {
@@ -150,12 +154,16 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             };
             is_straight = step.is_open(way_m);
             wish_mps = if is_straight { step.drive.follow(way_m, place_mps) } else { by_cells_mps.xy() };
-            status.is_off_place = way_m.norm() > step.drive.halt_m();
+            if progress == Progress::Going && way_m.norm() > step.drive.halt_m() {
+                progress = Progress::Forming;
+            }
             // A robot that is ahead or aside does not hold up the others.
             if !step.drive.is_far_behind(way_m, place_mps) {
                 radio.retain(|message| !matches!(message, GridMessage::Stop { .. }));
             }
-            status.is_at_goal = has_arrived && self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
+            if has_arrived {
+                progress = self.comes_to_rest(input, to_goal_m, &step.drive, &mut wish_mps).unwrap_or(progress);
+            }
             self.wish_mps = input.body.velocity_mps.xy();
             self.waited = Duration::ZERO;
         } else {
@@ -169,30 +177,34 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             wish_mps = step.drive.gently(self.wish_mps, scaled(ahead, speed));
             self.wish_mps = wish_mps;
             let stands = lag_m >= step.drive.halt_m() && wish_mps == Vec2::ZERO;
-            status.waits_for = stands.then_some(Wait::Team);
-            status.is_at_goal = self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
+            let rest = self.comes_to_rest(input, to_goal_m, &step.drive, &mut wish_mps);
+            progress = rest.unwrap_or(if stands { Progress::Waiting(Wait::Team) } else { Progress::Going });
         }
-        if status.makes_way || status.recovers {
+        let is_stuck = decision.progress == Progress::Stuck && !is_straight;
+        decision.progress = match progress {
+            Progress::Going | Progress::Forming if is_stuck => Progress::Stuck,
+            Progress::Going if keeps && !decision.makes_way => Progress::Recovering,
+            progress => progress,
+        };
+        if keeps {
             return Ok(());
         }
         if is_straight {
-            status.is_stuck = false;
             radio.retain(|message| *message != GridMessage::Redirect);
         }
         decision.action = Action::Velocity { wish_mps: wish_mps.extend(S::ZERO), way_m: None };
         Ok(())
     }
 
-    /// Whether the robot is at its goal, or beside it if occupied. Adjusts the wish of a robot that
-    /// must let another one pass first.
+    /// Returns that the robot is at its goal, or beside it if occupied. Adjusts the wish of a robot
+    /// that must let another one pass first.
     fn comes_to_rest(
         &mut self,
         input: &View<'_, S, Grid>,
         way_m: Vec2<S>,
         drive: &Drive<S>,
-        status: &mut Status,
         wish_mps: &mut Vec2<S>,
-    ) -> bool {
+    ) -> Option<Progress> {
         let tolerance_m = drive.tolerance_m(self.is_there);
         let claim = self.beside.claim(input, way_m.extend(S::ZERO), tolerance_m);
         if let Claim::Yields(room_m) = claim {
@@ -200,11 +212,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             *wish_mps = if way_m.norm() < room_m { away * input.body.max_speed_mps } else { Vec2::ZERO };
         }
         let is_beside = claim == Claim::IsBeside;
-        if is_beside {
-            status.waits_for = Some(Wait::GoalTaken);
-        }
         self.is_there = way_m.norm() <= tolerance_m || is_beside;
-        self.is_there
+        self.is_there.then(|| Progress::arrived(is_beside))
     }
 
     /// Metres; 0 if patience is exhausted or the robot travels alone.
@@ -264,7 +273,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             self.cells.discard_decision();
         }
         let mut decision = self.cells.decide(input, here, Tools { rng, radio: radio.of(), workspace })?;
-        if decision.action != Action::Idle {
+        if decision.progress != Progress::Idle {
             self.refine(input, here, &mut radio, &mut decision)?;
         }
         Ok(decision)

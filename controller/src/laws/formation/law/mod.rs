@@ -6,7 +6,7 @@ use super::{
 };
 use crate::cost::Weights;
 use crate::grid::{Cell, Dir, Window};
-use crate::law::{Action, BadInput, Decision, Law, OnGrid, Radio, Report, Status, Tools, View, Wait};
+use crate::law::{Action, BadInput, Decision, Law, OnGrid, Progress, Radio, Report, Tools, View, Wait};
 use crate::laws::cells::{
     FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace, MoveHistory, PATIENCE,
     TemplateAssembler, avoid_crossing,
@@ -348,16 +348,18 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let guide = self.guide(input, view, cell, &seen);
         let goes_alone = guide.as_ref().is_some_and(|guide| self.has_lost_touch(guide));
         let guide = guide.filter(|_| !goes_alone);
-        let mut status =
-            Status { is_at_goal: cell == target, makes_way: self.travel.take_redirection(), ..Status::default() };
+        let makes_way = self.travel.take_redirection();
+        let (mut is_at_goal, mut progress) = (cell == target, Progress::Going);
         let mut stays = false;
         let weights = if let Some(guide) = &guide {
             self.router.forget_route();
             if let Some(message) = self.ask_pace(input.id, guide.lag, valid) {
                 ask(leader, &message);
             }
-            status.is_off_place = self.pace.waits();
-            status.is_at_goal &= guide.has_arrived;
+            if self.pace.waits() {
+                progress = Progress::Forming;
+            }
+            is_at_goal &= guide.has_arrived;
             let weights = self.follow(input, &window, (cell, target), guide, &found, workspace);
             if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
                 // Relative to the assigned place, even if it is impassable.
@@ -380,25 +382,29 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
             self.waited = if waits { self.waited.saturating_add(1) } else { 0 };
             let is_bearable = self.waited <= self.formation.patience;
-            status.waits_for = (waits && is_bearable).then_some(Wait::Team);
+            if waits && is_bearable {
+                progress = Progress::Waiting(Wait::Team);
+            }
             if goes_alone && core::mem::take(&mut self.has_asked) {
                 ask(leader, &GridMessage::Resume { origin: input.id });
             }
             self.lead(input, &window, (cell, target), (&found, view), workspace)
         };
-        status.is_stuck = weights.is_none() && !status.is_at_goal;
+        let is_stuck = weights.is_none();
         let mut weights = weights.unwrap_or(Weights::CLOSED);
-        if status.makes_way {
+        if makes_way {
             weights = self.travel.without_last(weights);
             stays = false;
         }
         let alternatives = if self.travel.is_jammed() { Dir::MOVES.len() } else { ALTERNATIVES };
         let mut moves = MoveHistory::order(&weights, self.sharpness, alternatives, rng);
-        if status.waits_for.is_some() && self.formation.recovery == Recovery::Def {
+        if progress == Progress::Waiting(Wait::Team) && self.formation.recovery == Recovery::Def {
             let towards = def(cell, &found.members);
-            status.recovers = towards != Dir::Stay;
-            status.waits_for = (!status.recovers).then_some(Wait::Team);
-            moves = list::collect(status.recovers.then_some(towards));
+            let recovers = towards != Dir::Stay;
+            if recovers {
+                progress = Progress::Recovering;
+            }
+            moves = list::collect(recovers.then_some(towards));
         }
         if stays {
             moves.clear();
@@ -406,13 +412,18 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         avoid_crossing(&mut moves, input, (&window, self.route.norm), cell);
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice, 0);
-        if status.waits_for.is_none() && !status.is_at_goal {
+        if progress != Progress::Waiting(Wait::Team) && !is_at_goal {
             blocked.into_iter().for_each(|to| ask(to, &GridMessage::Redirect));
             self.ask_surplus(&found).into_iter().for_each(|to| ask(to, &GridMessage::Redirect));
         }
         self.task.show(goal, target);
         (self.task.shown.leader, self.task.shown.slot) = (leader, view.slot);
-        Ok(Decision { action: Action::Moves(moves), status })
+        let progress = match progress {
+            _ if is_at_goal => Progress::Arrived,
+            Progress::Going | Progress::Forming | Progress::Recovering if is_stuck => Progress::Stuck,
+            progress => progress,
+        };
+        Ok(Decision { makes_way, ..Decision::new(Action::Moves(moves), progress) })
     }
 
     fn payload(&mut self, here: &OnGrid<'_>, heading: Dir, radio: &mut Radio<'_, Grid>) -> GridPayload {

@@ -4,7 +4,7 @@ use super::super::{Manners, Moves, Negotiator, Report, Said, Sensed, Sight, Wish
 use super::sight;
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
-use crate::law::{self, Action, BadInput, Decision, InCells, Law, Protocol, Radio, Status, Tools, View};
+use crate::law::{self, Action, BadInput, Decision, InCells, Law, Progress, Protocol, Radio, Tools, View};
 use crate::laws::any_protocol::InAny;
 use crate::laws::cells::GridOrder;
 use crate::parameters::{Parameters, SPEED};
@@ -311,8 +311,9 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
         self.is_late = way.norm() > place.cell_m * S::HALF;
         let wish = wish.clamp_norm(speed);
         let is_there = self.from == goal && self.by == Dir::Stay;
-        let status = Status { is_at_goal: is_there, makes_way: is_there, is_agreed: true, ..Status::default() };
-        Ok(Decision { action: Action::Velocity { wish_mps: wish.extend(S::ZERO), way_m: None }, status })
+        let progress = Progress::at_goal(is_there);
+        let action = Action::Velocity { wish_mps: wish.extend(S::ZERO), way_m: None };
+        Ok(Decision { action, progress, makes_way: is_there, is_agreed: true })
     }
 
     fn payload(&mut self, here: &InCells<'_, S>, _: Dir, radio: &mut Radio<'_, InStep>) -> InStepPayload {

@@ -4,9 +4,7 @@ mod in_plane;
 
 use super::{Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight};
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
-use crate::law::{
-    self, Action, BadInput, CellState, Decision, Law, OnGrid, Protocol, Radio, Status, Tools, View, Wait,
-};
+use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Progress, Protocol, Radio, Tools, View};
 use crate::laws::any_protocol::InAny;
 use crate::laws::cells::GridOrder;
 use crate::neighbor::Neighbor;
@@ -141,16 +139,17 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let dir = robot.decide(Sensed::Nothing);
         let begun = if view.now.since(self.crossed) < view.tick { self.crossed } else { view.now };
         (self.decided, self.tick) = (view.now, view.tick);
-        let waits_for = robot.is_beside_goal().then_some(Wait::GoalTaken);
-        let mut status = Status { is_at_goal: cell == goal || waits_for.is_some(), waits_for, ..Status::default() };
+        let is_beside = robot.is_beside_goal();
+        let has_arrived = cell == goal || is_beside;
+        let progress = if has_arrived { Progress::arrived(is_beside) } else { Progress::Going };
         let mut moves = Vec::new();
         if dir != Dir::Stay {
             let class = window.get(cell + dir.offset()).unwrap_or(1);
             self.crossed = begun + crossing(view.tick, dir, class);
-            status.makes_way = status.is_at_goal;
             let _ = moves.push(dir);
         }
-        Ok(Decision { action: Action::Moves(moves), status })
+        let makes_way = has_arrived && !moves.is_empty();
+        Ok(Decision { makes_way, ..Decision::new(Action::Moves(moves), progress) })
     }
 
     fn payload(&mut self, here: &OnGrid<'_>, _: Dir, radio: &mut Radio<'_, Negotiation>) -> NegotiationPayload {

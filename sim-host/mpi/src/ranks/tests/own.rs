@@ -3,7 +3,7 @@
 use super::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, AnySurroundings, BadInput, Decision, InAny, Law, Protocol, Radio, Status, Surroundings as _, Tools, View,
+    Action, AnySurroundings, BadInput, Decision, InAny, Law, Progress, Protocol, Radio, Surroundings as _, Tools, View,
 };
 use staya_controller::geom::Vec3;
 use staya_controller::grid::Dir;
@@ -43,7 +43,7 @@ impl Law<f32> for Sums {
             Some(_) => Action::Velocity { wish_mps: Vec3::new(0.3, 0.0, 0.0), way_m: None },
             None => Action::Moves([Dir::East, Dir::North].into_iter().collect()),
         };
-        Ok(Decision { action, status: Status { is_at_goal: self.0.is_multiple_of(37), ..Status::default() } })
+        Ok(Decision::new(action, Progress::at_goal(self.0.is_multiple_of(37))))
     }
 
     fn payload(&mut self, _: &AnySurroundings<'_, f32>, _: Dir, _: &mut Radio<'_, Numbers>) -> u32 {

@@ -49,10 +49,8 @@ impl Law<f32> for MyLaw {
         // Slows down over the last half second.
         let speed_mps = speed_mps.min(view.body.max_speed_mps).min(distance_m * 2.0);
         let wish_mps = way_m.normalized().unwrap_or_default() * speed_mps;
-        Ok(Decision {
-            action: Action::Velocity { wish_mps, way_m: Some(way_m) },
-            status: Status { is_at_goal: distance_m <= self.tolerance_m, ..Status::default() },
-        })
+        let action = Action::Velocity { wish_mps, way_m: Some(way_m) };
+        Ok(Decision::new(action, Progress::at_goal(distance_m <= self.tolerance_m)))
     }
 
     fn order(&mut self, order: &WaypointOrder) -> bool {

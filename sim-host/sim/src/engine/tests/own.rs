@@ -4,7 +4,7 @@ use crate::scenario::{Movement, Overrides};
 use crate::world::MoveRules;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    Action, BadInput, Decision, InAny, InPlane, Law, OnGrid, Protocol, Radio, Report, Status, Tools, View,
+    Action, BadInput, Decision, InAny, InPlane, Law, OnGrid, Progress, Protocol, Radio, Report, Tools, View,
     WaypointGuidance,
 };
 use staya_controller::grid::Dir;
@@ -40,8 +40,7 @@ impl Law<f32> for Highest {
     ) -> Result<Decision<f32>, BadInput> {
         let heard = view.peers().map(|(_, number)| number);
         self.0 = heard.fold(self.0.max(view.id.0), u32::max);
-        let status = Status { is_at_goal: self.0 == ROBOTS, ..Status::default() };
-        Ok(Decision { action: Action::Stay, status })
+        Ok(Decision::new(Action::Stay, Progress::at_goal(self.0 == ROBOTS)))
     }
 
     fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Numbers>) -> u32 {
@@ -149,9 +148,8 @@ impl Law<f32> for East {
         let (cell, _) = here.seen()?;
         let heard = view.peers().map(|(_, number)| number);
         self.0 = heard.fold(self.0.max(view.id.0), u32::max);
-        let is_at_goal = cell.x >= 9;
         let action = Action::Moves([Dir::East].into_iter().collect());
-        Ok(Decision { action, status: Status { is_at_goal, ..Status::default() } })
+        Ok(Decision::new(action, Progress::at_goal(cell.x >= 9)))
     }
 
     fn payload(&mut self, _: &OnGrid<'_>, _: Dir, _: &mut Radio<'_, Numbers>) -> u32 {
