@@ -387,7 +387,7 @@ def test_takeoff_goto_and_landing_in_space(bridge):
     four.next("HEARTBEAT", 1, 20, where=lambda beat: not beat.base_mode & 128)
     at = four.position(1)
     assert math.hypot(at.x, at.y, at.z) < 0.3
-    assert four.next("EXTENDED_SYS_STATE", 1).landed_state == 1
+    four.next("EXTENDED_SYS_STATE", 1, where=lambda state: state.landed_state == 1)
 
 
 def test_only_clients_with_the_key_are_accepted(bridge, tmp_path, staya, free_port):

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 const MAGIC: &[u8; 16] = b"staya checkpoint";
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 const PARTS: [&str; 5] = ["head", "state", "history", "trace.csv", "series.csv"];
 const TRACE: usize = 3;
