@@ -371,8 +371,8 @@ impl Vehicle {
     }
 
     pub(super) fn is_in_air(&self) -> bool {
-        let low_m = 0.02_f64.max(f64::from(self.tolerance_m()));
-        self.model.flies && self.seen.motion.position_m[2] > low_m
+        let [x, y, _] = self.seen.motion.position_m;
+        self.model.flies && !self.is_at([x, y, 0.0], 0.02)
     }
 
     pub(super) fn tolerance_m(&self) -> f32 {
@@ -435,7 +435,7 @@ impl Vehicle {
         }
         let [x, y, z] = self.seen.motion.position_m;
         match self.mode {
-            FlightMode::Land { is_item } if self.is_at([x, y, 0.0], 0.0) => {
+            FlightMode::Land { is_item } if !self.is_in_air() => {
                 self.is_armed = false;
                 self.begin();
                 if is_item {
