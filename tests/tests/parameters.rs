@@ -1,15 +1,10 @@
 //! The parameters of a running robot: what a scenario starts with, an operator may set.
 
-use staya_controller::agent::parameters;
-use staya_controller::boids::BoidsParams;
-use staya_controller::formation::FormationParams;
-use staya_controller::goal_flock::GoalParams;
-use staya_controller::lattice::LatticeParams;
-use staya_controller::orca::AvoidParams;
-use staya_controller::parameters::{Parameter, Parameters};
-use staya_controller::route::RouteParams;
+use staya_controller::agent::LayerSettings;
+use staya_controller::negotiation::Moves;
+use staya_controller::parameters::{Absent, Parameter, Parameters};
 use staya_sim::engine::operated;
-use staya_sim::scenario::{Line, Overrides, Read as _, Scenario, ScenarioFile, Usual};
+use staya_sim::scenario::{LawSetup, Line, Overrides, Read as _, Scenario, ScenarioFile, Usual, laws, parameters};
 use staya_tests::{golden, root};
 use std::fs;
 
@@ -76,20 +71,37 @@ fn an_operator_can_set_the_ends_of_a_files_ranges() {
     }
 }
 
+/// The value of a row in the settings of laws and layers that have it, unless it depends on others.
+fn default(name: &str) -> Option<f32> {
+    let mut found = None;
+    let mut look = |table: &mut dyn Parameters| {
+        let index = table.index(name).filter(|index| table.table()[*index].absent == Absent::Default);
+        found = found.or_else(|| table.get(index?));
+    };
+    for (law, _) in laws() {
+        LawSetup::by_name(law, Moves::EIGHT, Some(1.0)).expect("a law").tables(&mut look);
+    }
+    for (layer, _) in LayerSettings::ALL {
+        LayerSettings::by_name(layer).expect("a layer").tables(&mut look);
+    }
+    found
+}
+
+#[test]
+fn each_name_for_mavlink_clients_stands_for_one_row() {
+    let mut names: Vec<&str> = parameters().into_iter().map(|row| row.mavlink).collect();
+    let rows = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert!(names.len() == rows && rows > 40, "{} names of {rows} rows", names.len());
+}
+
 /// The list that the pages refer to.
 #[test]
 fn golden_list_of_parameters() {
-    let complete: [&dyn Parameters; 3] =
-        [&AvoidParams::<f32>::default(), &RouteParams::default(), &FormationParams::default()];
-    // Their lengths and speeds depend on the robots.
-    let gains: [&dyn Parameters; 3] =
-        [&GoalParams::new(1.0_f32, 1.0), &LatticeParams::new(1.0_f32), &BoidsParams::paper(1.0_f32)];
     let mut list = String::from("name            MAVLink         unit      range          default  description\n");
     for Parameter { name, mavlink, unit, range: [least, greatest], what, .. } in parameters() {
-        let of = |table: &&dyn Parameters| table.get(table.index(name)?);
-        let default =
-            complete.iter().find_map(of).or_else(|| gains.iter().find_map(of).filter(|_| !unit.contains('m')));
-        let default = default.map_or_else(String::new, |value| format!("{value:.3}"));
+        let default = default(name).map_or_else(String::new, |value| format!("{value:.3}"));
         let default = default.trim_end_matches('0').trim_end_matches('.');
         let range = format!("{least} to {greatest}");
         list += &format!("{name:<15} {mavlink:<15} {unit:<9} {range:<14} {default:<8} {what}\n");

@@ -1,9 +1,9 @@
 //! Pages with tables of laws, layers and their values, which come from the controller's tables; and
 //! a search for copies of these elsewhere.
 
-use staya_controller::agent::{LayerSettings, Motion, parameters};
+use staya_controller::agent::{LayerSettings, Motion};
 use staya_controller::negotiation::Moves;
-use staya_sim::scenario::{LawSetup, Line, Read as _, ScenarioFile, Usual, laws};
+use staya_sim::scenario::{LawSetup, Line, Read as _, ScenarioFile, Usual, laws, parameters};
 use staya_tests::{END, printed_part, root};
 use std::fmt::Write as _;
 use std::fs;
@@ -157,7 +157,7 @@ fn is_parameter(name: &str) -> bool {
         }
         found
     };
-    parameters().any(|row| row.name == name) || laws().iter().any(|(law, _)| of_law(law))
+    parameters().iter().any(|row| row.name == name) || laws().iter().any(|(law, _)| of_law(law))
 }
 
 /// Words after a name in which its range or default would be a copy.

@@ -141,7 +141,6 @@ pub use crate::safety::{
 pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, OUTBOX, Outputs, Refused};
-pub use parameter::parameters;
 pub use perception::{Perception, RadioOnly};
 pub use setup::{AnyAgent, Setup, Task};
 

@@ -1,14 +1,7 @@
 //! Parameters of a running robot that an operator or its firmware can change.
 
-use super::{Agent, AgentConfig, Law, Perception, Safety, WaypointGuidance};
-use crate::boids::BoidsParams;
-use crate::formation::FormationParams;
-use crate::goal_flock::GoalParams;
-use crate::lattice::LatticeParams;
-use crate::orca::AvoidParams;
-use crate::parameters::{Parameter, Parameters, RADIUS, Rejected, row};
-use crate::push_out::PushOutParams;
-use crate::route::RouteParams;
+use super::{Agent, AgentConfig, Law, Perception, Safety};
+use crate::parameters::{Parameters, RADIUS, Rejected, row};
 use crate::scalar::Scalar;
 use crate::wire::Wire;
 
@@ -17,25 +10,6 @@ crate::parameters! {
         RADIUS => radius_m,
         row("beacon_period_s", "BEACON_S", "s", [0.001, 60.0], "time between two beacons") => beacon_period,
     }
-}
-
-const TABLES: [&[Parameter]; 9] = [
-    AgentConfig::<f32>::TABLE,
-    WaypointGuidance::<f32>::TABLE,
-    AvoidParams::<f32>::TABLE,
-    PushOutParams::<f32>::TABLE,
-    GoalParams::<f32>::TABLE,
-    LatticeParams::<f32>::TABLE,
-    BoidsParams::<f32>::TABLE,
-    RouteParams::TABLE,
-    FormationParams::TABLE,
-];
-
-/// Returns the parameters of all laws and layers of this crate, each name once.
-pub fn parameters() -> impl Iterator<Item = &'static Parameter> {
-    let rows = || TABLES.into_iter().flatten();
-    let is_first = move |(at, row): &(usize, &Parameter)| rows().take(*at).all(|other| other.name != row.name);
-    rows().enumerate().filter(is_first).map(|(_, row)| row)
 }
 
 impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<S>> Agent<S, L, N, A, W, P> {

@@ -50,7 +50,6 @@ mod program {
             let name = black_box("radius_m");
             black_box(black_box(&mut *agent).set_parameter(name, black_box(1.0)).is_ok());
             black_box(black_box(&mut *agent).parameter(name));
-            black_box(staya_controller::agent::parameters().count());
         }
 
         pub fn run() {

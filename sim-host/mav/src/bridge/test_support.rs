@@ -3,7 +3,7 @@ use super::params::Parameters;
 use super::streams::Streams;
 use super::vehicle::{Out, Vehicle};
 use crate::geo::{Global, Origin};
-use staya_controller::agent::{Wish, parameters};
+use staya_controller::agent::Wish;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::parameters::Parameter;
 use staya_controller::robot::{Mode, RobotId};
@@ -11,6 +11,7 @@ use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 use staya_sim::engine::{Observation, Status};
 use staya_sim::record::Motion;
+use staya_sim::scenario::parameters;
 use staya_sim::terrain::Terrain;
 use std::sync::Arc;
 
@@ -54,7 +55,7 @@ pub(super) fn sample() -> Observation {
 }
 
 pub(super) fn greatest() -> Vec<(&'static Parameter, f32)> {
-    parameters().map(|row| (row, row.range[1])).collect()
+    parameters().into_iter().map(|row| (row, row.range[1])).collect()
 }
 
 pub(super) struct Bench {

@@ -1,6 +1,7 @@
 //! Interventions: changes to a running simulation, made by hand in the viewer or listed as
 //! `[[intervention]]` in a scenario.
 
+use super::parameters::parameters;
 use super::ranges::short;
 use super::source::Checked;
 use super::{Draft, Robot, Scenario, nearest};
@@ -8,7 +9,6 @@ use crate::world::Refusal;
 use crate::world::plane::{FAR_M, Shape};
 use crate::{kinds, table};
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::parameters;
 use staya_controller::robot::RobotId;
 
 /// One change to a running simulation. Robots are named by id; places are world metres.
@@ -143,8 +143,9 @@ impl Intervention {
                 require(place_m.iter().all(is_near), "place_m", &what, &metres)
             }
             Self::Parameter { name, value, .. } => {
-                let Some(row) = parameters().find(|row| row.name == name) else {
-                    let remedy = match nearest(name, parameters().map(|row| row.name)) {
+                let rows = parameters();
+                let Some(row) = rows.iter().find(|row| row.name == name) else {
+                    let remedy = match nearest(name, rows.iter().map(|row| row.name)) {
                         Some(near) => format!("did you mean `{near}`?"),
                         None => "give a name of tests/golden/parameters.txt".to_owned(),
                     };

@@ -6,8 +6,8 @@ use super::source::{Checked, Section};
 use super::table::Fields;
 use crate::own_law::{NEGOTIATION, Own, Site, added, own};
 use staya_controller::agent::{
-    Around, Contradiction, FormationSettings, Goals, LawSettings, Motion, RouteSettings, Settings, SettingsOfLaw,
-    TEMPLATE, WaypointSettings,
+    Around, CELLS, Contradiction, FormationSettings, Goals, Law, LawSettings, Motion, RouteSettings, Settings,
+    SettingsOfLaw, TEMPLATE, WaypointSettings,
 };
 use staya_controller::negotiation::Moves;
 use staya_controller::parameters::{Absent, Parameter, Parameters};
@@ -229,6 +229,19 @@ impl LawSetup {
             Self::BuiltIn(settings) => settings.tables(visit),
             Self::Published(settings) => settings.tables(visit),
             Self::Lookahead(settings) => settings.tables(visit),
+            Self::Added(law) => law.law().tables(visit),
+        }
+    }
+
+    /// Calls `visit` with each table of a running law.
+    pub(super) fn running(&self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+        fn of(mut law: impl Law<f32>, visit: &mut dyn FnMut(&mut dyn Parameters)) {
+            law.parameters(visit);
+        }
+        match self {
+            Self::BuiltIn(settings) => of(settings.law::<f32, CELLS, 1, 0, ()>(()), visit),
+            Self::Published(settings) => of(settings.law::<CELLS, 1>(), visit),
+            Self::Lookahead(settings) => of(settings.law::<CELLS, 1, 0, ()>(()), visit),
             Self::Added(law) => law.law().tables(visit),
         }
     }

@@ -14,6 +14,7 @@ mod land;
 mod law;
 mod layer;
 mod maps;
+mod parameters;
 mod plane;
 mod plausibility;
 mod ranges;
@@ -38,6 +39,7 @@ pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use law::{AddedLaw, LawPart, LawSetup, laws};
 pub use layer::{ContactTable, LayerPart};
 pub use maps::MapsTable;
+pub use parameters::parameters;
 pub use plane::{
     BallEntry, BallsEntry, CircleEntry, CloudEntry, GroupTable, HalfSpaceEntry, Intruder, IntruderEntry, Order,
     OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup, PlaneTable, RobotGroup, RobotsSource, ScatteredDiscs,

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::own_law::Site;
-use staya_controller::agent::parameters;
 use staya_controller::negotiation::Moves;
 
 /// The paths of all fields.
@@ -116,7 +115,7 @@ fn every_scenario_is_in_the_list_of_the_readme() {
 fn the_range_of_bodies_is_that_of_the_parameter() {
     let mut fields = Vec::new();
     paths(ScenarioFile::lines(), "", &mut fields);
-    let parameter = parameters().find(|row| row.name == "radius_m").expect("a parameter");
+    let parameter = parameters().into_iter().find(|row| row.name == "radius_m").expect("a parameter");
     for field in ["plane.radius_m", "plane.group.radius_m", "plane.intruder.radius_m"] {
         let (_, line) = fields.iter().find(|(path, _)| path == field).unwrap_or_else(|| panic!("no {field}"));
         assert_eq!(line.limits, Some(Limits::new(0.001..=65.0, "metres")));
