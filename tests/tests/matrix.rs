@@ -2,7 +2,7 @@
 //! arrive or stay together, do not overlap where that can be avoided, and stay in their area.
 
 use rayon::prelude::*;
-use staya_controller::agent::{LawSettings, LayerSettings};
+use staya_controller::agent::{Goals, LawSettings, LayerSettings};
 use staya_controller::push_out::Model;
 use staya_sim::metrics::flock::FlockMeter;
 use staya_sim::nearby::Space;
@@ -24,10 +24,16 @@ fn layers() -> Vec<Layer> {
     kinds.chain([("push_out", Model::Tangential)]).collect()
 }
 
+fn goals(law: &str) -> Goals {
+    LawSettings::by_name(law).expect("a law").goals()
+}
+
 /// Robots, settings, and the smallest and largest x and y.
 fn swarm(law: &str) -> (&'static str, &'static str, [f64; 2]) {
     match law {
-        "waypoint" => ("robots.circle = { count = 6, radius_m = 3, noise_m = 0.05 }", "", [-5.0, 5.0]),
+        _ if goals(law) == Goals::Waypoints => {
+            ("robots.circle = { count = 6, radius_m = 3, noise_m = 0.05 }", "", [-5.0, 5.0])
+        }
         "lattice" => (
             "robots.cloud = { count = 6, from_m = [0, 0], to_m = [3, 3], goals_m = [[6, 6]] }\nlattice = { spacing_m = 1 }",
             "",
@@ -44,7 +50,7 @@ fn swarm(law: &str) -> (&'static str, &'static str, [f64; 2]) {
             "",
             [-100.0, 100.0],
         ),
-        "route" => (
+        _ if goals(law) == Goals::Cell && law != "formation" => (
             "",
             "[terrain]\nuniform = { width = 12, height = 12, classes = 1 }\n[robots]\nlist = [{ start = [1, 5], goal = [10, 5] }, \
              { start = [10, 6], goal = [1, 6] }, { start = [5, 1], goal = [5, 10] }, { start = [6, 10], goal = [6, 1] }, \
@@ -57,7 +63,7 @@ fn swarm(law: &str) -> (&'static str, &'static str, [f64; 2]) {
              [robots.formation]\nrows = 2\ncolumns = 3\nspacing = [2, -2]\nstart = [2, 8]\ngoal = [16, 8]",
             [0.0, 24.0],
         ),
-        _ => panic!("give robots for the law {law}"),
+        _ => ("robots.cloud = { count = 6, from_m = [0, 0], to_m = [4, 4] }", "", [-100.0, 100.0]),
     }
 }
 
@@ -117,7 +123,7 @@ fn verdict(law: &str, safety: Layer, radio: &str) -> Verdict {
 
 fn complaint(law: &str, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
     let hears = radio != "dead";
-    let has_goal = !matches!(law, "boids" | "lattice");
+    let has_goal = goals(law).are_own() || law == "goal_flock";
     let guards = safety != "none";
     // Each expects the others, and hears none.
     if !hears && guards && safety != "push_out" {
