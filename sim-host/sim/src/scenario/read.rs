@@ -443,7 +443,10 @@ impl<'a> Table<'a> {
     /// It is not a table, or has a field that is not `known`.
     pub fn new(node: &'a Node<'a>, known: &[&'static str]) -> Result<Self, Wrong> {
         let fields = Self::any(node)?;
-        let Some((key, _)) = fields.table.iter().find(|(key, _)| !known.contains(&present(key.get_ref()))) else {
+        // The table of a law that does not exist: the error is about the law.
+        let law = known.contains(&"law").then(|| fields.table.get("law")?.get_ref().as_str()).flatten();
+        let is_known = |name: &str| known.contains(&present(name)) || Some(name) == law;
+        let Some((key, _)) = fields.table.iter().find(|(key, _)| !is_known(key.get_ref())) else {
             return Ok(fields);
         };
         let name = key.get_ref();

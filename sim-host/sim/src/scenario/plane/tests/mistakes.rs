@@ -31,6 +31,9 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             with("law = \"sheep\"\n"),
             "s.toml:6:7: plane.law: this program has no law \"sheep\"; it has waypoint, lattice",
         ),
+        // Also with its values.
+        (with("law = \"sheep\"\nsheep = { k1 = 1 }\n"), "s.toml:6:7: plane.law: this program has no law \"sheep\""),
+        (with("law = \"sheep\"\nwolf = { k1 = 1 }\n"), "s.toml:7:1: plane.wolf: unknown field `wolf`"),
         (with("safety = \"luck\"\n"), "s.toml:6:10: plane.safety: unknown value `luck`"),
         (with("colour = 1\n"), "s.toml:6:1: plane.colour: unknown field `colour`"),
         (
