@@ -90,6 +90,15 @@ fn golden_list_of_laws_in_the_page_of_projects() {
     printed_part("docs/project.md", "laws", &text);
 }
 
+#[test]
+fn golden_list_of_layers_in_the_page_of_projects() {
+    let mut text = String::new();
+    for (name, what) in LayerSettings::ALL {
+        wrap(&mut text, &format!("- `{name}`: {what}"));
+    }
+    printed_part("docs/project.md", "layers", &text);
+}
+
 /// Files that mention rows in prose or read them.
 fn readers() -> Vec<PathBuf> {
     let mut all: Vec<PathBuf> =
