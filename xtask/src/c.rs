@@ -58,7 +58,7 @@ fn sanitized(repo: &Repo) -> Result<()> {
 }
 
 /// Compiles a program by the command of this line, runs it, and gives what it prints.
-fn program(repo: &Repo, line: &str, source: &str) -> Result<String> {
+pub fn program(repo: &Repo, line: &str, source: &str) -> Result<String> {
     let to = object(repo, source, "")?;
     let (compiler, options) = line.split_once(' ').unwrap_or((line, ""));
     let mut build = repo.command(compiler);

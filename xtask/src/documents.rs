@@ -1,6 +1,7 @@
 //! The documentation refers only to things that exist: paths, links and their headings, pages in
 //! comments, and the code that README.md quotes.
 
+use crate::law;
 use crate::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,7 +34,9 @@ impl Pages {
     fn of(root: &Path) -> Result<Self> {
         let files = files::below(root, &|path| !path.is_dir() || !files::is_made(path))?;
         let files = files.iter().filter_map(|file| file.strip_prefix(root).ok());
-        let paths = files.flat_map(Path::ancestors).filter(|path| !path.as_os_str().is_empty());
+        // One page writes files into a copy.
+        let law = law::Page::read(root)?;
+        let paths = files.chain(law.paths()).flat_map(Path::ancestors).filter(|path| !path.as_os_str().is_empty());
         Ok(Self { paths: paths.map(Path::to_path_buf).collect() })
     }
 

@@ -110,7 +110,7 @@ pub fn run_ten(repo: &Repo) -> Result<()> {
 
 /// Runs `staya hil`, which fails by itself when a device and its shadow differ; the whole run must
 /// also be the one without devices.
-fn is_identical(staya: &mut Command) -> Result<()> {
+pub fn is_identical(staya: &mut Command) -> Result<()> {
     let mut last = None;
     run_reading(staya, |line| {
         let said = line.trim_start().strip_prefix("without devices");

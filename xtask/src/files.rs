@@ -20,6 +20,11 @@ pub fn write(path: &Path, text: impl AsRef<[u8]>) -> Result<()> {
     fs::write(path, text).with_context(|| path.display().to_string())
 }
 
+/// Writes a file unless it has these bytes, so that cargo builds only the difference.
+pub fn update(path: &Path, wanted: &[u8]) -> Result<()> {
+    if bytes(path).is_ok_and(|bytes| bytes == wanted) { Ok(()) } else { write(path, wanted) }
+}
+
 /// Makes a folder.
 pub fn make(folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())

@@ -88,7 +88,7 @@ pub fn build(s: &mut Session, part: &Part, profile: &Profile, bins: &[&str]) -> 
 }
 
 /// Builds programs for a part, and copies the ELF files to where they are looked for.
-fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: &Profile, only: &[&str]) -> Result<()> {
+pub fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: &Profile, only: &[&str]) -> Result<()> {
     let is_debug = profile.name == DEBUG.name;
     ensure!(part.name != "nrf51" || !is_debug, skipped("256 KiB of flash hold it only optimised"));
     let mut cargo = toolchain.cargo(repo, part.target, "build --locked --package staya-firmware --profile");

@@ -16,6 +16,7 @@ mod firmware;
 mod fuzz;
 mod install;
 mod language;
+mod law;
 mod modules;
 mod mpi;
 mod mutants;
@@ -101,6 +102,12 @@ enum Command {
     },
     /// Programs, firmware, manual, completions below a folder
     Install(install::Options),
+    /// The law of docs/laws.md in host programs
+    Law {
+        /// Also in C, Python, ranks and firmware
+        #[arg(long)]
+        all: bool,
+    },
     /// One world over ranks of OpenMPI, on this machine
     Mpi {
         /// Only times of 200,000 robots on 1, 2 and 4 ranks
@@ -151,6 +158,7 @@ fn main() -> ExitCode {
         Command::Firmware(options) => firmware::run_command(s, &options),
         Command::Fuzz { seconds } => fuzz::run(s, seconds),
         Command::Install(options) => install::run(s, &options),
+        Command::Law { all } => law::run(s, all),
         Command::Mpi { scaling } => mpi::run(s, scaling),
         Command::Mutants(options) => mutants::run(s, &options),
         Command::New => project::run(s, true),

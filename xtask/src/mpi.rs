@@ -39,7 +39,7 @@ pub fn run(s: &mut Session, is_scaling: bool) {
 }
 
 /// The variables by which programs find OpenMPI; none where it is installed.
-fn find(repo: &Repo) -> Result<Vec<(&'static str, String)>> {
+pub fn find(repo: &Repo) -> Result<Vec<(&'static str, String)>> {
     if repo.says("mpirun --version && mpicc -show && ldconfig -p | grep libclang") {
         return Ok(Vec::new());
     }

@@ -69,7 +69,7 @@ pub fn cluster(s: &mut Session) {
 /// The package for Python: a wheel, the types of its Python code, tests.
 pub fn package(s: &mut Session) {
     let (repo, python) = (&s.repo, s.repo.target.join(PACKAGE).join("bin/python"));
-    let make = || package_environment(repo).and_then(|python| wheel(repo, &python));
+    let make = || package_environment(repo).and_then(|python| wheel(repo, &python, HERE, &[]));
     let is_made = s.report.step("the wheel", make);
     let wheel_is_there = || if is_made { Ok(()) } else { Err(skipped("the wheel was not built")) };
     s.report.step("types of the package for Python", || {
@@ -96,7 +96,7 @@ pub fn pogema(s: &mut Session, is_all: bool) {
     suite(s, "robots in POGEMA's world", &arguments, &[], |repo| {
         let python = environment(repo, "python-pogema", "tests/pogema/requirements.txt")?;
         pip(repo, &python, "--no-deps --requirement tests/pogema/toolbox.txt", &[])?;
-        wheel(repo, &python).map(|()| python)
+        wheel(repo, &python, HERE, &[]).map(|()| python)
     });
 }
 
@@ -205,7 +205,8 @@ pub fn rvo2_environment(repo: &Repo) -> Result<PathBuf> {
     environment(repo, "python-rvo2", "tests/rvo2/requirements.txt")
 }
 
-fn package_environment(repo: &Repo) -> Result<PathBuf> {
+/// The environment in which the package is tested.
+pub fn package_environment(repo: &Repo) -> Result<PathBuf> {
     environment(repo, PACKAGE, "tests/python-package/requirements.txt")
 }
 
@@ -213,19 +214,22 @@ fn package_environment(repo: &Repo) -> Result<PathBuf> {
 pub fn with_wheel(repo: &Repo) -> Result<PathBuf> {
     let python = package_environment(repo)?;
     if output_of(repo.command(&python).args(["-c", "import staya"])).is_none() {
-        wheel(repo, &python)?;
+        wheel(repo, &python, HERE, &[])?;
     }
     Ok(python)
 }
 
+/// Options of pip for the environment itself.
+const HERE: &str = "--force-reinstall --no-deps";
+
 /// Builds the wheel with the profile of tests, which is quick to compile and fast enough, and
-/// installs it.
-fn wheel(repo: &Repo, python: &Path) -> Result<()> {
+/// installs it by pip with these options and further arguments.
+pub fn wheel(repo: &Repo, python: &Path, options: &str, further: &[&Path]) -> Result<()> {
     let wheels = repo.target.join(PACKAGE).join("wheels");
     files::make_empty(&wheels)?;
     let mut build = repo.command(python);
     build.words("-m maturin build --locked --profile dev --target-dir").arg(&repo.target);
     execute(build.arg("--out").arg(&wheels))?;
     let built = files::entries(&wheels)?;
-    pip(repo, python, "--force-reinstall --no-deps", &built.iter().map(PathBuf::as_path).collect::<Vec<_>>())
+    pip(repo, python, options, &further.iter().copied().chain(built.iter().map(PathBuf::as_path)).collect::<Vec<_>>())
 }

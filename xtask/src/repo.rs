@@ -27,6 +27,8 @@ pub struct Repo {
     pub root: PathBuf,
     /// Cargo's target folder.
     pub target: PathBuf,
+    /// Where programs are that were fetched for this repository alone.
+    tools: PathBuf,
 }
 
 impl Repo {
@@ -37,12 +39,20 @@ impl Repo {
         let root = Path::new(&here).parent().unwrap_or(Path::new(&here)).to_path_buf();
         // Cargo reads a relative one from where it was started, as does `absolute`.
         let target = std::env::var_os("CARGO_TARGET_DIR").and_then(|folder| std::path::absolute(folder).ok());
-        Self { target: target.unwrap_or_else(|| root.join("target")), root }
+        let target = target.unwrap_or_else(|| root.join("target"));
+        Self { tools: target.join("tools/bin"), target, root }
     }
 
     /// Where programs are that were fetched for this repository alone.
-    pub fn tools(&self) -> PathBuf {
-        self.target.join("tools/bin")
+    pub fn tools(&self) -> &Path {
+        &self.tools
+    }
+
+    /// A copy of the repository below a folder of the target folder, with a target folder and the
+    /// same tools; [`Repo::copy`] fills it.
+    pub fn in_target(&self, folder: &str) -> Self {
+        let target = self.target.join(folder);
+        Self { root: target.join("sources"), tools: self.tools.clone(), target }
     }
 
     /// A program to run at the top of the repository, without standard input; it and its children
@@ -50,7 +60,7 @@ impl Repo {
     pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);
         let path = std::env::var_os("PATH").unwrap_or_default();
-        let folders = std::env::split_paths(&path).chain([self.tools()]);
+        let folders = std::env::split_paths(&path).chain([self.tools.clone()]);
         if let Ok(path) = std::env::join_paths(folders) {
             command.env("PATH", path);
         }
@@ -80,10 +90,7 @@ impl Repo {
         for file in listed.context("git ls-files fails")?.lines().map(Path::new) {
             let (from, to) = (self.root.join(file), to.join(file));
             if from.is_file() {
-                let bytes = change(file, files::bytes(&from)?);
-                if files::bytes(&to).ok().as_ref() != Some(&bytes) {
-                    files::write(&to, bytes)?;
-                }
+                files::update(&to, &change(file, files::bytes(&from)?))?;
             }
         }
         Ok(())

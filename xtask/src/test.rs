@@ -4,7 +4,7 @@
 use crate::device::PARTS;
 use crate::prelude::*;
 use crate::repo::BLESS;
-use crate::{bench, c, emulate, firmware, mpi, mutants, plants, project, proof, python, size, soak, swarms};
+use crate::{bench, c, emulate, firmware, law, mpi, mutants, plants, project, proof, python, size, soak, swarms};
 
 /// Properties are tried on the same random cases each time, so that a failure is the change's;
 /// `cargo test` alone takes new ones.
@@ -28,6 +28,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     python::pogema(s, is_all);
     if !is_all {
         project::run(s, is_all);
+        law::run(s, is_all);
         swarms::run_short(s, &PARTS[..2]);
         return emulate::run_fleets(s, &PARTS[..2]);
     }
@@ -54,6 +55,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     soak::run_short(s);
     firmware::example(s);
     project::run(s, is_all);
+    law::run(s, is_all);
     for (name, folder, line) in [
         ("same results as peers", "tests/peers", "test --locked"),
         ("fuzz targets on random bytes", "tests/fuzz", "test --locked --no-default-features"),
