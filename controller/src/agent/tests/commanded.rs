@@ -216,7 +216,8 @@ fn parameters_keep_their_values_and_reject_values_out_of_range() {
     let mut robot = robot::<f32>([0.0; 2]);
     let mut rows = std::vec::Vec::new();
     robot.agent.parameters(&mut |table| rows.extend(table.table()));
-    assert_eq!(rows.len(), 10);
+    // Speed and tolerance of the law are also the operator's.
+    assert_eq!(rows.len(), 12);
     assert_eq!(robot.agent.set_parameter("k1", 1.0), Err(Rejected::Unknown));
     for &Parameter { name, range, .. } in rows {
         let [least, greatest] = range;
