@@ -110,11 +110,14 @@ fn readers() -> Vec<PathBuf> {
         for entry in fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
             let path = entry.expect("an entry").path();
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            let is_test = matches!(name, "tests" | "tests.rs" | "__pycache__" | "settings.py");
+            // The page of laws has the table of its own law.
+            let is_left_out = matches!(name, "tests" | "tests.rs" | "__pycache__" | "settings.py" | "laws.md");
             let ends = ["md", "rs", "py", "pyi"];
-            if path.is_dir() && !is_test {
+            if path.is_dir() && !is_left_out {
                 folders.push(path);
-            } else if !is_test && path.extension().and_then(|end| end.to_str()).is_some_and(|end| ends.contains(&end)) {
+            } else if !is_left_out
+                && path.extension().and_then(|end| end.to_str()).is_some_and(|end| ends.contains(&end))
+            {
                 all.push(path);
             }
         }
