@@ -1332,17 +1332,17 @@ typedef struct StayaDecision {
      */
     uint8_t has_way;
     /**
-     * Other than 0: the robot is at its goal, and stands (STAYA_MODE_ARRIVED).
+     * StayaProgress; does not count with STAYA_ACTION_IDLE.
      */
-    uint8_t is_at_goal;
+    uint8_t progress;
     /**
-     * Other than 0: no route is open, and the robot stands (STAYA_MODE_HOLD).
-     */
-    uint8_t is_stuck;
-    /**
-     * Why the robot stands and waits (STAYA_MODE_HOLD): StayaWait.
+     * With STAYA_PROGRESS_WAITING, and only then: StayaWait.
      */
     uint8_t wait;
+    /**
+     * Other than 0: the robot carries out the action although it has arrived or waits.
+     */
+    uint8_t makes_way;
     /**
      * Length of `moves`, at most 8.
      */
