@@ -9,8 +9,8 @@ use regex::{Regex, RegexBuilder};
 const BROKEN: usize = 40;
 /// The most lines of comments and pages that exceed [`COLUMNS`].
 const LONG_LINES: usize = 0;
-/// The most words in all pages.
-const WORDS: usize = 34_000;
+/// The most words in all pages, without their code.
+const WORDS: usize = 31_700;
 const COLUMNS: usize = 100;
 
 const EXTENSIONS: [&str; 12] = ["rs", "md", "py", "pyi", "toml", "js", "html", "h", "c", "sh", "x", "ipynb"];
@@ -43,7 +43,8 @@ pub fn check(root: &Path) -> Result<()> {
         if files::has_extension(&file, &["md"]) {
             // A table that a test reads is not a page.
             let is_table = file.ends_with("tests/cases/README.md");
-            words += if is_table { 0 } else { text.split_whitespace().count() };
+            let count = |(_, line): &(usize, &str)| line.split_whitespace().count();
+            words += if is_table { 0 } else { prose(&text).map(|line| count(&line)).sum() };
             limited.extend(prose(&text));
         } else if files::has_extension(&file, &["rs"]) {
             limited.extend((1..).zip(text.lines()).filter(|(_, line)| line.trim_start().starts_with("//")));
