@@ -3,7 +3,7 @@
 use crate::robot::Mode;
 use serde::{Deserialize, Serialize};
 
-/// What the next mode depends on: what its agent may do, and the progress of its law.
+/// The conditions of the next mode: those of its agent, and the progress of its law.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Situation {

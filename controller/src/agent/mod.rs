@@ -182,7 +182,7 @@ const BYTES: [usize; 4] =
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
 const _: () = assert!(BYTES[0] <= 4568 && BYTES[1] <= 4832 && BYTES[2] <= 1872 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4600, 4872, 1896, 2720]));
+const _: () = assert!(matches!(BYTES, [4592, 4864, 1888, 2720]));
 
 /// The controller of one robot: law `L`, at most `N` known neighbours, safety layer `A`, wire
 /// format `W`, perception `P`.
@@ -191,9 +191,9 @@ const _: () = assert!(matches!(BYTES, [4600, 4872, 1896, 2720]));
 ///
 /// | type | 32-bit part | 64-bit host |
 /// | --- | --- | --- |
-/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4568 | 4600 |
-/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4832 | 4872 |
-/// | [`OrcaAgent`] | at most 1872 | 1896 |
+/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4568 | 4592 |
+/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4832 | 4864 |
+/// | [`OrcaAgent`] | at most 1872 | 1888 |
 /// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
 ///
 /// With the feature `host`, lists take only the memory of their entries.

@@ -3,7 +3,7 @@
 use super::Wait;
 use serde::{Deserialize, Serialize};
 
-/// The progress of a robot, as its law sees it. What the robot then does is its mode:
+/// The progress of a robot, as its law sees it. The mode of the robot follows from it:
 ///
 /// | progress | [`Mode`](crate::robot::Mode) |
 /// | --- | --- |

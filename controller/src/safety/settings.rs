@@ -126,7 +126,8 @@ pub struct TableSettings(pub OrcaSettings);
 impl Settings for TableSettings {
     const NAME: &'static str = "template_2k";
     const SECTION: &'static str = OrcaSettings::NAME;
-    const WHAT: &'static str = "ORCA with half-planes from a table of 2 KiB, for parts without FPU (A. Tolok and others, FVM)";
+    const WHAT: &'static str =
+        "ORCA with half-planes from a table of 2 KiB, for parts without FPU (A. Tolok and others, FVM)";
 
     fn tables(&mut self, visit: &mut dyn FnMut(&mut dyn Parameters)) {
         self.0.tables(visit);

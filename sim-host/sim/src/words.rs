@@ -1,9 +1,9 @@
-//! What robots do, in words: the same in summaries, on the page and beside an autopilot.
+//! Words for the actions of robots: the same in summaries, on the page and beside an autopilot.
 
 use staya_controller::agent::{Goals, Wait};
 use staya_controller::robot::Mode;
 
-/// What a robot in this mode does, behind its name. `goals`: what its law takes.
+/// The action of a robot in this mode, behind its name. `goals`: those that its law takes.
 #[must_use]
 pub const fn does(mode: Mode, goals: Goals) -> &'static str {
     match (mode, goals) {

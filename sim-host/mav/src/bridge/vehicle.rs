@@ -433,7 +433,7 @@ impl Vehicle {
         if !self.is_armed {
             return;
         }
-        let [x, y, z] = self.seen.motion.position_m;
+        let z = self.seen.motion.position_m[2];
         match self.mode {
             FlightMode::Land { is_item } if !self.is_in_air() => {
                 self.is_armed = false;
