@@ -43,7 +43,7 @@ def test_the_sentence_follows_from_the_state(view, look):
     select(page, 5)
     # Its neighbours are unknown; its preferred velocity is forbidden; it is past the others.
     for wanted, sentence in [
-        (1, "Robot 5 waits: it does not know where silent robots are"),
+        (1, "Robot 5 waits: the places of silent robots are unknown"),
         (70, "Robot 5 moves to its goal and evades other robots"),
         (150, "Robot 5 moves to its goal"),
     ]:
@@ -61,16 +61,30 @@ def test_the_sentence_follows_from_the_state(view, look):
     assert page.evaluate("staya.sentence") == "Robot 5 is down"
 
 
+@pytest.mark.parametrize(
+    ("scenario", "sentence"),
+    [
+        ("scenarios/boids.toml", "Robot 1 moves; its law has no goal"),
+        ("scenarios/goal-flock.toml", "Robot 1 moves with its flock"),
+    ],
+)
+def test_no_robot_of_a_flock_moves_to_a_goal_of_its_own(view, look, scenario, sentence):
+    page = look(view(scenario, "--paused").url)
+    seek(page, 10)
+    select(page, 1)
+    until(lambda: (page.evaluate("staya.sentence") or "").startswith(sentence), what="the sentence")
+
+
 def test_a_waiting_robot_says_why(view, look):
     page = look(view("scenarios/doorway.toml", "--paused").url)
     reasons = {
-        "team": "its leader",
-        "stopped": "another robot asked it to stop",
-        "route": "terrain or walls block its way",
-        "radio": "it does not know where silent robots are",
+        "team": "leader",
+        "stopped": "another robot asked for a stop",
+        "route": "terrain or walls block the way",
+        "radio": "the places of silent robots are unknown",
         "turn": "other robots go first",
-        "robots": "other robots are in its way",
-        "goal_taken": "occupies its goal",
+        "robots": "other robots are in the way",
+        "goal_taken": "occupies",
     }
     page.evaluate("staya.send({ do: 'speed', x: null })")
     page.keyboard.press(" ")
