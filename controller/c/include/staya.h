@@ -271,6 +271,44 @@ typedef uint8_t StayaAction;
 #endif // __cplusplus
 
 /**
+ * How far a law of your own is with its task.
+ */
+enum StayaProgress
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * It goes to its goal, or as its law without a goal says.
+     */
+    STAYA_PROGRESS_GOING = 0,
+    /**
+     * It is too far from its place in a formation, and goes there: STAYA_MODE_FORMING.
+     */
+    STAYA_PROGRESS_FORMING = 1,
+    /**
+     * It stands for the reason `wait`: STAYA_MODE_HOLD; beside its occupied goal
+     * (STAYA_WAIT_GOAL_TAKEN) STAYA_MODE_ARRIVED.
+     */
+    STAYA_PROGRESS_WAITING = 2,
+    /**
+     * No route is open, and it stands: STAYA_MODE_HOLD.
+     */
+    STAYA_PROGRESS_STUCK = 3,
+    /**
+     * It is at its goal, and stands: STAYA_MODE_ARRIVED.
+     */
+    STAYA_PROGRESS_ARRIVED = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum StayaProgress StayaProgress;
+#else
+typedef uint8_t StayaProgress;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * Wire format; the same for all robots of a swarm.
  */
 enum StayaWire
