@@ -361,7 +361,10 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
             let doubts = hearing == Hearing::Unclear;
             let is_listening = link.listening.passes(now, config.contact_loss.listen, (doubts, misses));
             if is_listening || hearing == Hearing::NoLonger {
-                out.wait = (wish_mps != Vec3::ZERO).then_some(Wait::Radio);
+                // A robot that has no wish keeps the reason of its law.
+                if wish_mps != Vec3::ZERO {
+                    out.wait = Some(Wait::Radio);
+                }
                 wish_mps = Vec3::ZERO;
             }
             nearby.iter_mut().for_each(|other| other.gives_way &= is_heard);
