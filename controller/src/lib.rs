@@ -38,6 +38,8 @@ extern crate std;
 
 #[cfg(feature = "agent")]
 pub mod agent;
+#[cfg(any(feature = "negotiation", feature = "wire"))]
+mod array;
 #[cfg(feature = "auth")]
 #[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod auth;

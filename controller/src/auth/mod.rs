@@ -22,7 +22,7 @@ pub const KEY_LEN: usize = 32;
 /// A secret of 32 bytes, never printed, logged or part of a digest of state. Serde serializes it,
 /// so the saved state of a robot is as secret as its key.
 #[derive(Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Key([u8; KEY_LEN]);
+pub struct Key(#[serde(with = "crate::array")] [u8; KEY_LEN]);
 
 impl Key {
     /// Wraps key bytes.

@@ -6,8 +6,8 @@
 //! ([`DecodeError::Body`](super::DecodeError::Body)).
 
 use super::content::{Bytes, MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD, ProtocolId};
-use crate::fixint;
 use crate::robot::{Mode, RobotId};
+use crate::{array, fixint};
 use serde::{Deserialize, Serialize};
 
 /// The state that a robot broadcasts periodically: everything that other robots may rely on.
@@ -115,6 +115,7 @@ pub struct KeyAssignment {
     /// The stage to advance to.
     pub phase: KeyPhase,
     /// The seed of the key, encrypted for the addressee: see `auth::Seed`.
+    #[serde(with = "array")]
     pub wrapped: [u8; 32],
 }
 

@@ -1,5 +1,6 @@
 //! A robot's knowledge of the land around it: cells that are closed.
 
+use crate::array;
 use crate::grid::{Cell, Dir};
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +23,7 @@ pub(super) type Plane = [u64; SIDE];
 /// The closed cells within 5 cells of a robot: 121 bits, row by row from the south, each from the
 /// west; the lowest bit of the first byte is the south-western cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Sight(pub [u8; 16]);
+pub struct Sight(#[serde(with = "array")] pub [u8; 16]);
 
 /// The cells of a [`Sight`] relative to its robot, in the order of the bits.
 fn cells() -> impl Iterator<Item = Cell> {
@@ -53,7 +54,7 @@ impl Sight {
 /// cells are open.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Area {
-    #[serde(with = "halves")]
+    #[serde(with = "array")]
     closed: Plane,
     center: Cell,
     blocked: [Block; BLOCKS],
@@ -69,27 +70,6 @@ struct Block {
     left: u8,
     /// How often this robot found it blocked.
     times: u8,
-}
-
-/// A [`Plane`] as two arrays; serde has none of 64.
-mod halves {
-    use super::{Plane, SIDE};
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    const HALF: usize = SIDE >> 1;
-
-    pub fn serialize<T: Serializer>(plane: &Plane, serializer: T) -> Result<T::Ok, T::Error> {
-        let [mut low, mut high] = [[0; HALF]; 2];
-        low.iter_mut().chain(&mut high).zip(plane).for_each(|(half, row)| *half = *row);
-        [low, high].serialize(serializer)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Plane, D::Error> {
-        let halves = <[[u64; HALF]; 2]>::deserialize(deserializer)?;
-        let mut plane = [0; SIDE];
-        plane.iter_mut().zip(halves.as_flattened()).for_each(|(row, half)| *row = *half);
-        Ok(plane)
-    }
 }
 
 /// The place of a coordinate in a [`Plane`].

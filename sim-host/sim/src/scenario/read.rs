@@ -473,11 +473,17 @@ impl<'a> Table<'a> {
     /// # Errors
     /// See [`Field::read`].
     pub fn read<T: Field>(&self, name: &str, limits: Option<&Limits>) -> Result<Option<T>, Wrong> {
-        let mut fields = self.table.iter().filter(|(key, _)| present(key.get_ref()) == name);
-        let Some((key, node)) = fields.next() else { return Ok(T::absent()) };
-        let value = T::read(node);
-        let value = value.and_then(|value| limits.map_or(Ok(()), |limits| limits.check_node(node)).map(|()| value));
-        value.map(Some).map_err(|wrong| wrong.under(key.get_ref()))
+        let Some((key, node)) = self.field(name) else { return Ok(T::absent()) };
+        match T::read(node) {
+            Ok(value) => within(node, limits).map(|()| Some(value)),
+            Err(wrong) => Err(wrong),
+        }
+        .map_err(|wrong| wrong.under(key))
+    }
+
+    fn field(&self, name: &str) -> Option<(&'a str, &'a Node<'a>)> {
+        let found = self.table.iter().find(|(key, _)| present(key.get_ref()) == name);
+        found.map(|(key, node)| (key.get_ref().as_ref(), node))
     }
 
     /// Reads the value of a field by `read`; an error carries the field's place.
@@ -538,6 +544,10 @@ impl<'a> Table<'a> {
     pub fn missing(&self, name: &str) -> Wrong {
         Wrong::new(self.node, format!("missing field `{name}`"))
     }
+}
+
+fn within(node: &Node<'_>, limits: Option<&Limits>) -> Result<(), Wrong> {
+    limits.map_or(Ok(()), |limits| limits.check_node(node))
 }
 
 /// Earlier names of fields, each with the present one.
