@@ -4,6 +4,7 @@ mod accept;
 mod axes;
 mod check;
 mod read;
+mod reference;
 mod table;
 
 use crate::error::SweepError;
@@ -12,9 +13,10 @@ use crate::probe;
 use crate::study::{Given, Study};
 use crate::sweep::value::Value;
 use accept::Choice;
-pub use accept::{Acceptance, Reference, Verdict};
+pub use accept::{Acceptance, Judgement, Verdict};
 pub use axes::Change;
 use axes::{Axis, SCENARIO};
+pub use reference::Reference;
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
 use staya_sim::scenario::{Field, Location, ScenarioError, Source};
@@ -47,6 +49,8 @@ pub struct Plan {
     /// Fields with one value for all runs, as TOML, and their places in the plan.
     set: Vec<(Field, String, Location)>,
     seeds: Vec<u64>,
+    /// Whether the command line chose fewer seeds than the file.
+    pub has_few_seeds: bool,
     measures: Vec<String>,
     /// Requested pictures; empty for the default.
     pub plots: Vec<PlotTable>,

@@ -1,14 +1,17 @@
-//! Conditions on the measures of a plan, and values of a paper to compare with.
+//! Conditions on the measures of a plan.
 
 use super::table::AcceptTable;
 use super::{LIST, Plan};
-use crate::error::SweepError;
-use crate::sweep::value::{Figure, Point, Value, short};
+use crate::sweep::row::Row;
+use crate::sweep::value::{Point, Value, short};
 use serde::Serialize;
-use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{ScenarioError, Source, fields};
-use staya_sim::shown::Shown as _;
-use std::path::Path;
+use staya_stats::Summary;
+use std::fmt::{self, Display, Formatter};
+
+/// Fewest runs of a point whose mean is judged: with fewer, equal values by chance would have an
+/// interval of no width.
+const LEAST: usize = 5;
 
 /// Points of a plan, by values of some axes.
 #[derive(Clone, Debug, Default)]
@@ -49,71 +52,79 @@ impl Choice {
     }
 }
 
-/// Values of a paper: a table whose first columns are axes and whose others are measures.
-#[derive(Clone, Debug)]
-pub struct Reference {
-    axes: Vec<usize>,
-    measures: Vec<String>,
-    rows: Vec<(Vec<String>, Vec<Figure>)>,
-}
-
-impl Reference {
-    /// Reads a CSV file; lines that begin with `#` are comments.
-    pub fn load(plan: &Plan, path: &Path) -> Result<Self, SweepError> {
-        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
-        let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
-        let wrong = |line: usize, what: String, remedy: &str| {
-            SweepError::new(format_args!("{}:{line}", path.shown()), what, remedy)
-        };
-        let (line, header) = lines.next().unwrap_or((1, ""));
-        let names: Vec<&str> = header.split(',').collect();
-        let axes: Vec<usize> = names.iter().map_while(|name| plan.find(name)).collect();
-        let measures: Vec<String> = names[axes.len()..].iter().map(ToString::to_string).collect();
-        if let Some(name) = measures.iter().find(|name| !plan.measures.contains(name)) {
-            let remedy = "give axes, then measures of the plan";
-            return Err(wrong(line, format!("{name:?} is neither an axis nor a measure"), remedy));
-        }
-        let mut rows = Vec::new();
-        for (line, text) in lines {
-            let cells: Vec<&str> = text.split(',').collect();
-            let figures = cells.iter().skip(axes.len()).map(|cell| Figure::read(cell)).collect::<Option<Vec<_>>>();
-            let Some(figures) = figures.filter(|_| cells.len() == names.len()) else {
-                return Err(wrong(line, "it does not fit the header".to_owned(), "give a number per measure"));
-            };
-            rows.push((cells[..axes.len()].iter().map(ToString::to_string).collect(), figures));
-        }
-        Ok(Self { axes, measures, rows })
-    }
-
-    /// Value of a measure at a point with these values of the axes.
-    #[must_use]
-    pub fn value(&self, values: &[String], measure: &str) -> Option<f64> {
-        let column = self.measures.iter().position(|name| name == measure)?;
-        let is_here = |cells: &[String]| self.axes.iter().zip(cells).all(|(axis, cell)| values[*axis] == *cell);
-        self.rows.iter().find(|(cells, _)| is_here(cells))?.1[column].0
-    }
-}
-
 /// A condition on a measure at some points.
 #[derive(Clone, Debug)]
 pub struct Acceptance {
     measure: usize,
     at: Choice,
+    beside: Option<Beside>,
     limits: [f64; 2],
     within: Option<f64>,
     is_mean: bool,
+    claim: String,
+    paper: String,
     text: String,
+    fails: Option<String>,
 }
 
-/// Whether the runs fulfil a condition.
+/// The other point of a comparison.
+#[derive(Clone, Debug)]
+enum Beside {
+    /// With these values of some axes.
+    Values(Vec<(usize, String)>),
+    /// With the value of an axis that precedes the point's own one.
+    Previous(usize),
+}
+
+/// What runs say about a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Judgement {
+    /// It holds at all points.
+    Holds,
+    /// At some point it neither holds nor fails by the 95 % interval of the mean.
+    TooFewRuns,
+    /// It fails at some point.
+    DoesNotHold,
+}
+
+impl Display for Judgement {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Holds => "holds",
+            Self::TooFewRuns => "too few runs",
+            Self::DoesNotHold => "does not hold",
+        })
+    }
+}
+
+/// What the runs say about a condition, and what was expected.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
+    /// The claim that the condition expresses; empty for a condition without one.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub claim: String,
+    /// The paper's figure; may be empty.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub paper: String,
     /// Measure, points and condition.
     pub condition: String,
-    /// Whether it holds at all points.
-    pub holds: bool,
-    /// The smallest and largest value, or the first point where it does not hold.
+    /// What the runs say.
+    pub judgement: Judgement,
+    /// The smallest and largest value, or those of the point that decides.
     pub measured: String,
+    /// Why the condition is known not to hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fails: Option<String>,
+}
+
+impl Verdict {
+    /// Whether the runs show what the plan says: the condition holds, or fails as is known.
+    #[must_use]
+    pub fn is_expected(&self) -> bool {
+        let expected = if self.fails.is_some() { Judgement::DoesNotHold } else { Judgement::Holds };
+        self.judgement == expected
+    }
 }
 
 impl Acceptance {
@@ -123,10 +134,12 @@ impl Acceptance {
         source: &Source<'_>,
         field: &str,
     ) -> Result<Self, ScenarioError> {
-        let AcceptTable { measure, r#where: _, equals, at_most, at_least, within, mean } = table;
+        let AcceptTable { claim, paper, fails, measure, r#where: _, beside: _, previous, .. } = table;
+        let AcceptTable { equals, at_most, at_least, within, mean, .. } = table;
+        let of = |name: &str| format!("{field}.{name}");
         let Some(number) = plan.measures.iter().position(|name| *name == measure) else {
             let remedy = format!("name it in `measures` ({LIST})");
-            return Err(source.error(&format!("{field}.measure"), format!("{measure} is not measured"), remedy));
+            return Err(source.error(&of("measure"), format!("{measure} is not measured"), remedy));
         };
         let low = equals.or(at_least).unwrap_or(f64::NEG_INFINITY);
         let high = equals.or(at_most).unwrap_or(f64::INFINITY);
@@ -134,57 +147,158 @@ impl Acceptance {
             return Err(source.error(field, "it has no limit", "give equals, at_most, at_least or within"));
         }
         if within.is_some() && plan.reference.is_none() {
-            return Err(source.error(&format!("{field}.within"), "there is no reference", "name its file"));
+            return Err(source.error(&of("within"), "there is no reference", "name its file"));
+        }
+        let (at, other) = (Choice::read(plan, source, &of("where"))?, Choice::read(plan, source, &of("beside"))?);
+        let beside = match (&other.0[..], &previous) {
+            ([], None) => None,
+            ([], Some(axis)) => {
+                let remedy = format!("give one of {}", plan.axes().collect::<Vec<_>>().join(", "));
+                let found = plan.find(axis);
+                let found =
+                    found.ok_or_else(|| source.error(&of("previous"), format!("{axis} is not an axis"), remedy))?;
+                Some(Beside::Previous(found))
+            }
+            (others, None) => {
+                let single = |(axis, values): &(usize, Vec<String>)| match &values[..] {
+                    [value] => Ok((*axis, value.clone())),
+                    _ => Err(source.error(&of("beside"), "an axis has several values", "give one for each")),
+                };
+                Some(Beside::Values(others.iter().map(single).collect::<Result<_, _>>()?))
+            }
+            (_, Some(_)) => {
+                return Err(source.error(&of("previous"), "`beside` is given, too", "give one of them"));
+            }
+        };
+        if beside.is_some() && !(mean && within.is_none() && (low >= 0.0 || low.is_infinite())) {
+            let remedy = "give mean = true, and limits of 0 or more for the ratio of the means";
+            return Err(source.error(field, "it compares points without means", remedy));
         }
         let mut text = measure;
-        let field = format!("{field}.where");
-        let points = source.get(&field).and_then(|node| node.get_ref().as_table());
-        if let Some(points) = points.filter(|points| !points.is_empty()) {
-            text += &format!(" where {}", fields(points).collect::<Vec<_>>().join(", "));
-        }
+        let shown = |name: &str, word: &str| {
+            let points = source.get(&of(name)).and_then(|node| node.get_ref().as_table());
+            let points = points.filter(|points| !points.is_empty());
+            points.map_or(String::new(), |points| format!(" {word} {}", fields(points).collect::<Vec<_>>().join(", ")))
+        };
+        text += &shown("where", "where");
+        text += &shown("beside", "over its value where");
+        text += &previous.map_or(String::new(), |axis| format!(" over its value at the previous {axis}"));
         for (name, limit) in [("=", equals), ("at most", at_most), ("at least", at_least)] {
             text += &limit.map_or(String::new(), |limit| format!(" {name} {limit}"));
         }
-        text += &within.map_or(String::new(), |share| format!(" within {} % of the reference", 100.0 * share));
+        text += &within.map_or(String::new(), |share| format!(" within {} % of the reference", short(100.0 * share)));
         if mean {
             text += " on average";
         }
-        let at = Choice::read(plan, source, &field)?;
-        Ok(Self { measure: number, at, limits: [low, high], within, is_mean: mean, text })
+        let limits = [low, high];
+        Ok(Self { measure: number, at, beside, limits, within, is_mean: mean, claim, paper, text, fails })
     }
 
-    /// Limits hold for each run, or for the mean: then unless its 95 % interval lies beyond them,
-    /// as for a reference.
+    /// Limits hold for each run, or for the mean: then its whole 95 % interval must lie inside. It
+    /// fails where that lies outside, and needs more runs between. So it is with a reference.
     #[must_use]
-    pub fn judge(&self, plan: &Plan, points: &[Point]) -> Verdict {
-        let [mut least, mut most] = [f64::INFINITY, f64::NEG_INFINITY];
-        let verdict = |holds, measured| Verdict { condition: self.text.clone(), holds, measured };
+    pub fn judge(&self, plan: &Plan, points: &[Point], rows: &[Row]) -> Verdict {
+        let verdict = |judgement, measured| Verdict {
+            claim: self.claim.clone(),
+            paper: self.paper.clone(),
+            condition: self.text.clone(),
+            judgement,
+            measured,
+            fails: self.fails.clone(),
+        };
+        let (mut worst, mut spread) = (None::<(Judgement, String)>, None::<[f64; 2]>);
         for point in points.iter().filter(|point| self.at.has(&point.values)) {
             let here = point.values.join(" ");
-            let Some(summary) = point.figures[self.measure].filter(|s| self.is_mean || s.count == point.runs) else {
-                return verdict(false, format!("a run of {here} has no value"));
+            let found = match &self.beside {
+                None => self.alone(plan, point),
+                Some(beside) => {
+                    let Some(other) = beside.of(plan, points, point) else { continue };
+                    self.compared(plan, [point, other], rows)
+                }
             };
-            let mean = summary.mean_interval95();
-            let [low, high] = if self.is_mean { mean } else { [summary.min, summary.max] };
-            let is_inside = match self.is_mean {
-                true => low <= self.limits[1] && high >= self.limits[0],
-                false => low >= self.limits[0] && high <= self.limits[1],
+            let Some((judgement, [low, high])) = found else {
+                return verdict(Judgement::DoesNotHold, format!("a run of {here} has no value"));
             };
-            let name = &plan.measures[self.measure];
-            let expected = plan.reference.as_ref().and_then(|reference| reference.value(&point.values, name));
-            let is_near = self.within.zip(expected).is_none_or(|(share, expected)| {
-                mean[0] <= expected + share * expected.abs() && mean[1] >= expected - share * expected.abs()
-            });
-            if !is_inside || !is_near {
-                return verdict(false, format!("{} at {here}", span(low, high)));
+            if judgement > worst.as_ref().map_or(Judgement::Holds, |(worst, _)| *worst) {
+                worst = Some((judgement, format!("{} at {here}", span(low, high))));
             }
-            [least, most] = [least.min(low), most.max(high)];
+            spread = Some(spread.map_or([low, high], |[least, most]| [least.min(low), most.max(high)]));
         }
-        if least > most {
-            verdict(false, "there is no such point".to_owned())
+        match (worst, spread) {
+            (Some((judgement, measured)), _) => verdict(judgement, measured),
+            (None, Some([low, high])) => verdict(Judgement::Holds, span(low, high)),
+            (None, None) => verdict(Judgement::DoesNotHold, "there is no such point".to_owned()),
+        }
+    }
+
+    fn alone(&self, plan: &Plan, point: &Point) -> Option<(Judgement, [f64; 2])> {
+        let summary = point.figures[self.measure].filter(|summary| self.is_mean || summary.count == point.runs)?;
+        let [low, high] = self.limits;
+        let expected = plan.reference.as_ref().zip(self.within).and_then(|(reference, share)| {
+            let value = reference.value(&point.values, &plan.measures[self.measure])?;
+            Some([value - share * value.abs(), value + share * value.abs()])
+        });
+        let near = expected.map(|limits| of_mean(&summary, limits));
+        let (judgement, shown) = if self.is_mean || expected.is_some() {
+            (of_mean(&summary, self.limits), summary.mean_interval95())
         } else {
-            verdict(true, span(least, most))
+            let is_inside = low <= summary.min && summary.max <= high;
+            let judgement = if is_inside { Judgement::Holds } else { Judgement::DoesNotHold };
+            (judgement, [summary.min, summary.max])
+        };
+        Some((near.map_or(judgement, |near| near.max(judgement)), shown))
+    }
+
+    /// The ratio of the means of two points whose runs have the same seeds, by the interval of the
+    /// mean of x - limit * y.
+    fn compared(&self, plan: &Plan, points: [&Point; 2], rows: &[Row]) -> Option<(Judgement, [f64; 2])> {
+        let seeds = plan.seeds();
+        let value = |point: &Point, seed: u64| {
+            let run = point.number * seeds + seed;
+            let row = &rows[rows.binary_search_by_key(&run, |row| row.run).ok()?];
+            row.figures.get(self.measure)?.0
+        };
+        let pairs: Option<Vec<_>> =
+            (0..seeds).map(|seed| Some((value(points[0], seed)?, value(points[1], seed)?))).collect();
+        let pairs = pairs?;
+        let [low, high] = self.limits;
+        let side = |limit: f64, limits: [f64; 2]| {
+            let rest: Vec<f64> = pairs.iter().map(|(x, y)| x - limit * y).collect();
+            Summary::of(&rest).map(|rest| of_mean(&rest, limits))
+        };
+        let least = if low.is_finite() { side(low, [0.0, f64::INFINITY])? } else { Judgement::Holds };
+        let most = if high.is_finite() { side(high, [f64::NEG_INFINITY, 0.0])? } else { Judgement::Holds };
+        let sum = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
+        let ratio = sum.0 / sum.1;
+        Some((least.max(most), [ratio, ratio]))
+    }
+}
+
+impl Beside {
+    /// The point that another one is compared with.
+    fn of<'a>(&self, plan: &Plan, points: &'a [Point], point: &Point) -> Option<&'a Point> {
+        let mut values = point.values.clone();
+        match self {
+            Self::Values(others) => others.iter().for_each(|(axis, value)| values[*axis].clone_from(value)),
+            Self::Previous(axis) => {
+                let known = &plan.axes[*axis].values;
+                let at = known.iter().position(|value| value.to_string() == values[*axis])?;
+                values[*axis] = known[at.checked_sub(1)?].to_string();
+            }
         }
+        points.iter().find(|other| other.values == values && other.number != point.number)
+    }
+}
+
+/// Whether the 95 % interval of a mean lies inside limits, outside, or needs more runs.
+fn of_mean(summary: &Summary, [low, high]: [f64; 2]) -> Judgement {
+    let [least, most] = summary.mean_interval95();
+    if most < low || least > high {
+        Judgement::DoesNotHold
+    } else if summary.count >= LEAST && low <= least && most <= high {
+        Judgement::Holds
+    } else {
+        Judgement::TooFewRuns
     }
 }
 

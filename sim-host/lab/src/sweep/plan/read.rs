@@ -1,6 +1,7 @@
 //! Reads the file of a plan and checks it.
 
-use super::accept::{Acceptance, Choice, Reference};
+use super::accept::{Acceptance, Choice};
+use super::reference::Reference;
 use super::table::{Files, GainTable, HistogramTable, PlanFile, PlotTable, SeedRange, Seeds};
 use super::{Base, Changes, LIST, MOST, Plan, axes, check};
 use crate::error::SweepError;
@@ -68,6 +69,8 @@ impl Plan {
             None => vec![scenarios[0].get("seed").and_then(|seed| u64::read(seed).ok()).unwrap_or_default()],
             Some(seeds) => check_seeds(&source, seeds)?,
         };
+        let all_seeds = seeds.len();
+        let seeds = changes.seeds(seeds, file.seeds.as_ref());
         let mut plan = Self {
             name: file.name,
             title: file.title,
@@ -77,7 +80,8 @@ impl Plan {
             axes,
             groups,
             set,
-            seeds: changes.seeds(seeds, file.seeds.as_ref()),
+            has_few_seeds: seeds.len() < all_seeds,
+            seeds,
             measures: Vec::new(),
             plots: Vec::new(),
             pictures: Vec::new(),

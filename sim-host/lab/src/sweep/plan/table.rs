@@ -175,10 +175,20 @@ table! {
 table! {
     /// `[[accept]]`: what the runs must show.
     pub struct AcceptTable {
+        /// What the paper, or this project, says; a row of docs/results.md.
+        pub claim: String = String::new();
+        /// The paper's figure.
+        pub paper: String = String::new();
+        /// Why the condition is known not to hold.
+        pub fails: Option<String>;
         /// A figure that the plan records.
         pub measure: String;
         /// Values of axes; a list for several. Default: all points.
         pub r#where: AnyTable = AnyTable;
+        /// Values of axes of the points to divide by, seed by seed.
+        pub beside: AnyTable = AnyTable;
+        /// Instead: an axis whose preceding value these points have.
+        pub previous: Option<String>;
         /// Least and greatest value.
         pub equals: Option<f64>;
         /// Greatest value.
