@@ -3,6 +3,8 @@
 
 use staya_controller::agent::{LayerSettings, Motion};
 use staya_controller::negotiation::Moves;
+use staya_lab::figure::{self, Figure};
+use staya_lab::sweep::claims;
 use staya_sim::scenario::{LawSetup, Line, Read as _, ScenarioFile, Usual, laws, parameters};
 use staya_tests::{END, printed_part, root};
 use std::fmt::Write as _;
@@ -97,6 +99,20 @@ fn golden_list_of_layers_in_the_page_of_projects() {
         wrap(&mut text, &format!("- `{name}`: {what}"));
     }
     printed_part("docs/project.md", "layers", &text);
+}
+
+/// Papers with a table of claims in docs/results.md.
+const PAPERS: [&str; 5] = ["kuz", "pav", "olf", "fvm", "sta"];
+
+#[test]
+fn golden_claims_of_papers_in_the_page_of_results() {
+    let all = figure::all().expect("figures");
+    for paper in PAPERS {
+        let of_paper = |figure: &&Figure| figure.place.starts_with(&format!("{paper}/"));
+        let figures: Vec<_> = all.iter().filter(of_paper).cloned().collect();
+        let table = claims::table(&figures).unwrap_or_else(|error| panic!("{error}"));
+        printed_part("docs/results.md", &format!("claims of {}", paper.to_uppercase()), &table);
+    }
 }
 
 /// Files that mention rows in prose or read them.

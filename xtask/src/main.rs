@@ -8,6 +8,7 @@ mod autopilots;
 mod bench;
 mod c;
 mod check;
+mod claims;
 mod device;
 mod documents;
 mod emulate;
@@ -76,6 +77,11 @@ enum Command {
     Browser,
     /// The library for C, on this machine and on an emulated STM32F405
     C,
+    /// Figures of papers with all their seeds, for the claims in docs/results.md
+    Claims {
+        /// Only figures with these short names
+        names: Vec<String>,
+    },
     /// MAVLink clients against staya
     Clients {
         /// Only tests whose name contains this
@@ -150,6 +156,7 @@ fn main() -> ExitCode {
         Command::Book => python::book(s),
         Command::Browser => python::browser(s),
         Command::C => c::run(s),
+        Command::Claims { names } => claims::run(s, &names),
         Command::Clients { name } => python::clients(s, name.as_deref(), true),
         Command::Cluster => python::cluster(s),
         Command::Example => firmware::example(s),

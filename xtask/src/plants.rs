@@ -77,16 +77,7 @@ fn panicking_log(text: &str) -> Option<String> {
 
 fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) -> Result<()> {
     let copy = repo.target.join(COPY);
-    let mut is_planted = false;
-    repo.copy(&copy, |file, bytes| {
-        let text = String::from_utf8_lossy(&bytes);
-        if file != Path::new(plant.file) || text.matches(plant.right).count() != 1 {
-            return bytes;
-        }
-        is_planted = true;
-        text.replace(plant.right, plant.wrong).into_bytes()
-    })?;
-    ensure!(is_planted, "{}: not once `{}`: bring PLANTS up to date", plant.file, plant.right);
+    repo.plant(&copy, plant.file, plant.right, plant.wrong)?;
     let line = "build --locked --profile firmware --package staya-firmware --bin";
     let mut build = toolchain.cargo(repo, part.target, line);
     build.arg(plant.bin).current_dir(&copy);

@@ -168,16 +168,7 @@ pub fn run(s: &mut Session) {
 /// Whether a test finds a decision that breaks a hypothesis, if the rule in Rust is changed.
 fn is_noticed(repo: &Repo, (_, right, wrong): &(&str, &str, &str)) -> Result<()> {
     let folder = repo.target.join("proof/rust");
-    let mut times = 0;
-    repo.copy(&folder, |file, bytes| {
-        if file != Path::new(RULE) {
-            return bytes;
-        }
-        let text = String::from_utf8_lossy(&bytes);
-        times = text.matches(right).count();
-        text.replace(right, wrong).into_bytes()
-    })?;
-    ensure!(times == 1, "{RULE}: {times} times `{right}`: bring CHANGES up to date");
+    repo.plant(&folder, RULE, right, wrong)?;
     let mut test = repo.cargo(TIE);
     test.current_dir(&folder).env("CARGO_TARGET_DIR", repo.target.join("proof/rust-target"));
     test.env("CARGO_PROFILE_DEV_OPT_LEVEL", "1");

@@ -96,6 +96,21 @@ impl Repo {
         Ok(())
     }
 
+    /// A copy in which one place of a file is changed: `right`, which stands there once, to `wrong`.
+    pub fn plant(&self, to: &Path, file: &str, right: &str, wrong: &str) -> Result<()> {
+        let mut times = 0;
+        self.copy(to, |path, bytes| {
+            if path != Path::new(file) {
+                return bytes;
+            }
+            let text = String::from_utf8_lossy(&bytes);
+            times = text.matches(right).count();
+            text.replace(right, wrong).into_bytes()
+        })?;
+        ensure!(times == 1, "{file}: {times} times `{right}`: bring the list of changes up to date");
+        Ok(())
+    }
+
     /// A program that was built by the profile `debug` or `release`.
     pub fn program(&self, profile: &str, name: &str) -> PathBuf {
         self.target.join(profile).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))

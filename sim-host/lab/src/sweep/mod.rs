@@ -5,6 +5,7 @@
 //! | [`plan`] | varied fields, values, seeds and measures |
 //! | [`run`] | one run, a function of plan and number only |
 //! | [`report`] | table, verdicts and files of a complete plan |
+//! | [`claims`] | what papers claim beside what full runs showed |
 //! | [`row`] | the record of a run |
 //! | [`shard`] | the part of a plan that one process does, and its file of rows |
 //! | [`merge`] | the rows of all shards in order, and their consistency |
@@ -15,6 +16,7 @@
 //! | [`jobs`] | parallel jobs |
 
 pub mod aggregate;
+pub mod claims;
 pub mod gain;
 pub mod jobs;
 pub mod merge;

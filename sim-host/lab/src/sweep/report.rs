@@ -1,6 +1,7 @@
 //! Carries out a plan and reports it: rows, summaries of points, verdicts, pictures.
 
 use crate::sweep::aggregate;
+use crate::sweep::claims::{RECORD, Record};
 use crate::sweep::gain::{self, Gain, gains};
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Judgement, Plan, Verdict};
@@ -167,8 +168,11 @@ impl<'a> Report<'a> {
         self.gains = plan.gains.iter().flat_map(|table| gains(plan, &points, table)).collect();
         self.verdicts = plan.accept.iter().map(|accept| accept.judge(plan, &points, &merged.rows)).collect();
         if !self.verdicts.is_empty() {
-            write_atomically(&out.join(VERDICT), self.verdict().as_bytes())?;
-            self.files.push(out.join(VERDICT));
+            let record = Record::new(plan, &self.verdicts);
+            for (name, text) in [(VERDICT, self.verdict()), (RECORD, record.text())] {
+                write_atomically(&out.join(name), text.as_bytes())?;
+                self.files.push(out.join(name));
+            }
         }
         let value = |point: &Point, name: &str| plan.reference.as_ref()?.value(&point.values, name);
         let reference = |point: &Point| {

@@ -4,7 +4,7 @@ use super::table::AcceptTable;
 use super::{LIST, Plan};
 use crate::sweep::row::Row;
 use crate::sweep::value::{Point, Value, short};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use staya_sim::scenario::{ScenarioError, Source, fields};
 use staya_stats::Summary;
 use std::fmt::{self, Display, Formatter};
@@ -77,7 +77,7 @@ enum Beside {
 }
 
 /// What runs say about a condition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
     /// It holds at all points.
@@ -194,18 +194,24 @@ impl Acceptance {
         Ok(Self { measure: number, at, beside, limits, within, is_mean: mean, claim, paper, text, fails })
     }
 
-    /// Limits hold for each run, or for the mean: then its whole 95 % interval must lie inside. It
-    /// fails where that lies outside, and needs more runs between. So it is with a reference.
+    /// The verdict with this judgement.
     #[must_use]
-    pub fn judge(&self, plan: &Plan, points: &[Point], rows: &[Row]) -> Verdict {
-        let verdict = |judgement, measured| Verdict {
+    pub fn verdict(&self, judgement: Judgement, measured: String) -> Verdict {
+        Verdict {
             claim: self.claim.clone(),
             paper: self.paper.clone(),
             condition: self.text.clone(),
             judgement,
             measured,
             fails: self.fails.clone(),
-        };
+        }
+    }
+
+    /// Limits hold for each run, or for the mean: then its whole 95 % interval must lie inside. It
+    /// fails where that lies outside, and needs more runs between. So it is with a reference.
+    #[must_use]
+    pub fn judge(&self, plan: &Plan, points: &[Point], rows: &[Row]) -> Verdict {
+        let verdict = |judgement, measured| self.verdict(judgement, measured);
         let (mut worst, mut spread) = (None::<(Judgement, String)>, None::<[f64; 2]>);
         for point in points.iter().filter(|point| self.at.has(&point.values)) {
             let here = point.values.join(" ");
@@ -275,18 +281,27 @@ impl Acceptance {
 }
 
 impl Beside {
-    /// The point that another one is compared with.
+    /// The point that another one is compared with. Axes that advance with a changed one follow it.
     fn of<'a>(&self, plan: &Plan, points: &'a [Point], point: &Point) -> Option<&'a Point> {
-        let mut values = point.values.clone();
-        match self {
-            Self::Values(others) => others.iter().for_each(|(axis, value)| values[*axis].clone_from(value)),
+        let others = match self {
+            Self::Values(others) => others.clone(),
             Self::Previous(axis) => {
                 let known = &plan.axes[*axis].values;
-                let at = known.iter().position(|value| value.to_string() == values[*axis])?;
-                values[*axis] = known[at.checked_sub(1)?].to_string();
+                let at = known.iter().position(|value| value.to_string() == point.values[*axis])?;
+                vec![(*axis, known[at.checked_sub(1)?].to_string())]
             }
-        }
-        points.iter().find(|other| other.values == values && other.number != point.number)
+        };
+        let follows = |axis: usize| {
+            let group = plan.groups.iter().find(|group| group.contains(&axis));
+            group.is_some_and(|group| others.iter().any(|(changed, _)| group.contains(changed)))
+        };
+        let is_it = |other: &&Point| {
+            let has = others.iter().all(|(axis, value)| other.values[*axis] == *value);
+            let is_else_equal =
+                (0..point.values.len()).all(|axis| follows(axis) || other.values[axis] == point.values[axis]);
+            has && is_else_equal && other.number != point.number
+        };
+        points.iter().find(is_it)
     }
 }
 
@@ -306,3 +321,6 @@ fn span(low: f64, high: f64) -> String {
     let [a, b] = [low, high].map(short);
     if a == b { a } else { format!("{a} to {b}") }
 }
+
+#[cfg(test)]
+mod tests;
