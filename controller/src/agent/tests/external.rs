@@ -1,5 +1,6 @@
 //! Tests of the law that its owner decides.
 
+use super::plane::orca;
 use super::*;
 use crate::wire::{Bytes, MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD};
 
@@ -70,6 +71,24 @@ fn progress_reaches_the_supervisor() {
     assert_eq!(mode(1, Progress::Stuck), (Mode::Hold, Some(Wait::Route)));
     let waits = Progress::Waiting(Wait::Team);
     assert_eq!(mode(2, waits), (Mode::Hold, Some(Wait::Team)));
+}
+
+#[test]
+fn a_robot_that_listens_tells_the_reason_of_its_law_or_the_radio() {
+    let contact_loss = ContactLossPolicy { listen: Duration::from_millis(30_000), ..ContactLossPolicy::DEFAULT };
+    let config = AgentConfig { contact_loss, ..config(1) };
+    let mut agent: Agent<f32, External<f32>, 4, OrcaSafety<f32, 16>> =
+        Agent::new(&config, External::new(OWN), orca(), Postcard);
+    let mut wait = |n: u32, progress: Progress, wish_mps: Vec3<f32>| {
+        agent.law_mut().set_decision(Decision { progress, ..going(wish_mps) });
+        let out = agent.step(&in_plane(1.0, &[]), tick(n), &mut ());
+        assert_eq!(out.command, Command::Velocity(Vec3::ZERO), "it listens");
+        out.wait
+    };
+    assert_eq!(wait(0, Progress::Waiting(Wait::Team), Vec3::ZERO), Some(Wait::Team));
+    assert_eq!(wait(1, Progress::Stuck, Vec3::ZERO), Some(Wait::Route));
+    assert_eq!(wait(2, Progress::Going, Vec3::ZERO), None);
+    assert_eq!(wait(3, Progress::Going, EAST), Some(Wait::Radio));
 }
 
 #[test]
