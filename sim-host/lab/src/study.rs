@@ -73,14 +73,12 @@ impl Given<'_> {
         self.source.read_table("study", LIST)
     }
 
-    /// The scenario: all fields except the study's.
+    /// The scenario.
     ///
     /// # Errors
     /// The scenario is wrong.
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
-        let mut source = self.source.clone();
-        source.remove("study");
-        Scenario::read(source, &Overrides { seed: Some(self.seed), ticks: None })
+        Scenario::read(self.source.clone(), &Overrides { seed: Some(self.seed), ticks: None })
     }
 
     /// An error about a parameter of the study.

@@ -1,6 +1,7 @@
 //! `staya experiment` with figures that are data, at the command line.
 
 use serde_json::Value;
+use staya_sim::scenario::{Overrides, Scenario};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -130,4 +131,27 @@ fn wrong_changes_are_refused_in_one_line() {
         assert!(!ended.status.success(), "{arguments:?}");
         assert!(error.contains(remedy), "{arguments:?}: {error}");
     }
+}
+
+#[test]
+fn every_scenario_of_a_figure_is_a_scenario_of_its_own() {
+    let mut folders = vec![staya_tests::root().join("papers")];
+    let (mut read, mut studies) = (0, 0);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let is_scenario = path.extension().is_some_and(|end| end == "toml")
+                && !path.ends_with("figure.toml")
+                && !path.ends_with("Cargo.toml");
+            if path.is_dir() {
+                folders.push(path);
+            } else if is_scenario {
+                let scenario = Scenario::load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+                let is_said = scenario.remarks().iter().any(|remark| remark.contains("[study]"));
+                assert_eq!(is_said, scenario.origin.has_study, "{}", path.display());
+                (read, studies) = (read + 1, studies + u32::from(is_said));
+            }
+        }
+    }
+    assert!(read > 40 && studies > 5, "{read} files, {studies} with a study");
 }

@@ -272,6 +272,8 @@ pub struct Origin {
     pub parameters: serde_json::Value,
     /// Groups of different robots, in the file's order; empty if all robots are alike.
     pub parts: Vec<Part>,
+    /// Whether the file has fields of a study, which a run of the scenario does not use.
+    pub has_study: bool,
 }
 
 impl Scenario {
@@ -370,7 +372,12 @@ impl Scenario {
             formations,
             movement,
             laws,
-            origin: Origin { files: source.files(), parameters: with_overrides(parameters, file), parts },
+            origin: Origin {
+                files: source.files(),
+                parameters: with_overrides(parameters, file),
+                parts,
+                has_study: source.has("study"),
+            },
         };
         scenario.trust.plausibility = plausibility::limits(draft, &scenario.robots, scenario.usual_claims())?;
         Ok(scenario)
@@ -396,11 +403,16 @@ impl Scenario {
         self.plane()?.sensing
     }
 
-    /// Warnings, one line each: key file, unstable gains, probable mistakes in `[plane]`.
+    /// Warnings, one line each: key file, fields of a study, unstable gains, probable mistakes in
+    /// `[plane]`.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let key = self.trust.keys.iter().filter_map(|keys| keys.remark.clone());
-        key.chain(self.plane().into_iter().flat_map(|setup| plane::remarks(self, setup))).collect()
+        let study = self.origin.has_study.then(|| {
+            "[study] has no effect on this run; `staya experiment` uses it with the figure that names this file"
+                .to_owned()
+        });
+        key.chain(study).chain(self.plane().into_iter().flat_map(|setup| plane::remarks(self, setup))).collect()
     }
 
     /// The number of faults of the robot that has most of them.

@@ -10,6 +10,7 @@ use super::intervention::InterventionTable;
 use super::maps::MapsTable;
 use super::plane::{PlaneTable, RobotsSource};
 use super::plausibility::PlausibilityTable;
+use super::read::AnyTable;
 use super::robots::RobotsTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
@@ -57,6 +58,8 @@ table! {
         pub plausibility: PlausibilityTable = Default::default();
         /// Attackers with radios.
         pub attack: Vec<AttackTable> = Vec::new();
+        /// Fields of a study, which only `staya experiment` uses.
+        pub study: Option<AnyTable>;
     }
 }
 

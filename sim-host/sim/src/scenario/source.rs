@@ -248,11 +248,6 @@ impl<'a> Source<'a> {
         deepest.filter(|_| is_field)
     }
 
-    /// Removes a field or table at the top of the file.
-    pub fn remove(&mut self, name: &str) {
-        self.root_mut().remove(name);
-    }
-
     /// Whether this field or table is there.
     #[must_use]
     pub fn has(&self, field: &str) -> bool {
