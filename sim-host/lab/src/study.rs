@@ -51,7 +51,15 @@ pub trait Study: Debug + Sync {
 }
 
 /// All studies.
-pub const ALL: [&dyn Study; 5] = [&boids::Boids, &flock::Flock, &movingai::MovingAi, &route::Route, &tune::Tune];
+pub const ALL: [&dyn Study; 7] = [
+    &boids::Boids,
+    &boids::dimensions::Dimensions,
+    &boids::listing::Listing,
+    &flock::Flock,
+    &movingai::MovingAi,
+    &route::Route,
+    &tune::Tune,
+];
 
 /// Fields of a run.
 #[derive(Clone, Debug)]

@@ -5,6 +5,8 @@
 //! [`nearby`](staya_sim::nearby) and [`searches`] have the same start, must give bitwise equal
 //! trajectories, and are timed on one thread.
 
+pub mod dimensions;
+pub mod listing;
 pub mod searches;
 #[cfg(test)]
 mod tests;
@@ -13,7 +15,7 @@ use super::{Given, Study};
 use crate::error::SweepError;
 use crate::measure::{Job, Measured, Watch};
 use rayon::prelude::*;
-use searches::{MidpointTree, MutualPairs, Tree};
+use searches::{MidpointTree, MutualPairs, Quadtree, Tree};
 use staya_controller::boids::BoidsParams;
 use staya_controller::geom::{Torus, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
@@ -50,6 +52,8 @@ choice! {
         Tree = "tree",
         /// A k-d tree by the sliding midpoint rule, as in the paper.
         MidpointTree = "midpoint_tree",
+        /// A quadtree with a boid in each node, as in the paper.
+        Quadtree = "quadtree",
     }
 }
 
@@ -152,6 +156,7 @@ impl Parameters {
             Method::PairsOnce => Box::new(MutualPairs::new(flock.space, self.closest)),
             Method::Tree => Box::new(Tree::new(flock.space)),
             Method::MidpointTree => Box::new(MidpointTree::new(flock.space)),
+            Method::Quadtree => Box::new(Quadtree::new(flock.space)),
             // For up to 150 neighbours, cells as large as the radius are fastest.
             Method::Cells | Method::Threads => Box::new(cells.clone()),
         };
@@ -354,14 +359,14 @@ impl Flock {
     /// Hash of the bits of all places and headings.
     #[must_use]
     pub fn hash(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let headings = self.headings.iter().flat_map(|h| [h.x, h.y]);
         let places = self.places.iter().copied().flatten();
-        for byte in places.chain(headings).flat_map(|x| x.to_bits().to_le_bytes()) {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-        hash
+        hash(places.chain(headings).flat_map(|x| x.to_bits().to_le_bytes()))
     }
+}
+
+fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 #[derive(Debug, Default)]

@@ -8,8 +8,15 @@ fn small(search: Method) -> Parameters {
     Parameters { boids: 60, search, steps: 12, all_pairs_up_to: 60, ..Parameters::default() }
 }
 
-const SEARCHES: [Method; 6] =
-    [Method::AllPairs, Method::PairsOnce, Method::Cells, Method::Threads, Method::Tree, Method::MidpointTree];
+const SEARCHES: [Method; 7] = [
+    Method::AllPairs,
+    Method::PairsOnce,
+    Method::Cells,
+    Method::Threads,
+    Method::Tree,
+    Method::MidpointTree,
+    Method::Quadtree,
+];
 
 #[test]
 fn all_searches_and_all_threads_give_the_same_trajectories() {

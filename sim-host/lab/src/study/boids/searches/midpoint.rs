@@ -92,6 +92,51 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
     }
 }
 
+/// The nearest point of a tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestPoint<R> {
+    /// Its squared distance; the largest number if there is no point.
+    pub distance_squared: R,
+    /// Points whose distance was computed.
+    pub visits: u64,
+}
+
+impl<R: Real, const D: usize> MidpointTree<R, D> {
+    /// The nearest point in open space. Boxes beyond the nearest point found so far are skipped; the
+    /// squared distance to a box changes along one axis with each cut (S. Arya and D. M. Mount 1993).
+    #[must_use]
+    pub fn nearest(&self, at: [R; D]) -> NearestPoint<R> {
+        let mut best = NearestPoint { distance_squared: R::MAX, visits: 0 };
+        let mut open = vec![(0_u32, R::ZERO, [R::ZERO; D])];
+        while let Some((number, box_squared, ways)) = open.pop() {
+            if box_squared >= best.distance_squared {
+                continue;
+            }
+            match self.nodes.get(number as usize) {
+                Some(&Node::Cut { axis, at: cut, above }) => {
+                    let axis = usize::from(axis);
+                    let way = at[axis] - cut;
+                    let (near, far) = if way < R::ZERO { (number + 1, above) } else { (above, number + 1) };
+                    let mut far_ways = ways;
+                    far_ways[axis] = way;
+                    let far_squared = far_ways.iter().fold(R::ZERO, |sum, &way| sum + way * way);
+                    open.push((far, far_squared, far_ways));
+                    open.push((near, box_squared, ways));
+                }
+                Some(&Node::Leaf(from, to)) => {
+                    for point in &self.points[from as usize..to as usize] {
+                        let squared = |sum: R, axis: usize| sum + (point[axis] - at[axis]) * (point[axis] - at[axis]);
+                        best.distance_squared = best.distance_squared.min((0..D).fold(R::ZERO, squared));
+                        best.visits += 1;
+                    }
+                }
+                None => {}
+            }
+        }
+        best
+    }
+}
+
 struct Open<R, const D: usize> {
     from: usize,
     to: usize,

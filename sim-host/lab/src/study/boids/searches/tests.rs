@@ -1,4 +1,4 @@
-use super::{MidpointTree, MutualPairs, Tree};
+use super::{MidpointTree, MutualPairs, Quadtree, Tree};
 use staya_controller::rand::Rng;
 use staya_sim::nearby::{AllPairs, Found, Query, Search, Space};
 
@@ -18,6 +18,7 @@ fn assert_agree(space: Space<f64, 2>, points: &Points, queries: &[Query<f64, 2>]
     let expected = answers(AllPairs::new(space), points, queries);
     assert_eq!(expected, answers(Tree::new(space), points, queries));
     assert_eq!(expected, answers(MidpointTree::new(space), points, queries));
+    assert_eq!(expected, answers(Quadtree::new(space), points, queries));
     for radius in [0.0, 1.0, 5.0] {
         assert_eq!(expected, answers(MutualPairs::new(space, radius), points, queries), "{radius}");
     }
