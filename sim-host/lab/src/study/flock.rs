@@ -117,6 +117,13 @@ table! {
         pub knows: Knowledge = Knowledge::Packets;
         /// Number of nearest robots that each robot knows with exact knowledge.
         pub nearest: usize = usize::MAX;
+        /// Number of robots, the first ones, that know the goals of a goal flock with exact knowledge.
+        /// The goal of the others is the nearest of these in their range. Default: all know them.
+        pub leaders: u32 = u32::MAX;
+        /// Number of robots, the first ones, that die: they stay where they are, and are not seen.
+        pub dying: u32 = 0;
+        /// When they die, seconds.
+        pub die_s: f64 = 0.0, 0.0..=1e9, "s";
         /// Speed limit of alpha flocks with exact knowledge; the paper has none.
         pub fastest_mps: f64 = f64::MAX;
         /// Standard deviation of starts along each axis, instead of the scenario's starts.

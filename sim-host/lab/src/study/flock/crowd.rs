@@ -30,6 +30,9 @@ pub(super) struct Crowd<'a> {
     targets: Vec<Target>,
     range_m: f64,
     most: usize,
+    leaders: u32,
+    dying: usize,
+    die_s: f64,
     fastest_mps: f64,
     step_s: f64,
     places: Vec<[f64; 3]>,
@@ -69,6 +72,9 @@ impl<'a> Crowd<'a> {
             },
             targets: plane.starts.first().map_or(Vec::new(), |start| start.places.clone()),
             most: run.parameters.nearest,
+            leaders: run.parameters.leaders,
+            dying: run.parameters.dying as usize,
+            die_s: run.parameters.die_s,
             step_s: run.scenario.tick_s(),
             places: plane.starts.iter().map(|start| start.position_m).collect(),
             velocities: plane.starts.iter().map(|start| start.velocity_mps).collect(),
@@ -113,7 +119,8 @@ impl<'a> Crowd<'a> {
             if each(&moment, &mut self.rows()).is_break() || tick == scenario.ticks {
                 break;
             }
-            self.step(&targets)?;
+            let dead = if time_s >= self.die_s { self.dying.min(self.places.len()) } else { 0 };
+            self.step(&targets, dead)?;
             tick += 1;
         }
         let robots = self.places.len();
@@ -179,7 +186,8 @@ impl<'a> Crowd<'a> {
         self.targets.iter().enumerate().map(target).collect()
     }
 
-    fn step(&mut self, targets: &[Target]) -> Result<(), String> {
+    /// The first `dead` robots are dead.
+    fn step(&mut self, targets: &[Target], dead: usize) -> Result<(), String> {
         for (index, target) in targets.iter().enumerate().filter(|_| matches!(self.law, Law::Goals { .. })) {
             let goal = Position::from_metres(target.position_m).ok_or("a goal is too far away")?;
             for goals in &mut self.goals {
@@ -192,10 +200,15 @@ impl<'a> Crowd<'a> {
         cells.rebuild(&self.places);
         let (mut found, mut nearby, mut next) = (Vec::new(), Vec::new(), Vec::new());
         for robot in 0..self.places.len() {
+            if robot < dead {
+                next.push([0.0; 3]);
+                continue;
+            }
             let (at, except) = (self.places[robot], Some(robot as u32));
             cells.within(&Query { at, radius: self.range_m, most: self.most, except }, &mut found);
             nearby.clear();
-            nearby.extend(found.iter().map(|other| Nearby {
+            let alive = found.iter().filter(|other| other.index as usize >= dead);
+            nearby.extend(alive.map(|other| Nearby {
                 id: RobotId(other.index + 1),
                 offset_m: vec(other.offset),
                 velocity_mps: vec(self.velocities[other.index as usize]),
@@ -243,7 +256,13 @@ impl<'a> Crowd<'a> {
                 let own = Position::from_metres(self.places[robot]).ok_or("a robot is too far away")?;
                 let goals = &mut self.goals[robot];
                 let _ = goals.update(own, *arrival_m, *seed, body.id);
-                let wished = wish(params, &body, own, goals.current(), nearby);
+                let goal = if robot < self.leaders as usize {
+                    goals.current()
+                } else {
+                    let leader = nearby.iter().find(|other| other.id.0 <= self.leaders);
+                    leader.and_then(|leader| own.moved(leader.offset_m))
+                };
+                let wished = wish(params, &body, own, goal, nearby);
                 match layer {
                     None => wished,
                     Some(layer) => {
