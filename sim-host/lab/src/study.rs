@@ -3,6 +3,7 @@
 
 pub mod boids;
 pub mod flock;
+pub mod fvm;
 pub mod movingai;
 pub mod route;
 pub mod tune;
@@ -51,11 +52,12 @@ pub trait Study: Debug + Sync {
 }
 
 /// All studies.
-pub const ALL: [&dyn Study; 7] = [
+pub const ALL: [&dyn Study; 8] = [
     &boids::Boids,
     &boids::dimensions::Dimensions,
     &boids::listing::Listing,
     &flock::Flock,
+    &fvm::Fvm,
     &movingai::MovingAi,
     &route::Route,
     &tune::Tune,

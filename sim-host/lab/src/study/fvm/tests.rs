@@ -1,0 +1,52 @@
+use super::*;
+use crate::optimal;
+use staya_controller::grid::{Cell, Norm};
+use staya_sim::terrain::generate::{LandPlan, natural};
+
+fn value(parameters: &Parameters, name: &str) -> f64 {
+    let measured = parameters.measure(5, &|_| true).unwrap();
+    measured.values[name].unwrap_or_else(|| panic!("{name} is empty"))
+}
+
+#[test]
+fn formula_gives_the_papers_example() {
+    let whole = Parameters { pairs: 200, ..Parameters::default() };
+    assert!((value(&whole, "change_mps") - 0.292_893).abs() < 1e-6);
+    assert!((value(&whole, "point_x") - 1.707_107).abs() < 1e-6);
+    assert!((value(&whole, "point_y") - 0.792_893).abs() < 1e-6);
+    assert!(value(&whole, "off_mps") < 1e-12);
+    let half = Parameters { share: 0.5, ..whole };
+    assert!((value(&half, "point_x") - 1.603_553).abs() < 1e-6);
+    assert!((value(&half, "point_y") - 0.896_447).abs() < 1e-6);
+    assert_eq!(value(&whole, "agreement"), 1.0);
+    assert!(value(&whole, "agreement_printed") < 0.9);
+}
+
+#[test]
+fn travel_times_are_those_of_the_fastest_routes() {
+    let plan = LandPlan { width: 100, height: 100, classes: 9, seed: 4 };
+    let land = natural(&plan, 40, Norm::Euclidean).unwrap();
+    let goal = Cell::new(98, 98);
+    let times = path::travel_times(&land, goal);
+    for (x, y) in [(1, 1), (50, 3), (0, 99), (97, 98)] {
+        let route = optimal::route(&land, Cell::new(x, y), goal, Norm::Euclidean, true).unwrap();
+        assert_eq!(times[usize::from(y as u16) * 100 + usize::from(x as u16)], route.cost, "{x}, {y}");
+    }
+}
+
+#[test]
+fn a_programme_is_as_good_as_linear_programming() {
+    let parameters = Parameters { task: Task::Programme, nodes: 9, pairs: 50, ..Parameters::default() };
+    assert!(value(&parameters, "worst_excess_mps") < 0.01);
+    assert!(value(&parameters, "excess_mps") > -1e-6);
+    assert!(value(&parameters, "violation_mps") < 1e-9);
+}
+
+#[test]
+fn half_planes_of_other_pairs_need_a_model_for_them() {
+    let source =
+        staya_sim::scenario::Source::new(Path::new("f.toml"), "[study]\ntask = 'half_planes'\nsource = 'distance'");
+    let given = Given { source: source.unwrap(), measures: &[], seed: 1 };
+    let Err(error) = Fvm.read(&given) else { panic!("accepted") };
+    assert!(error.to_string().contains("study.source"), "{error}");
+}
