@@ -117,8 +117,8 @@ table! {
         pub knows: Knowledge = Knowledge::Packets;
         /// Number of nearest robots that each robot knows with exact knowledge.
         pub nearest: usize = usize::MAX;
-        /// Number of robots, the first ones, that know the goals of a goal flock with exact knowledge.
-        /// The goal of the others is the nearest of these in their range. Default: all know them.
+        /// Number of robots, the first ones, that know the goals of a goal flock (with exact
+        /// knowledge). The goal of the others is the nearest of these in their range. Default: all.
         pub leaders: u32 = u32::MAX;
         /// Number of robots, the first ones, that die: they stay where they are, and are not seen.
         pub dying: u32 = 0;

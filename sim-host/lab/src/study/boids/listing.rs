@@ -1,7 +1,7 @@
 //! The boids of STA's listing as printed, and its defects repaired one after the other.
 //!
-//! Source: V. A. Starovoitova 2018 (STA), section 2.4 and appendix A, classes `Boid` and `TwoD`. The
-//! headings are angles as there, so that the printed errors of angles appear; the controller's
+//! Source: V. A. Starovoitova 2018 (STA), section 2.4 and appendix A, classes `Boid` and `TwoD`.
+//! The headings are angles as there, so that the printed errors of angles appear; the controller's
 //! [`boids`](staya_controller::boids) are the repaired law on unit vectors.
 
 use super::{Given, Study, hash};
@@ -53,7 +53,7 @@ table! {
     pub struct Parameters {
         /// The last repair.
         pub repair: Repair = Repair::Printed;
-        /// Whether `simulate_wall` is called before and after boids turn, as in the listing's comments.
+        /// Whether `simulate_wall` is called before and after boids turn, as in its comments.
         pub walls: bool = false;
         /// Number of boids.
         pub boids: u32 = 20, 2.0..=1e4, "";

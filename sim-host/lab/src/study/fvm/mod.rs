@@ -12,7 +12,6 @@ mod tests;
 use super::{Given, Study};
 use crate::error::SweepError;
 use crate::measure::{Job, Measured, Watch};
-use staya_sim::scenario::ScenarioError;
 use staya_sim::{choice, defaults, table};
 use std::path::{Path, PathBuf};
 
@@ -121,7 +120,7 @@ impl Study for Fvm {
 
     /// Figures 3 to 6 of the example, or a path on its land.
     fn draw(&self, given: &Given<'_>, title: &str, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
-        let parameters: Parameters = given.parameters::<Parameters>().map_err(|error: ScenarioError| error)?;
+        let parameters: Parameters = given.parameters()?;
         let wrong = |what: String| given.error("task", what, "change the parameters of the task");
         match parameters.task {
             Task::Example => example::draw(&parameters, stem).map_err(wrong),

@@ -3,9 +3,9 @@
 //! The paper leaves this step to its reference 12 (A. V. Tolok and N. B. Tolok 2018, "Mathematical
 //! programming problems solving by functional voxel method"), which was not available. Here the
 //! permitted region is an R-function, the conjunction of the half-planes and the disc of speeds.
-//! Its model gives the permitted node nearest to the wish, or else the node with the greatest value,
-//! from which the velocity ascends into the region along local planes. Then it descends towards the
-//! wish, and along the local plane of the function where that is the border.
+//! Its model gives the permitted node nearest to the wish, or else the node with the greatest
+//! value, from which the velocity ascends into the region along local planes. Then it descends
+//! towards the wish, and along the local plane of the function where that is the border.
 
 use super::{Parameters, Values};
 use staya_controller::geom::Vec2;
