@@ -108,8 +108,8 @@ pub fn neighbor_model(parameters: &Parameters) -> Result<Vec<u8>, String> {
     }
 }
 
-/// Pairs up to 5 m apart, with relative velocities up to 3 m/s along each axis. The least distance on
-/// their straight ways decides whether they collide.
+/// Pairs up to 5 m apart, with relative velocities up to 3 m/s along each axis. The least distance
+/// on their straight ways decides whether they collide.
 fn agreement(parameters: &Parameters, seed: u64, predicted: fn(V, f64, f64, V) -> bool) -> f64 {
     let (mut agree, horizon_s) = (0_u32, PAIR.horizon_s);
     for pair in 0..parameters.pairs {
