@@ -5,17 +5,20 @@
 //! values are identical on any machine.
 //!
 //! [`FlockMeter::look`] measures a moment, [`alpha_flocking`] classifies a trace of such moments,
-//! [`Gaps`] counts overlaps, and [`EnergyMeter`] computes the Hamiltonian.
+//! [`Gaps`] counts overlaps, [`crossings`] those of links, and [`EnergyMeter`] computes the
+//! Hamiltonian.
 
 mod attitude;
 mod energy;
 mod gaps;
+mod planar;
 #[cfg(test)]
 mod tests;
 
 pub use attitude::attitude;
 pub use energy::{Energy, EnergyMeter};
 pub use gaps::{Gaps, Obstacle, gaps};
+pub use planar::crossings;
 
 use crate::nearby::{Cells, Found, Query, Search as _, Space};
 use serde::{Deserialize, Serialize};

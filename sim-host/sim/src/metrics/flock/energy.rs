@@ -82,6 +82,13 @@ impl<const D: usize> EnergyMeter<D> {
         self.psi[below] * (1.0 - share) + self.psi[below + 1] * share
     }
 
+    /// Potential of two robots in one place, psi_alpha(0) (c* of the paper) times its gain. From an
+    /// energy H below (k + 1) times this, at most k pairs of robots ever collide.
+    #[must_use]
+    pub fn collision(&self) -> f64 {
+        self.alpha * self.pair(0.0)
+    }
+
     /// Energy of robots with these positions, metres, and velocities, m/s. `None` if there are none
     /// or a value is not finite. O(n + edges).
     ///

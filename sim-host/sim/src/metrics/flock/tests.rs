@@ -1,5 +1,6 @@
 mod attitude;
 mod energy;
+mod planar;
 
 use super::*;
 use proptest::prelude::*;
