@@ -4,7 +4,7 @@ use super::{Kind, Probe};
 use staya_controller::agent::LawSettings;
 use staya_plot::{Chart, Panels, Series};
 use staya_sim::engine::{Moment, Outcome};
-use staya_sim::metrics::flock::{AlphaLimits, EnergyMeter, FlockMeasure, FlockMeter, alpha_flocking, gaps};
+use staya_sim::metrics::flock::{AlphaLimits, EnergyMeter, FlockMeasure, FlockMeter, alpha_flocking, crossings, gaps};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{PlaneSetup, Scenario};
@@ -28,6 +28,9 @@ pub const KIND: Kind = Kind {
         ("least_pair_over_d", "least distance of two centres after 2 s in spacings; empty: none came within one"),
         ("inside", "robots whose centre was ever in an obstacle"),
         ("past", "robots east of all balls at the end"),
+        ("crossings", "pairs of links that cross at the end; empty: in space"),
+        ("crossed_until", "last tick at which links crossed; empty: never, or in space"),
+        ("colliding_pairs", "pairs that may collide by the paper's bound on H: the least k with H(0) < (k + 1) psi(0)"),
     ],
     new: |scenario| Box::new(Flock { state: scenario.plane().and_then(|plane| State::new(scenario, plane)) }),
 };
@@ -56,6 +59,8 @@ struct State {
     least_pair_m: f64,
     was_inside: Vec<bool>,
     past: Option<usize>,
+    crossings: Option<usize>,
+    crossed_until: Option<usize>,
 }
 
 impl State {
@@ -85,11 +90,17 @@ impl State {
             least_pair_m: f64::INFINITY,
             was_inside: vec![false; robots],
             past: None,
+            crossings: None,
+            crossed_until: None,
         })
     }
 
     fn look(&mut self, moment: &Moment<'_>, places_m: &[[f64; 3]], velocities_mps: &[[f64; 3]]) {
         self.trace.push(self.meter.look(places_m, velocities_mps));
+        self.crossings = crossings(places_m, self.meter.edges());
+        if self.crossings.is_some_and(|count| count > 0) {
+            self.crossed_until = Some(self.trace.len() - 1);
+        }
         let energy = self.energy.as_mut().and_then(|meter| meter.look(places_m, velocities_mps));
         self.energies.push(energy.map_or(f64::NAN, |energy| energy.hamiltonian() / places_m.len() as f64));
         if moment.row.time_s >= SETTLED_S {
@@ -130,11 +141,19 @@ impl State {
             self.least_pair_m.is_finite().then_some(self.least_pair_m / self.spacing_m),
             Some(count(self.was_inside.iter().filter(|was| **was).count())),
             self.past.map(count),
+            self.crossings.map(count),
+            self.crossed_until.map(count),
+            self.colliding_pairs(),
         ]
     }
 }
 
 impl State {
+    fn colliding_pairs(&self) -> Option<f64> {
+        let start = self.energies.first().filter(|energy| energy.is_finite())? * self.was_inside.len() as f64;
+        Some(libm::floor(start / self.energy.as_ref()?.collision()))
+    }
+
     /// Ticks that are reported, at most about [`POINTS`].
     fn ticks(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.trace.len()).step_by(self.trace.len().div_ceil(POINTS).max(1))
