@@ -4,6 +4,7 @@
 pub mod boids;
 pub mod flock;
 pub mod fvm;
+pub mod minima;
 pub mod movingai;
 pub mod route;
 pub mod tune;
@@ -52,12 +53,13 @@ pub trait Study: Debug + Sync {
 }
 
 /// All studies.
-pub const ALL: [&dyn Study; 8] = [
+pub const ALL: [&dyn Study; 9] = [
     &boids::Boids,
     &boids::dimensions::Dimensions,
     &boids::listing::Listing,
     &flock::Flock,
     &fvm::Fvm,
+    &minima::Minima,
     &movingai::MovingAi,
     &route::Route,
     &tune::Tune,

@@ -6,7 +6,7 @@
 
 mod crowd;
 
-use super::{Given, Study};
+use super::{Given, Study, minima};
 use crate::error::SweepError;
 use crate::measure::{Job, draw, measure};
 use crate::probe;
@@ -111,6 +111,35 @@ impl Squares {
 }
 
 table! {
+    /// Starts in rings of a lattice around the first robot.
+    #[derive(Copy)]
+    pub struct Rings {
+        /// First and last ring; the one around the robot is 1.
+        pub rings: [u32; 2];
+        /// Distance of neighbours.
+        pub spacing_m: f64;
+        /// Standard deviation of a start from the lattice along each axis.
+        pub deviation_m: f64;
+    }
+}
+
+impl Rings {
+    /// `None` if the robots do not fill the rings.
+    fn place(&self, plane: &mut PlaneSetup, seed: u64) -> Option<()> {
+        let places: Vec<[f64; 2]> = minima::rings(self.rings).take(plane.starts.len() + 1).collect();
+        if places.len() != plane.starts.len() {
+            return None;
+        }
+        for (robot, (start, place)) in (0..).zip(plane.starts.iter_mut().zip(places)) {
+            let mut rng = Rng::keyed(seed, STARTS, robot, 0);
+            let [x, y] = place.map(|c| c * self.spacing_m + normal(&mut rng, self.deviation_m));
+            start.position_m = [x, y, 0.0];
+        }
+        Some(())
+    }
+}
+
+table! {
     /// Parameters of a run.
     pub struct Parameters {
         /// Knowledge of a robot about the others. Default: `"packets"`.
@@ -130,6 +159,8 @@ table! {
         pub deviation_m: [f64; 3] = [0.0; 3];
         /// Starts instead of the scenario's.
         pub squares: Option<Squares>;
+        /// Starts instead of the scenario's.
+        pub rings: Option<Rings>;
         /// Balls besides those of the scenario.
         pub forest: Option<Scattered>;
         /// Goals instead of those of the scenario, in its plane.
@@ -198,6 +229,12 @@ impl Run {
             let what = "there are more groups than squares";
             return Err(given.error("squares.from_m", what, "give a corner for each group, beginning with [plane]"));
         }
+        if let Some(rings) = &parameters.rings
+            && rings.place(plane, given.seed).is_none()
+        {
+            let what = "the robots do not fill the rings";
+            return Err(given.error("rings.rings", what, "give one robot, and six times the number of each ring"));
+        }
         let scattered = |field: &str, discs: Option<Scattered>, most: usize, key| {
             let no_room = || {
                 let what = format!("they find no room, are more than {most}, or have a radius out of range");
@@ -261,7 +298,7 @@ fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
 }
 
 /// Mean 0 (Box and Muller).
-fn normal(rng: &mut Rng, deviation: f64) -> f64 {
+pub(super) fn normal(rng: &mut Rng, deviation: f64) -> f64 {
     let length = libm::sqrt(-2.0 * libm::log(1.0 - uniform(rng, 0.0, 1.0)));
     deviation * length * libm::cos(2.0 * std::f64::consts::PI * uniform(rng, 0.0, 1.0))
 }
