@@ -44,6 +44,15 @@ impl Summary {
         })
     }
 
+    /// The summary of the values divided by `unit`, which is above 0.
+    #[must_use]
+    pub fn of_unit(&self, unit: f64) -> Self {
+        let Self { mean, median, deviation, min, max, .. } = *self;
+        let [mean, median, deviation, min, max] = [mean, median, deviation, min, max].map(|value| value / unit);
+        let mean_error95 = self.mean_error95.map(|error| error / unit);
+        Self { count: self.count, mean, median, deviation, min, max, mean_error95 }
+    }
+
     /// The 95 % interval of the mean by Student's t: exact for normal values, else approximate. For
     /// one value, both ends are the mean.
     #[must_use]

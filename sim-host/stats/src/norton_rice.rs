@@ -24,6 +24,9 @@ pub struct NortonRice {
     beta: f64,
 }
 
+/// Below this share, a parameter of a fit has no effect on the density.
+const NOTHING: f64 = 1e-3;
+
 /// Why samples have no fit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
@@ -78,6 +81,13 @@ impl NortonRice {
     #[must_use]
     pub const fn beta(&self) -> f64 {
         self.beta
+    }
+
+    /// Whether the law is an end of its family: without location (alpha = 0, Nakagami's law), or
+    /// with a shape m of 0. Samples whose best law is there follow a law of two parameters.
+    #[must_use]
+    pub fn is_degenerate(&self) -> bool {
+        self.m < NOTHING || self.alpha < NOTHING * sqrt(self.mean_square())
     }
 
     /// Logarithm of the density; minus infinity for `x <= 0`. Stable for large arguments.

@@ -56,6 +56,13 @@ fn density_and_distribution_have_their_known_values() {
 }
 
 #[test]
+fn a_law_without_location_or_shape_is_degenerate() {
+    assert!(!law(1.0, 2.0, 1.0).is_degenerate() && !law(0.3, 30.0, 300.0).is_degenerate());
+    assert!(law(1.0, 1e-6, 1.0).is_degenerate(), "no location");
+    assert!(law(1e-6, 300.0, 1e-3).is_degenerate(), "no shape");
+}
+
+#[test]
 fn distribution_goes_from_zero_to_one() {
     for law in [law(0.1, 1.0, 1.0), law(1.0, 1e-6, 1.0), law(7.3, 5.0, 100.0), law(40.0, 1.0, 1.0), law(1.0, 1e6, 1e-3)]
     {
