@@ -3,6 +3,7 @@
 mod accept;
 mod axes;
 mod check;
+mod fit;
 mod read;
 mod reference;
 mod table;
@@ -16,6 +17,7 @@ use accept::Choice;
 pub use accept::{Acceptance, Judgement, Verdict};
 pub use axes::Change;
 use axes::{Axis, SCENARIO};
+pub use fit::Fit;
 pub use reference::Reference;
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
@@ -63,6 +65,8 @@ pub struct Plan {
     pub reference: Option<Reference>,
     /// Conditions on the measures.
     pub accept: Vec<Acceptance>,
+    /// Laws that measures follow.
+    pub fits: Vec<Fit>,
     fingerprint: u64,
 }
 

@@ -167,6 +167,7 @@ impl<'a> Report<'a> {
         }
         self.gains = plan.gains.iter().flat_map(|table| gains(plan, &points, table)).collect();
         self.verdicts = plan.accept.iter().map(|accept| accept.judge(plan, &points, &merged.rows)).collect();
+        self.verdicts.extend(plan.fits.iter().map(|fit| fit.judge(plan, &points, &merged.rows)));
         if !self.verdicts.is_empty() {
             let record = Record::new(plan, &self.verdicts);
             for (name, text) in [(VERDICT, self.verdict()), (RECORD, record.text())] {

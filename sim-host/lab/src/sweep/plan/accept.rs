@@ -11,7 +11,7 @@ use std::fmt::{self, Display, Formatter};
 
 /// Fewest runs of a point whose mean is judged: with fewer, equal values by chance would have an
 /// interval of no width.
-const LEAST: usize = 5;
+pub(super) const LEAST: usize = 5;
 
 /// Points of a plan, by values of some axes.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +61,7 @@ pub struct Acceptance {
     limits: [f64; 2],
     within: Option<f64>,
     is_mean: bool,
+    is_of_reference: bool,
     claim: String,
     paper: String,
     text: String,
@@ -135,7 +136,7 @@ impl Acceptance {
         field: &str,
     ) -> Result<Self, ScenarioError> {
         let AcceptTable { claim, paper, fails, measure, r#where: _, beside: _, previous, .. } = table;
-        let AcceptTable { equals, at_most, at_least, within, mean, .. } = table;
+        let AcceptTable { equals, at_most, at_least, within, mean, of_reference, .. } = table;
         let of = |name: &str| format!("{field}.{name}");
         let Some(number) = plan.measures.iter().position(|name| *name == measure) else {
             let remedy = format!("name it in `measures` ({LIST})");
@@ -148,6 +149,10 @@ impl Acceptance {
         }
         if within.is_some() && plan.reference.is_none() {
             return Err(source.error(&of("within"), "there is no reference", "name its file"));
+        }
+        if of_reference && (plan.reference.is_none() || !mean || within.is_some()) {
+            let remedy = "name the file of `reference`, and give mean = true without within";
+            return Err(source.error(&of("of_reference"), "these limits are not shares of a reference", remedy));
         }
         let (at, other) = (Choice::read(plan, source, &of("where"))?, Choice::read(plan, source, &of("beside"))?);
         let beside = match (&other.0[..], &previous) {
@@ -170,7 +175,7 @@ impl Acceptance {
                 return Err(source.error(&of("previous"), "`beside` is given, too", "give one of them"));
             }
         };
-        if beside.is_some() && !(mean && within.is_none() && (low >= 0.0 || low.is_infinite())) {
+        if beside.is_some() && !(mean && within.is_none() && !of_reference && (low >= 0.0 || low.is_infinite())) {
             let remedy = "give mean = true, and limits of 0 or more for the ratio of the means";
             return Err(source.error(field, "it compares points without means", remedy));
         }
@@ -187,11 +192,26 @@ impl Acceptance {
             text += &limit.map_or(String::new(), |limit| format!(" {name} {limit}"));
         }
         text += &within.map_or(String::new(), |share| format!(" within {} % of the reference", short(100.0 * share)));
+        if of_reference {
+            text += " of the reference";
+        }
         if mean {
             text += " on average";
         }
         let limits = [low, high];
-        Ok(Self { measure: number, at, beside, limits, within, is_mean: mean, claim, paper, text, fails })
+        Ok(Self {
+            measure: number,
+            at,
+            beside,
+            limits,
+            within,
+            is_mean: mean,
+            is_of_reference: of_reference,
+            claim,
+            paper,
+            text,
+            fails,
+        })
     }
 
     /// The verdict with this judgement.
@@ -223,7 +243,7 @@ impl Acceptance {
                 }
             };
             let Some((judgement, [low, high])) = found else {
-                return verdict(Judgement::DoesNotHold, format!("a run of {here} has no value"));
+                return verdict(Judgement::DoesNotHold, format!("a run or the reference of {here} has no value"));
             };
             if judgement > worst.as_ref().map_or(Judgement::Holds, |(worst, _)| *worst) {
                 worst = Some((judgement, format!("{} at {here}", span(low, high))));
@@ -240,6 +260,11 @@ impl Acceptance {
     fn alone(&self, plan: &Plan, point: &Point) -> Option<(Judgement, [f64; 2])> {
         let summary = point.figures[self.measure].filter(|summary| self.is_mean || summary.count == point.runs)?;
         let [low, high] = self.limits;
+        if self.is_of_reference {
+            let value = plan.reference.as_ref()?.value(&point.values, &plan.measures[self.measure])?;
+            let share = summary.of_unit(value);
+            return Some((of_mean(&share, self.limits), share.mean_interval95()));
+        }
         let expected = plan.reference.as_ref().zip(self.within).and_then(|(reference, share)| {
             let value = reference.value(&point.values, &plan.measures[self.measure])?;
             Some([value - share * value.abs(), value + share * value.abs()])

@@ -1,6 +1,7 @@
 //! Reads the file of a plan and checks it.
 
 use super::accept::{Acceptance, Choice};
+use super::fit::Fit;
 use super::reference::Reference;
 use super::table::{Files, GainTable, HistogramTable, PlanFile, PlotTable, SeedRange, Seeds};
 use super::{Base, Changes, LIST, MOST, Plan, axes, check};
@@ -89,6 +90,7 @@ impl Plan {
             gains: Vec::new(),
             reference: None,
             accept: Vec::new(),
+            fits: Vec::new(),
             fingerprint: 0,
         };
         if plan.count().is_none_or(|count| count > MOST) {
@@ -123,6 +125,9 @@ impl Plan {
             for (index, accept) in file.accept.into_iter().enumerate() {
                 let field = format!("accept[{index}]");
                 plan.accept.push(Acceptance::read(&plan, accept, &source, &field)?);
+            }
+            for (index, fit) in file.fit.into_iter().enumerate() {
+                plan.fits.push(Fit::read(&plan, fit, &source, &format!("fit[{index}]"))?);
             }
         }
         plan.fingerprint = plan.digest();

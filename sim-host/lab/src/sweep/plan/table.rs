@@ -2,7 +2,7 @@
 
 use crate::sweep::sample::Kind;
 use staya_sim::scenario::{AnyTable, Node, Read, Wrong};
-use staya_sim::table;
+use staya_sim::{choice, table};
 use std::path::PathBuf;
 use toml::de::DeValue;
 
@@ -41,6 +41,8 @@ table! {
         pub reference: Option<PathBuf>;
         /// Conditions on the measures.
         pub accept: Vec<AcceptTable> = Vec::new();
+        /// Laws that measures follow.
+        pub fit: Vec<FitTable> = Vec::new();
     }
 }
 
@@ -199,5 +201,39 @@ table! {
         pub within: Option<f64>;
         /// Whether limits are those of the mean, not of each run. Default: false.
         pub mean: bool = false;
+        /// Whether limits of the mean are shares of the reference. Default: false.
+        pub of_reference: bool = false;
+    }
+}
+
+choice! {
+    /// Law of a measure.
+    pub enum Law {
+        /// a ln(x + 1) + b over an axis x, by least squares of the means.
+        Logarithm = "logarithm",
+        /// Norton-Rice law of the runs of a point, by largest likelihood.
+        NortonRice = "norton_rice",
+    }
+}
+
+table! {
+    /// `[[fit]]`: a law that a figure follows.
+    pub struct FitTable {
+        /// What the paper, or this project, says; a row of docs/results.md.
+        pub claim: String = String::new();
+        /// The paper's fit.
+        pub paper: String = String::new();
+        /// Why it is known not to follow the law.
+        pub fails: Option<String>;
+        /// A figure that the plan records.
+        pub figure: String;
+        /// The law.
+        pub law: Law;
+        /// With `logarithm`, the axis.
+        pub over: Option<String>;
+        /// Values of axes; a list for several. Default: all points.
+        pub r#where: AnyTable = AnyTable;
+        /// Least R2 (`logarithm`) or p of the chi-square test (`norton_rice`).
+        pub at_least: f64;
     }
 }

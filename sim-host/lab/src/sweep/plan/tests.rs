@@ -383,6 +383,7 @@ fn wrong_acceptances_and_references_are_refused() {
         (accept("measure = 'arrived'"), "plan.toml:6:1: accept[0]: it has no limit"),
         (accept("measure = 'arrived'\nat_least = 2\nat_most = 1"), "accept[0]: it has no limit"),
         (accept("measure = 'arrived'\nwithin = 0.1"), "plan.toml:8:10: accept[0].within: there is no reference"),
+        (accept("measure = 'arrived'\nat_most = 1\nmean = true\nof_reference = true"), "are not shares of a reference"),
         (accept("measure = 'arrived'\nequals = 4\nwhere = { losses = 0 }"), "losses is not an axis"),
         (accept("measure = 'arrived'\nequals = 4\nwhere = { loss = 0.5 }"), "0.5 is not a value of loss"),
     ] {
