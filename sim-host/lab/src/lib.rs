@@ -5,6 +5,7 @@
 pub mod cli;
 pub mod error;
 pub mod figure;
+pub mod joint;
 pub mod measure;
 mod migrate;
 pub mod optimal;

@@ -7,6 +7,7 @@ mod flock;
 mod flow;
 mod foresight;
 mod free;
+mod joint;
 mod optimum;
 mod process;
 
@@ -51,8 +52,17 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 8] =
-    [free::KIND, flow::KIND, flock::KIND, company::KIND, alone::KIND, cost::KIND, optimum::KIND, foresight::KIND];
+pub const KINDS: [Kind; 9] = [
+    free::KIND,
+    flow::KIND,
+    flock::KIND,
+    company::KIND,
+    alone::KIND,
+    cost::KIND,
+    optimum::KIND,
+    joint::KIND,
+    foresight::KIND,
+];
 
 /// Names and meanings of the measures of all probes.
 pub fn measures() -> impl Iterator<Item = (String, &'static str)> {
