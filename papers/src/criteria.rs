@@ -28,11 +28,11 @@ pub struct PublishedParams {
 }
 
 impl Default for PublishedParams {
-    /// The paper specifies only gain and prediction. eps is 10 cells, as in Staya's law. r0 is
-    /// chosen so that all arrive on most landscapes: from a sum of 30 cells (10 per neighbour) down
-    /// to 9. From 9 down to 3 the errors are the paper's, and most runs jam
-    /// (`staya experiment formation --set scenario=paper --set grid.formation_paper.halt_cells=9
-    /// --set grid.formation_paper.resume_cells=3`).
+    /// The paper specifies only gain and prediction. eps is 10 cells, as in Staya's law, and r0 is a
+    /// sum of 30 cells (10 per neighbour) down to 9. With `halved_per_ticks = 0.5` the error is then
+    /// 1 to 1.6 times the published one (`paper-light` of `staya experiment formation`). A gain of 2,
+    /// an eps of 15 and `halved_per_ticks = 1` keep it below, for twice the travel time (`paper`). A
+    /// smaller r0 makes most runs jam.
     fn default() -> Self {
         Self {
             eps: 10,
