@@ -351,3 +351,51 @@ proptest! {
         prop_assert_eq!(forward.bodies(), mirrored);
     }
 }
+
+proptest! {
+    /// KUZ, section 3.1: the states of a robot with shifts of time are one category, the cells with
+    /// lattice paths another, and `@` is a functor both ways. A robot is a coiterator: it produces
+    /// the stream of cells that it passes.
+    #[test]
+    fn shifts_of_time_are_mapped_to_lattice_paths_and_their_costs_add_up(
+        classes in prop::collection::vec(1..=3_u8, 30),
+        wishes in prop::collection::vec([0..8_usize, 0..8, 0..8], 24),
+        mut ticks in [0..=24_usize, 0..=24, 0..=24],
+    ) {
+        let land = Terrain::from_cells(6, 5, classes).unwrap();
+        let mut world = world(land.clone(), MoveRules::default(), &[(0, 0), (3, 2), (5, 4)]);
+        let mut streams: Vec<Vec<(Cell, u64)>> = world.bodies().iter().map(|body| vec![(body.cell, 0)]).collect();
+        for (tick, wish) in (0..).zip(wishes) {
+            world.advance(tick, &wish.map(|dir| moves(&[Dir::MOVES[dir]])));
+            for (index, body) in world.bodies().iter().enumerate() {
+                prop_assert_eq!(world.body_at(body.cell), Some(index), "there and back is the identity");
+                streams[index].push((body.cell, body.crossing));
+            }
+        }
+        ticks.sort_unstable();
+        let [a, b, c] = ticks;
+        for stream in &streams {
+            let path = |from: usize, to: usize| {
+                let mut cells: Vec<Cell> = stream[from..=to].iter().map(|(cell, _)| *cell).collect();
+                cells.dedup();
+                cells
+            };
+            prop_assert_eq!(path(a, a).len(), 1, "no time: the path that stays");
+            let composed: Vec<Cell> = path(a, b).into_iter().chain(path(b, c).into_iter().skip(1)).collect();
+            prop_assert_eq!(path(a, c), composed);
+            let cost = |from: usize, to: usize| {
+                let steps = path(from, to);
+                let dirs = steps.windows(2).map(|pair| Dir::between(pair[0], pair[1]).map(|dir| (dir, pair[1])));
+                let dirs: Option<Vec<_>> = dirs.collect();
+                dirs.map(|dirs| dirs.iter().map(|(dir, to)| crossing_of(&land, *dir, *to)).sum::<u64>())
+            };
+            let entered = stream.windows(2).take(c).skip(a).filter(|pair| pair[0].0 != pair[1].0);
+            prop_assert_eq!(cost(a, c), Some(entered.map(|pair| pair[1].1).sum()), "a lattice path, and eq. 6");
+            prop_assert_eq!(cost(a, c), cost(a, b).zip(cost(b, c)).map(|(one, other)| one + other));
+        }
+    }
+}
+
+fn crossing_of(land: &Terrain, dir: Dir, to: Cell) -> u64 {
+    u64::from(dir.length(Norm::Euclidean)) * u64::from(land.get(to))
+}
