@@ -66,14 +66,9 @@ impl Record {
         let wrong = |what: String| SweepError::new(path.shown(), what, remedy.clone());
         let text = read_text(path, TEXT).map_err(|error| wrong(error.to_string()))?;
         let record: Self = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-        let is_same = |(measured, accept): (&Measured, &crate::sweep::plan::Acceptance)| {
-            measured.condition == accept.verdict(measured.judgement, String::new()).condition
-        };
-        let has_all = record.conditions.len() == plan.accept.len();
-        if record.fingerprint != plan.fingerprint()
-            || !has_all
-            || !record.conditions.iter().zip(&plan.accept).all(is_same)
-        {
+        let conditions = record.conditions.iter().map(|measured| measured.condition.clone());
+        let is_same = conditions.eq(plan.expected().into_iter().map(|verdict| verdict.condition));
+        if record.fingerprint != plan.fingerprint() || !is_same {
             return Err(wrong("the plan has changed since it was measured".to_owned()));
         }
         if record.runs != plan.seeds() {
@@ -92,14 +87,15 @@ pub fn table(figures: &[Figure]) -> Result<String> {
     let mut text = String::new();
     for figure in figures {
         let plan = Plan::load(&figure.path, &Changes::default())?;
-        if !plan.accept.iter().any(|accept| !accept.verdict(Judgement::Holds, String::new()).claim.is_empty()) {
+        let expected = plan.expected();
+        if expected.iter().all(|verdict| verdict.claim.is_empty()) {
             continue;
         }
         let path = figure.path.with_file_name(RECORD);
-        for (accept, Measured { judgement, measured, .. }) in
-            plan.accept.iter().zip(Record::read(&plan, &path)?.conditions)
+        for (expected, Measured { judgement, measured, .. }) in
+            expected.into_iter().zip(Record::read(&plan, &path)?.conditions)
         {
-            let verdict = accept.verdict(judgement, measured);
+            let verdict = Verdict { judgement, measured, ..expected };
             if !verdict.is_expected() {
                 let what = format!("{}: {judgement}, {}", verdict.condition, verdict.measured);
                 return Err(SweepError::new(path.shown(), what, "a claim that fails needs its reason: `fails`").into());

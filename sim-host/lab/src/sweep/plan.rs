@@ -129,6 +129,13 @@ impl Plan {
         values.chain([self.seeds()]).try_fold(1u64, u64::checked_mul)
     }
 
+    /// What the runs must show, as verdicts that hold: conditions, then laws that measures follow.
+    #[must_use]
+    pub fn expected(&self) -> Vec<Verdict> {
+        let accepted = self.accept.iter().map(|accept| accept.verdict(Judgement::Holds, String::new()));
+        accepted.chain(self.fits.iter().map(|fit| fit.verdict(Judgement::Holds, String::new()))).collect()
+    }
+
     /// Names of the axes, in the order of the file.
     pub fn axes(&self) -> impl Iterator<Item = &str> {
         self.axes.iter().map(|axis| axis.field.name())

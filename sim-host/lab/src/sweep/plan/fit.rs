@@ -79,14 +79,15 @@ impl Fit {
         };
         let worst = found.iter().map(|(judgement, _)| *judgement).max();
         let measured: Vec<String> = found.into_iter().map(|(_, measured)| measured).collect();
-        Verdict {
-            claim: self.claim.clone(),
-            paper: self.paper.clone(),
-            condition: self.text.clone(),
-            judgement: worst.unwrap_or(Judgement::DoesNotHold),
-            measured: if measured.is_empty() { "there is no such point".to_owned() } else { measured.join("; ") },
-            fails: self.fails.clone(),
-        }
+        let measured = if measured.is_empty() { "there is no such point".to_owned() } else { measured.join("; ") };
+        self.verdict(worst.unwrap_or(Judgement::DoesNotHold), measured)
+    }
+
+    /// The verdict with this judgement.
+    #[must_use]
+    pub fn verdict(&self, judgement: Judgement, measured: String) -> Verdict {
+        let (claim, paper, condition) = (self.claim.clone(), self.paper.clone(), self.text.clone());
+        Verdict { claim, paper, condition, judgement, measured, fails: self.fails.clone() }
     }
 
     /// The means over the axis, for each combination of the other axes.
