@@ -176,8 +176,8 @@ pub(super) fn rings([first, last]: [u32; 2]) -> impl Iterator<Item = [f64; 2]> {
     std::iter::once(0).chain(first..=last).flat_map(ring)
 }
 
-/// Places of ring `number` of a lattice, `number` links from the origin. Ring after ring, each place
-/// has as many neighbours before it as possible.
+/// Places of ring `number` of a lattice, `number` links from the origin. Ring after ring, each
+/// place has as many neighbours before it as possible.
 fn ring(number: u32) -> impl Iterator<Item = [f64; 2]> {
     let corner = move |side: u32| {
         let (sin, cos) = libm::sincos(f64::from(side) * std::f64::consts::FRAC_PI_3);

@@ -61,7 +61,7 @@ fn limits_of_the_law_alone_delay_the_flock() {
 
 #[test]
 fn without_a_reference_the_group_breaks_up() {
-    let measured = read("olf/flock/fragment.toml", &sets(40, 1000, "packets"), &ALL, 1).unwrap();
+    let measured = read("olf/fragments/fragment.toml", &sets(40, 1000, "packets"), &ALL, 1).unwrap();
     assert!(value(&measured, "flock.parts") > 1.0 && value(&measured, "flock.connectivity") < 0.95);
 }
 
@@ -75,12 +75,41 @@ fn robots_meet_in_space_even_with_orca() {
 }
 
 #[test]
-fn resting_reference_gathers_a_flock_that_a_fixed_one_splits() {
-    let at = |scenario| read(scenario, &sets(40, 4000, "all"), &ALL, 2).unwrap();
-    let [apart, together] = ["olf/flock/squeeze-static.toml", "olf/resting/squeeze.toml"].map(at);
+fn resting_reference_gathers_a_flock_that_a_weak_fixed_one_leaves_apart() {
+    let fixed = [
+        ("plane.lattice.goal_moves", "false"),
+        ("plane.robots.cloud.goals_m", "[[230, 60]]"),
+        ("plane.robots.cloud.goal_velocity_mps", "[6, 0]"),
+    ];
+    let fixed = fixed.map(|(field, value)| (field, value.to_owned()));
+    let at = |scenario, own: &[Set<'_>]| read(scenario, &[&sets(40, 4000, "all"), own].concat(), &ALL, 2).unwrap();
+    let [apart, together] = [at("olf/courses/squeeze.toml", &fixed), at("olf/resting/squeeze.toml", &[])];
     assert!(value(&apart, "flock.parts") > 1.0);
     assert_eq!((value(&together, "flock.parts"), value(&together, "flock.past")), (1.0, 40.0));
     assert_eq!((value(&together, "flock.inside"), value(&apart, "flock.inside")), (0.0, 0.0));
+}
+
+/// The paper's order of gains, c1_alpha < c1_gamma < c1_beta.
+#[test]
+fn strong_fixed_reference_gathers_a_split_flock_without_overlap() {
+    for scenario in ["olf/courses/split-static.toml", "olf/courses/squeeze-static.toml"] {
+        let measured = read(scenario, &sets(24, 4000, "packets"), &ALL, 2).unwrap();
+        let ends = ["flock.parts", "flock.past", "flock.inside", "collisions"].map(|name| value(&measured, name));
+        assert_eq!(ends, [1.0, 24.0, 0.0, 0.0], "{scenario}");
+    }
+}
+
+#[test]
+fn rings_start_around_a_robot() {
+    let rings = |rings: &str| {
+        let sets = [sets(31, 200, "all"), vec![("study.rings.rings", rings.to_owned())]].concat();
+        read("olf/ring/ring.toml", &sets, &ALL, 2)
+    };
+    let measured = rings("[2, 3]").unwrap();
+    assert_eq!((value(&measured, "flock.parts"), value(&measured, "flock.crossings")), (2.0, 0.0));
+    for wrong in ["[1, 3]", "[2, 2]"] {
+        assert!(rings(wrong).unwrap_err().contains("study.rings"), "{wrong}");
+    }
 }
 
 #[test]
