@@ -136,7 +136,12 @@ pub struct LatticeParams<S> {
     /// with (5, 50, 2) 150 robots in a narrow passage pass through each other.
     pub beta: Gain<S>,
     /// Gains of the reference (c_gamma). Higher gains gather faster and compress the lattice: in
-    /// algorithm 2, 150 robots need c_alpha above 40 c_gamma for a deviation of 0.005 d^2.
+    /// algorithm 2, 150 robots need c1_alpha above 25 c1_gamma for a deviation of 0.005 d^2. In
+    /// algorithm 3 the pull on positions is bounded, and the paper has c1_alpha < c1_gamma <
+    /// c1_beta. Then a static reference gathers a flock that obstacles have split: 150 robots with
+    /// (60, 200, 80) behind ORCA with a horizon of 0.3 s. Below c1_alpha, parts stay apart. The
+    /// flock passes the reference and goes on at its velocity less sqrt(c1_gamma) / 2 in the
+    /// paper's units: the slower, the better the parts behind catch up.
     pub gamma: Gain<S>,
 }
 
@@ -159,6 +164,10 @@ impl<S: Scalar> LatticeParams<S> {
 
     /// Algorithm 3 with the paper's ratios, critical damping, and gains of 10, 200 and 2 on
     /// positions: 150 robots pass the paper's two obstacle courses without contact.
+    ///
+    /// That is for a reference that moves or rests ([`ReferenceMotion`]). It is not the paper's
+    /// order, c1_alpha < c1_gamma < c1_beta, which a static reference needs ([`Self::gamma`]), and
+    /// whose stiff lattice tolerates beacons half as old ([`Self::oldest_news_s`]).
     #[must_use]
     pub fn new(spacing_m: S) -> Self {
         Self {

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 /// How a reference moves.
 ///
-/// The static one with a velocity of the paper's courses hardly pulls back a robot that has passed
-/// it, so parts of a flock that obstacles have split stay apart. A resting one (not in the paper)
-/// gathers them.
+/// A static one with a velocity hardly pulls back a robot that has passed it if c1_gamma is below
+/// c1_alpha, so parts of a flock that obstacles have split stay apart; with c1_gamma above it, as
+/// in the paper, they gather. A resting one (not in the paper) gathers them with either.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReferenceMotion<S> {
