@@ -166,8 +166,9 @@ impl<S: Scalar> LatticeParams<S> {
     /// positions: 150 robots pass the paper's two obstacle courses without contact.
     ///
     /// That is for a reference that moves or rests ([`ReferenceMotion`]). It is not the paper's
-    /// order, c1_alpha < c1_gamma < c1_beta, which a static reference needs ([`Self::gamma`]), and
-    /// whose stiff lattice tolerates beacons half as old ([`Self::oldest_news_s`]).
+    /// order, c1_alpha < c1_gamma < c1_beta, which a static reference needs ([`Self::gamma`]): with
+    /// (10, 200, 12) robots overlap on both courses without a safety layer, and the lattice of
+    /// (60, 200, 80) tolerates only beacons less than half as old ([`Self::oldest_news_s`]).
     #[must_use]
     pub fn new(spacing_m: S) -> Self {
         Self {
