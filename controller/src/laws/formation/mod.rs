@@ -10,9 +10,9 @@
 //!
 //! - **Route.** In the paper each robot weighs the route to its *own* target against the places of
 //!   its neighbours, so six robots take six routes around a hill. Weights that hold them together
-//!   cost twice the time, lighter ones a larger error. Here the top leader alone chooses the route,
-//!   by the land that the whole formation would cross ([`blended`]). The others head for their
-//!   places beside it ([`aim`]).
+//!   cost up to 2.8 times the time, lighter ones a larger error. Here the top leader alone chooses
+//!   the route, by the land that the whole formation would cross ([`blended`]). The others head for
+//!   their places beside it ([`aim`]).
 //! - **Waiting.** The leader waits when a robot has fallen behind by more than r0 ([`lag`]); one
 //!   ahead or aside loses nothing if the formation continues.
 //! - **Weights.** The paper's sum over all neighbours outweighs the land. Here the weight is a gain

@@ -1,12 +1,11 @@
 //! Bodies on the grid: occupancy, timing and priority of moves.
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves). Line
-//! 7 of algorithm 4 is misprinted: as printed, the search for a direction ends at the first move, also
-//! into the cell of another robot (`!= 0`). Here it ends at a free cell (`== 0`), a robot without one
-//! stays, and the old cell becomes free, which the listing leaves out.
-//! The paper does not define the order of moves. Here it is random in each tick, a function of
-//! (seed, tick, robot), so that no robot has permanent priority and the order in memory does not
-//! matter.
+//! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves).
+//! Line 7 of algorithm 4 is misprinted: as printed, the search for a direction ends at the first
+//! move, also into the cell of another robot (`!= 0`). Here it ends at a free cell (`== 0`), a
+//! robot without one stays, and the old cell becomes free, which the listing leaves out. The paper
+//! does not define the order of moves. Here it is random in each tick, a function of (seed, tick,
+//! robot), so that no robot has permanent priority and the order in memory does not matter.
 
 #[doc(hidden)]
 pub mod border;
