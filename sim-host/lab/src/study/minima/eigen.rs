@@ -35,9 +35,9 @@ fn rotate(matrix: &mut [Vec<f64>], p: usize, q: usize) {
     for row in matrix.iter_mut() {
         (row[p], row[q]) = (cos * row[p] - sin * row[q], sin * row[p] + cos * row[q]);
     }
-    for column in 0..matrix.len() {
-        let (upper, lower) = (matrix[p][column], matrix[q][column]);
-        matrix[p][column] = cos * upper - sin * lower;
-        matrix[q][column] = sin * upper + cos * lower;
+    if let Ok([upper, lower]) = matrix.get_disjoint_mut([p, q]) {
+        for (upper, lower) in upper.iter_mut().zip(lower) {
+            (*upper, *lower) = (cos * *upper - sin * *lower, sin * *upper + cos * *lower);
+        }
     }
 }

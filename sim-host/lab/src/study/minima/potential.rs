@@ -135,19 +135,20 @@ impl Potential {
         let n = 2 * places.len();
         let (mut above, mut below) = (Vec::new(), Vec::new());
         let mut matrix = vec![vec![0.0; n]; n];
-        for column in 0..n {
-            let (robot, axis) = (column / 2, column % 2);
-            let here = places[robot][axis];
-            places[robot][axis] = here + NEAR;
-            self.gradient(&places, &mut above);
-            places[robot][axis] = here - NEAR;
-            self.gradient(&places, &mut below);
-            places[robot][axis] = here;
-            let slopes = above.iter().flatten().zip(below.iter().flatten());
-            for (row, (above, below)) in slopes.enumerate() {
-                let entry = (above - below) / (4.0 * NEAR);
-                matrix[row][column] += entry;
-                matrix[column][row] += entry;
+        for robot in 0..places.len() {
+            for axis in [0, 1] {
+                let here = places[robot][axis];
+                places[robot][axis] = here + NEAR;
+                self.gradient(&places, &mut above);
+                places[robot][axis] = here - NEAR;
+                self.gradient(&places, &mut below);
+                places[robot][axis] = here;
+                let (column, slopes) = (2 * robot + axis, above.iter().flatten().zip(below.iter().flatten()));
+                for (row, (above, below)) in slopes.enumerate() {
+                    let entry = (above - below) / (4.0 * NEAR);
+                    matrix[row][column] += entry;
+                    matrix[column][row] += entry;
+                }
             }
         }
         matrix
