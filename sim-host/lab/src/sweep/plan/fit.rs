@@ -31,6 +31,9 @@ enum Kind {
 /// What one fit says.
 type Found = (Judgement, String);
 
+/// ln(x + 1) and the mean there, with its number of runs.
+type Curve = Vec<([f64; 2], usize)>;
+
 impl Fit {
     pub(super) fn read(plan: &Plan, table: FitTable, source: &Source<'_>, field: &str) -> Result<Self, ScenarioError> {
         let FitTable { claim, paper, fails, figure, law, over, at_least: least, r#where: _ } = table;
@@ -92,7 +95,7 @@ impl Fit {
 
     /// The means over the axis, for each combination of the other axes.
     fn curves(&self, axis: usize, points: &[&Point]) -> Vec<Found> {
-        let mut curves: Vec<(String, Vec<([f64; 2], usize)>)> = Vec::new();
+        let mut curves: Vec<(String, Curve)> = Vec::new();
         for point in points {
             let mut others = point.values.clone();
             let value = others.remove(axis).parse().ok().zip(point.figures[self.measure]);
@@ -163,7 +166,8 @@ mod tests {
     use crate::sweep::value::Figure;
     use std::fs;
 
-    const SCENARIO: &str = "name = 'walk'\nterrain.uniform = { width = 9, height = 9 }\nrobots.list = [{ start = [1, 1], goal = [7, 7] }]\n";
+    const SCENARIO: &str = "name = 'walk'\nterrain.uniform = { width = 9, height = 9 }\n\
+        robots.list = [{ start = [1, 1], goal = [7, 7] }]\n";
 
     fn plan(fit: &str, seeds: usize) -> Result<Plan, String> {
         let folder = tempfile::tempdir().expect("a folder");
@@ -210,7 +214,7 @@ mod tests {
         let found = verdict(fit, 200, rayleigh);
         assert_eq!(found.judgement, Judgement::Holds, "{}", found.measured);
         assert_eq!(found.measured.matches("p ").count(), 2, "{}", found.measured);
-        let two = |_: f64, seed: u64| Some(if seed % 2 == 0 { 10.0 } else { 1000.0 } + seed as f64);
+        let two = |_: f64, seed: u64| Some(if seed.is_multiple_of(2) { 10.0 } else { 1000.0 } + seed as f64);
         assert_eq!(verdict(fit, 200, two).judgement, Judgement::DoesNotHold);
         assert_eq!(verdict(fit, 9, rayleigh).judgement, Judgement::TooFewRuns);
         assert_eq!(verdict(fit, 30, rayleigh).judgement, Judgement::TooFewRuns);
