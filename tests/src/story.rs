@@ -12,7 +12,11 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "seed 1: robots overlap",
         "the intruder is as fast as the robots and drives into one that gives way to others",
     ),
-    ("experiment-flock", "fragment: more than one component", "without a reference a flock breaks up, as in the paper"),
+    (
+        "experiment-flock",
+        "fragments: more than one component",
+        "without a reference a flock breaks up, as in the paper",
+    ),
     ("flock-squeeze", "not all robots arrive", "an alpha flock follows a reference"),
     ("scale", "not all robots arrive", "the first three ticks of a long run"),
     ("two-flocks", "not all robots arrive", "an alpha flock follows a reference"),

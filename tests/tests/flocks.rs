@@ -18,18 +18,25 @@ fn column(plan: &Plan, all: &[Vec<Figure>], measure: &str) -> Vec<Option<f64>> {
 fn golden_experiment_flock() {
     let (mut text, mut gaps) = (String::new(), Vec::new());
     let orca: &[&str] = &["plane.safety=orca", "plane.orca.horizon_s=0.3", "plane.orca.wall_horizon_s=0.3"];
-    for (knows, safety, scenarios) in [
-        ("packets", &["plane.safety=none"][..], "free,fragment,rendezvous,split,squeeze"),
-        ("packets", orca, "free,fragment,split,squeeze"),
-        ("packets", &["plane.safety=fly", "plane.orca.horizon_s=0.3"], "rendezvous"),
-        ("all", &["plane.safety=none"], "free,fragment"),
+    let none: &[&str] = &["plane.safety=none"];
+    for (figure, knows, safety, scenarios) in [
+        ("flock", "packets", none, "scenario=free,rendezvous"),
+        ("fragments", "packets", none, ""),
+        ("courses", "packets", none, "scenario=split,squeeze"),
+        ("flock", "packets", orca, "scenario=free"),
+        ("fragments", "packets", orca, ""),
+        ("courses", "packets", orca, "scenario=split,squeeze"),
+        ("flock", "packets", &["plane.safety=fly", "plane.orca.horizon_s=0.3"], "scenario=rendezvous"),
+        ("flock", "all", none, "scenario=free"),
+        ("fragments", "all", none, ""),
     ] {
-        let [scenarios, knows] = [format!("scenario={scenarios}"), format!("study.knows={knows}")];
-        let few = [&[&scenarios, &knows, "plane.robots.cloud.count=24"], safety].concat();
-        let (plan, table, all) = table("olf/flock", &few, 1);
+        let knows = format!("study.knows={knows}");
+        let scenarios = Some(scenarios).filter(|scenarios| !scenarios.is_empty());
+        let few: Vec<&str> = scenarios.into_iter().chain([&*knows, "plane.robots.cloud.count=24"]).collect();
+        let (plan, table, all) = table(&format!("olf/{figure}"), &[&few, safety].concat(), 1);
         text += &table;
         let parts = (0..).zip(column(&plan, &all, "flock.parts")).filter(|(_, parts)| *parts != Some(1.0));
-        gaps.extend(parts.map(|(number, _)| format!("{}: more than one component", plan.values_of(number)[0])));
+        gaps.extend(parts.map(|_| format!("{figure}: more than one component")));
     }
     gaps.dedup();
     golden("experiment-flock", &text, &gaps);
