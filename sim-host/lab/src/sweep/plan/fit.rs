@@ -31,8 +31,8 @@ enum Kind {
 /// What one fit says.
 type Found = (Judgement, String);
 
-/// ln(x + 1) and the mean there, with its number of runs.
-type Curve = Vec<([f64; 2], usize)>;
+/// ln(x + 1) and the mean there, with the summary of its runs.
+type Curve = Vec<([f64; 2], Summary)>;
 
 impl Fit {
     pub(super) fn read(plan: &Plan, table: FitTable, source: &Source<'_>, field: &str) -> Result<Self, ScenarioError> {
@@ -99,11 +99,9 @@ impl Fit {
         for point in points {
             let mut others = point.values.clone();
             let value = others.remove(axis).parse().ok().zip(point.figures[self.measure]);
-            let Some((x, Summary { mean, count, .. })) = value.map(|(x, figure): (f64, Summary)| (x, figure)) else {
-                continue;
-            };
+            let Some((x, figure)) = value else { continue };
             let others = others.join(" ");
-            let at = ([libm::log1p(x), mean], count);
+            let at = ([libm::log1p(x), figure.mean], figure);
             match curves.iter_mut().find(|(known, _)| *known == others) {
                 Some((_, curve)) => curve.push(at),
                 None => curves.push((others, vec![at])),
@@ -112,7 +110,7 @@ impl Fit {
         curves.into_iter().map(|(others, curve)| self.curve(&others, &curve)).collect()
     }
 
-    fn curve(&self, others: &str, curve: &[([f64; 2], usize)]) -> Found {
+    fn curve(&self, others: &str, curve: &[([f64; 2], Summary)]) -> Found {
         let place = if others.is_empty() { String::new() } else { format!(" at {others}") };
         let means: Vec<[f64; 2]> = curve.iter().map(|(at, _)| *at).collect();
         let Some(Line { slope, intercept, r2 }) = Line::fit(&means) else {
@@ -120,7 +118,13 @@ impl Fit {
         };
         let sign = if intercept < 0.0 { '-' } else { '+' };
         let shown = format!("{} ln(x + 1) {sign} {}, R2 {}{place}", short(slope), short(intercept.abs()), short(r2));
-        let is_sure = curve.iter().all(|(_, count)| *count >= LEAST);
+        // A line through all intervals may only miss the means by their noise.
+        let is_inside = |([x, _], figure): &([f64; 2], Summary)| {
+            let [low, high] = figure.mean_interval95();
+            (low..=high).contains(&(slope * x + intercept))
+        };
+        let is_noise = r2 < self.least && curve.iter().all(is_inside);
+        let is_sure = !is_noise && curve.iter().all(|(_, figure)| figure.count >= LEAST);
         (judgement(r2, self.least, is_sure), shown)
     }
 
@@ -199,6 +203,12 @@ mod tests {
         let curve = verdict(fit, 5, |ticks, _| Some(2.0 * libm::log1p(ticks) - 0.5));
         assert_eq!((curve.judgement, &*curve.measured), (Judgement::Holds, "2 ln(x + 1) - 0.5, R2 1"));
         assert_eq!(verdict(fit, 4, |ticks, _| Some(libm::log1p(ticks))).judgement, Judgement::TooFewRuns);
+        // Means 1, 9, 3 and 7, each of runs that differ by much more.
+        let noise = |ticks: f64, seed: u64| {
+            let mean = [1.0, 9.0, 3.0, 7.0][libm::log2(ticks) as usize];
+            Some(mean + 100.0 * (seed as f64 - 2.0))
+        };
+        assert_eq!(verdict(fit, 5, noise).judgement, Judgement::TooFewRuns, "noise");
         let other = verdict(fit, 5, |ticks, _| Some(if ticks == 2.0 { 9.0 } else { ticks }));
         assert_eq!(other.judgement, Judgement::DoesNotHold);
         let chosen = verdict(&format!("{fit}\nwhere = {{ ticks = [1, 2] }}"), 5, |ticks, _| Some(ticks));
