@@ -1,5 +1,5 @@
-//! `#[serde(with = "crate::array")]`: an array of any length, coded as by serde, with a loop; serde's
-//! own code has a part for each element.
+//! `#[serde(with = "crate::array")]`: an array of any length, coded as by serde, but with a loop;
+//! serde's own code has a part for each element.
 
 use core::fmt::{self, Formatter};
 use core::marker::PhantomData;

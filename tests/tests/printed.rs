@@ -3,8 +3,8 @@
 
 use staya_controller::agent::{LayerSettings, Motion};
 use staya_controller::negotiation::Moves;
+use staya_lab::claims;
 use staya_lab::figure::{self, Figure};
-use staya_lab::sweep::claims;
 use staya_sim::scenario::{LawSetup, Line, Read as _, ScenarioFile, Usual, laws, parameters};
 use staya_tests::{END, printed_part, root};
 use std::fmt::Write as _;

@@ -4,7 +4,7 @@
 use crate::prelude::*;
 use serde_json::Value;
 
-/// What a full run showed, in the folder of its results and in that of the figure.
+/// The record of a full run, in the folder of its results and in that of the figure.
 const RECORD: &str = "measured.json";
 
 /// The command: figures with these short names, or all.

@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// where [`APART`] says not.
 const LAYERS: [&[&str]; 6] = [
     &[
-        "names", "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "obstacle",
-        "land", "robot", "auth",
+        "names", "scalar", "digest", "geom", "time", "rand", "grid", "cost", "shuffle", "list", "fixint", "array",
+        "obstacle", "land", "robot", "auth",
     ],
     &["body", "neighbor", "parameters", "template", "wire"],
     &["flock", "law"],

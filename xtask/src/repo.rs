@@ -96,7 +96,7 @@ impl Repo {
         Ok(())
     }
 
-    /// A copy in which one place of a file is changed: `right`, which stands there once, to `wrong`.
+    /// A copy in which `right`, which stands once in a file, is changed to `wrong`.
     pub fn plant(&self, to: &Path, file: &str, right: &str, wrong: &str) -> Result<()> {
         let mut times = 0;
         self.copy(to, |path, bytes| {

@@ -2,6 +2,7 @@
 //! `papers/`. A run of a plan is one of a scenario, measured by its summary and by
 //! [probes](probe), or of a [study].
 
+pub mod claims;
 pub mod cli;
 pub mod error;
 pub mod figure;

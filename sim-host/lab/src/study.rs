@@ -6,6 +6,7 @@ pub mod flock;
 pub mod fvm;
 pub mod minima;
 pub mod movingai;
+mod rings;
 pub mod route;
 pub mod tune;
 mod walk;

@@ -86,12 +86,12 @@ fn a_condition_that_does_not_hold_fails_the_command() {
     let (code, out, error) = run(&["--quick"]);
     assert_eq!(code, Some(1), "{out}{error}");
     assert!(out.contains("within 20 % of the reference: TOO FEW RUNS"), "{out}");
-    // A known failure is no surprise, until it holds.
-    std::fs::write(path("plan.toml"), plan("claim = 'Nobody waits'\nfails = 'both turn'")).expect("write");
+    // A known failure is expected until it holds.
+    std::fs::write(path("plan.toml"), plan("claim = 'No robot waits'\nfails = 'both turn'")).expect("write");
     let (code, out, error) = run(&[]);
     assert_eq!(code, Some(0), "{out}{error}");
     assert!(
-        out.contains("Nobody waits: free.worst_ratio at most 1.05: does not hold, 1.0563 at 2 (known: both turn)"),
+        out.contains("No robot waits: free.worst_ratio at most 1.05: does not hold, 1.0563 at 2 (known: both turn)"),
         "{out}"
     );
     let (code, out, error) = run(&["--quick"]);

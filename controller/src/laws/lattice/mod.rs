@@ -140,7 +140,7 @@ pub struct LatticeParams<S> {
     /// algorithm 3 the pull on positions is bounded, and the paper has c1_alpha < c1_gamma <
     /// c1_beta. Then a static reference gathers a flock that obstacles have split: 150 robots with
     /// (60, 200, 80) behind ORCA with a horizon of 0.3 s. Below c1_alpha, parts stay apart. The
-    /// flock passes the reference and goes on at its velocity less sqrt(c1_gamma) / 2 in the
+    /// flock passes the reference and moves at its velocity less sqrt(c1_gamma) / 2 in the
     /// paper's units: the slower, the better the parts behind catch up.
     pub gamma: Gain<S>,
 }

@@ -6,7 +6,7 @@
 
 mod crowd;
 
-use super::{Given, Study, minima};
+use super::{Given, Study, rings};
 use crate::error::SweepError;
 use crate::measure::{Job, draw, measure};
 use crate::probe;
@@ -126,7 +126,7 @@ table! {
 impl Rings {
     /// `None` if the robots do not fill the rings.
     fn place(&self, plane: &mut PlaneSetup, seed: u64) -> Option<()> {
-        let places: Vec<[f64; 2]> = minima::rings(self.rings).take(plane.starts.len() + 1).collect();
+        let places: Vec<[f64; 2]> = rings::rings(self.rings).take(plane.starts.len() + 1).collect();
         if places.len() != plane.starts.len() {
             return None;
         }

@@ -17,7 +17,8 @@ pub fn points(plan: &Plan, merged: &Merged) -> Vec<Point> {
             Summary::of(&values)
         };
         let figures = (0..plan.measures().len()).map(figure).collect();
-        Point { number: run / seeds, values: plan.values_of(run), runs: rows.len(), figures }
+        let of_runs = rows.iter().map(|row| row.figures.clone()).collect();
+        Point { number: run / seeds, values: plan.values_of(run), runs: rows.len(), of_runs, figures }
     };
     by_point.map(point).collect()
 }

@@ -5,7 +5,7 @@
 //! | [`plan`] | varied fields, values, seeds and measures |
 //! | [`run`] | one run, a function of plan and number only |
 //! | [`report`] | table, verdicts and files of a complete plan |
-//! | [`claims`] | what papers claim beside what full runs showed |
+//! | [`record`] | the judgements of a full run on the conditions of its plan |
 //! | [`row`] | the record of a run |
 //! | [`shard`] | the part of a plan that one process does, and its file of rows |
 //! | [`merge`] | the rows of all shards in order, and their consistency |
@@ -16,12 +16,12 @@
 //! | [`jobs`] | parallel jobs |
 
 pub mod aggregate;
-pub mod claims;
 pub mod gain;
 pub mod jobs;
 pub mod merge;
 pub mod pictures;
 pub mod plan;
+pub mod record;
 pub mod report;
 pub mod row;
 pub mod run;

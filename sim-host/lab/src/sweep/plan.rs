@@ -129,7 +129,7 @@ impl Plan {
         values.chain([self.seeds()]).try_fold(1u64, u64::checked_mul)
     }
 
-    /// What the runs must show, as verdicts that hold: conditions, then laws that measures follow.
+    /// The conditions as verdicts that hold, then the laws that measures follow.
     #[must_use]
     pub fn expected(&self) -> Vec<Verdict> {
         let accepted = self.accept.iter().map(|accept| accept.verdict(Judgement::Holds, String::new()));

@@ -1,10 +1,10 @@
 //! Carries out a plan and reports it: rows, summaries of points, verdicts, pictures.
 
 use crate::sweep::aggregate;
-use crate::sweep::claims::{RECORD, Record};
 use crate::sweep::gain::{self, Gain, gains};
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Judgement, Plan, Verdict};
+use crate::sweep::record::{RECORD, Record};
 use crate::sweep::run::{draw, perform};
 use crate::sweep::shard::{Existing, files, perform_shard};
 use crate::sweep::value::{Point, short};
@@ -166,8 +166,8 @@ impl<'a> Report<'a> {
             self.files.extend(draw(plan, run, &out.join("pictures").join(format!("{}-{name}", plan.name)))?);
         }
         self.gains = plan.gains.iter().flat_map(|table| gains(plan, &points, table)).collect();
-        self.verdicts = plan.accept.iter().map(|accept| accept.judge(plan, &points, &merged.rows)).collect();
-        self.verdicts.extend(plan.fits.iter().map(|fit| fit.judge(plan, &points, &merged.rows)));
+        self.verdicts = plan.accept.iter().map(|accept| accept.judge(plan, &points)).collect();
+        self.verdicts.extend(plan.fits.iter().map(|fit| fit.judge(&points)));
         if !self.verdicts.is_empty() {
             let record = Record::new(plan, &self.verdicts);
             for (name, text) in [(VERDICT, self.verdict()), (RECORD, record.text())] {

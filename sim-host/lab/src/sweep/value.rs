@@ -154,6 +154,8 @@ pub struct Point {
     pub values: Vec<String>,
     /// Number of available runs.
     pub runs: usize,
+    /// Measures of each run, in the order of the seeds; none of an impossible run.
+    pub of_runs: Vec<Vec<Figure>>,
     /// Summary of each measure; `None` if no run has a value or one is infinite.
     pub figures: Vec<Option<Summary>>,
 }

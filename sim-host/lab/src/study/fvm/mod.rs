@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 pub struct Fvm;
 
 choice! {
-    /// What a run does.
+    /// Kind of run.
     pub enum Task {
         /// The worked example of the paper, and its equations 1 to 15 on random pairs of robots.
         Example = "example",
@@ -53,7 +53,7 @@ table! {
     /// Parameters of a run.
     #[derive(Copy)]
     pub struct Parameters {
-        /// What the run does.
+        /// Kind of run.
         pub task: Task = Task::Example;
         /// Source of the half-planes.
         pub source: Source = Source::Formula;

@@ -2,8 +2,7 @@
 
 use super::table::AcceptTable;
 use super::{LIST, Plan};
-use crate::sweep::row::Row;
-use crate::sweep::value::{Point, Value, short};
+use crate::sweep::value::{Figure, Point, Value, short};
 use serde::{Deserialize, Serialize};
 use staya_sim::scenario::{ScenarioError, Source, fields};
 use staya_stats::Summary;
@@ -77,7 +76,7 @@ enum Beside {
     Previous(usize),
 }
 
-/// What runs say about a condition.
+/// The judgement of runs on a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
@@ -99,7 +98,7 @@ impl Display for Judgement {
     }
 }
 
-/// What the runs say about a condition, and what was expected.
+/// A condition with the judgement of the runs on it, and the expected one.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     /// The claim that the condition expresses; empty for a condition without one.
@@ -110,7 +109,7 @@ pub struct Verdict {
     pub paper: String,
     /// Measure, points and condition.
     pub condition: String,
-    /// What the runs say.
+    /// The judgement of the runs.
     pub judgement: Judgement,
     /// The smallest and largest value, or those of the point that decides.
     pub measured: String,
@@ -230,7 +229,7 @@ impl Acceptance {
     /// Limits hold for each run, or for the mean: then its whole 95 % interval must lie inside. It
     /// fails where that lies outside, and needs more runs between. So it is with a reference.
     #[must_use]
-    pub fn judge(&self, plan: &Plan, points: &[Point], rows: &[Row]) -> Verdict {
+    pub fn judge(&self, plan: &Plan, points: &[Point]) -> Verdict {
         let verdict = |judgement, measured| self.verdict(judgement, measured);
         let (mut worst, mut spread) = (None::<(Judgement, String)>, None::<[f64; 2]>);
         for point in points.iter().filter(|point| self.at.has(&point.values)) {
@@ -239,7 +238,7 @@ impl Acceptance {
                 None => self.alone(plan, point),
                 Some(beside) => {
                     let Some(other) = beside.of(plan, points, point) else { continue };
-                    self.compared(plan, [point, other], rows)
+                    self.compared([point, other])
                 }
             };
             let Some((judgement, [low, high])) = found else {
@@ -282,16 +281,10 @@ impl Acceptance {
 
     /// The ratio of the means of two points whose runs have the same seeds, by the interval of the
     /// mean of x - limit * y.
-    fn compared(&self, plan: &Plan, points: [&Point; 2], rows: &[Row]) -> Option<(Judgement, [f64; 2])> {
-        let seeds = plan.seeds();
-        let value = |point: &Point, seed: u64| {
-            let run = point.number * seeds + seed;
-            let row = &rows[rows.binary_search_by_key(&run, |row| row.run).ok()?];
-            row.figures.get(self.measure)?.0
-        };
-        let pairs: Option<Vec<_>> =
-            (0..seeds).map(|seed| Some((value(points[0], seed)?, value(points[1], seed)?))).collect();
-        let pairs = pairs?;
+    fn compared(&self, [point, other]: [&Point; 2]) -> Option<(Judgement, [f64; 2])> {
+        let value = |figures: &Vec<Figure>| figures.get(self.measure)?.0;
+        let runs = point.of_runs.iter().zip(&other.of_runs);
+        let pairs: Vec<_> = runs.map(|(x, y)| value(x).zip(value(y))).collect::<Option<_>>()?;
         let [low, high] = self.limits;
         let side = |limit: f64, limits: [f64; 2]| {
             let rest: Vec<f64> = pairs.iter().map(|(x, y)| x - limit * y).collect();

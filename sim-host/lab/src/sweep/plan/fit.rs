@@ -3,8 +3,7 @@
 use super::accept::{Choice, Judgement, LEAST, Verdict};
 use super::table::{FitTable, Law};
 use super::{LIST, Plan};
-use crate::sweep::row::Row;
-use crate::sweep::value::{Point, short};
+use crate::sweep::value::{Figure, Point, short};
 use staya_sim::scenario::{ScenarioError, Source, fields};
 use staya_stats::{Goodness, Line, NortonRice, Summary};
 
@@ -28,7 +27,7 @@ enum Kind {
     NortonRice,
 }
 
-/// What one fit says.
+/// The judgement on one fit, and its values.
 type Found = (Judgement, String);
 
 /// ln(x + 1) and the mean there, with the summary of its runs.
@@ -74,11 +73,11 @@ impl Fit {
 
     /// Each curve, or each point, must follow the law.
     #[must_use]
-    pub fn judge(&self, plan: &Plan, points: &[Point], rows: &[Row]) -> Verdict {
+    pub fn judge(&self, points: &[Point]) -> Verdict {
         let chosen: Vec<&Point> = points.iter().filter(|point| self.at.has(&point.values)).collect();
         let found: Vec<Found> = match self.kind {
             Kind::Logarithm(axis) => self.curves(axis, &chosen),
-            Kind::NortonRice => chosen.iter().map(|point| self.distribution(plan, point, rows)).collect(),
+            Kind::NortonRice => chosen.iter().map(|point| self.distribution(point)).collect(),
         };
         let worst = found.iter().map(|(judgement, _)| *judgement).max();
         let measured: Vec<String> = found.into_iter().map(|(_, measured)| measured).collect();
@@ -129,10 +128,10 @@ impl Fit {
     }
 
     /// The law of largest likelihood for the runs of a point, with its chi-square test.
-    fn distribution(&self, plan: &Plan, point: &Point, rows: &[Row]) -> Found {
+    fn distribution(&self, point: &Point) -> Found {
         let here = point.values.join(" ");
-        let of_point = rows.iter().filter(|row| row.run / plan.seeds() == point.number);
-        let values: Option<Vec<f64>> = of_point.map(|row| row.figures[self.measure].0).collect();
+        let value = |figures: &Vec<Figure>| figures.get(self.measure)?.0;
+        let values: Option<Vec<f64>> = point.of_runs.iter().map(value).collect();
         let Some(values) = values else {
             return (Judgement::DoesNotHold, format!("a run of {here} has no value"));
         };
@@ -166,8 +165,7 @@ mod tests {
     use crate::sweep::aggregate::points;
     use crate::sweep::merge::Merged;
     use crate::sweep::plan::Changes;
-    use crate::sweep::row::Outcome;
-    use crate::sweep::value::Figure;
+    use crate::sweep::row::{Outcome, Row};
     use std::fs;
 
     const SCENARIO: &str = "name = 'walk'\nterrain.uniform = { width = 9, height = 9 }\n\
@@ -194,7 +192,7 @@ mod tests {
         };
         let rows: Vec<Row> = (0..plan.runs()).map(row).collect();
         let merged = Merged { rows, ..Merged::default() };
-        plan.fits[0].judge(&plan, &points(&plan, &merged), &merged.rows)
+        plan.fits[0].judge(&points(&plan, &merged))
     }
 
     #[test]

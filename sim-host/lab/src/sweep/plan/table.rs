@@ -177,7 +177,7 @@ table! {
 table! {
     /// `[[accept]]`: what the runs must show.
     pub struct AcceptTable {
-        /// What the paper, or this project, says; a row of docs/results.md.
+        /// A sentence of the paper, or of this project; a row of docs/results.md.
         pub claim: String = String::new();
         /// The paper's figure.
         pub paper: String = String::new();
@@ -219,7 +219,7 @@ choice! {
 table! {
     /// `[[fit]]`: a law that a figure follows.
     pub struct FitTable {
-        /// What the paper, or this project, says; a row of docs/results.md.
+        /// A sentence of the paper, or of this project; a row of docs/results.md.
         pub claim: String = String::new();
         /// The paper's fit.
         pub paper: String = String::new();

@@ -102,8 +102,9 @@ pub struct NearestPoint<R> {
 }
 
 impl<R: Real, const D: usize> MidpointTree<R, D> {
-    /// The nearest point in open space. Boxes beyond the nearest point found so far are skipped; the
-    /// squared distance to a box changes along one axis with each cut (S. Arya and D. M. Mount 1993).
+    /// The nearest point in open space. Boxes beyond the nearest point found so far are skipped;
+    /// the squared distance to a box changes along one axis with each cut (S. Arya and D. M. Mount
+    /// 1993).
     #[must_use]
     pub fn nearest(&self, at: [R; D]) -> NearestPoint<R> {
         let mut best = NearestPoint { distance_squared: R::MAX, visits: 0 };

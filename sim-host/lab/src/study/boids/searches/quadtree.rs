@@ -19,7 +19,7 @@ pub struct Quadtree<R> {
 struct Node<R> {
     index: u32,
     at: [R; 2],
-    /// Numbers of nodes; 0, the root, is nobody's child.
+    /// Numbers of nodes; 0, the root, is the child of none.
     children: [u32; 4],
 }
 

@@ -2,8 +2,7 @@ use super::*;
 use crate::sweep::aggregate;
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::Changes;
-use crate::sweep::row::Outcome;
-use crate::sweep::value::Figure;
+use crate::sweep::row::{Outcome, Row};
 use proptest::prelude::*;
 use std::fs;
 
@@ -29,7 +28,7 @@ fn verdict(condition: &str, values: [&[f64]; 3]) -> Verdict {
     };
     let rows: Vec<_> = (0..).zip(values.concat().iter()).map(row).collect();
     let merged = Merged { rows, ..Merged::default() };
-    plan.accept[0].judge(&plan, &aggregate::points(&plan, &merged), &merged.rows)
+    plan.accept[0].judge(&plan, &aggregate::points(&plan, &merged))
 }
 
 fn judged(condition: &str, values: [&[f64]; 3]) -> Judgement {

@@ -1,19 +1,16 @@
-//! What papers and this project claim, and what the last full run of each figure showed.
+//! The record of a full run: the judgement on each condition of its plan.
 
 use crate::error::SweepError;
-use crate::figure::Figure;
-use crate::sweep::plan::{Changes, Judgement, Plan, Verdict};
-use anyhow::Result;
+use crate::sweep::plan::{Judgement, Plan, Verdict};
 use serde::{Deserialize, Serialize};
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::shown::Shown as _;
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// The record in the folder of a figure, and in that of its results.
 pub const RECORD: &str = "measured.json";
 
-/// What a full run of a plan showed.
+/// The judgements of a full run of a plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Record {
     /// Fingerprint of the plan.
@@ -24,12 +21,12 @@ pub struct Record {
     pub conditions: Vec<Measured>,
 }
 
-/// What the runs showed about a condition.
+/// The judgement on a condition.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Measured {
     /// The condition.
     pub condition: String,
-    /// What the runs say.
+    /// The judgement of the runs.
     pub judgement: Judgement,
     /// The values.
     pub measured: String,
@@ -76,42 +73,4 @@ impl Record {
         }
         Ok(record)
     }
-}
-
-/// The claims of a paper's figures as a table of Markdown, a row for each, from their records;
-/// empty if there is none.
-///
-/// # Errors
-/// A plan or a record cannot be read, or a condition is not as expected.
-pub fn table(figures: &[Figure]) -> Result<String> {
-    let mut text = String::new();
-    for figure in figures {
-        let plan = Plan::load(&figure.path, &Changes::default())?;
-        let expected = plan.expected();
-        if expected.iter().all(|verdict| verdict.claim.is_empty()) {
-            continue;
-        }
-        let path = figure.path.with_file_name(RECORD);
-        for (expected, Measured { judgement, measured, .. }) in
-            expected.into_iter().zip(Record::read(&plan, &path)?.conditions)
-        {
-            let verdict = Verdict { judgement, measured, ..expected };
-            if !verdict.is_expected() {
-                let what = format!("{}: {judgement}, {}", verdict.condition, verdict.measured);
-                return Err(SweepError::new(path.shown(), what, "a claim that fails needs its reason: `fails`").into());
-            }
-            if verdict.claim.is_empty() {
-                continue;
-            }
-            let shown = verdict.fails.map_or_else(|| judgement.to_string(), |why| format!("does not hold: {why}"));
-            let cell = |text: &str| text.replace('|', "\\|");
-            let [claim, paper, measured, shown] =
-                [&verdict.claim, &verdict.paper, &verdict.measured, &shown].map(|text| cell(text));
-            writeln!(text, "| {claim} | {paper} | {measured} | {shown} | `{}` |", figure.name)?;
-        }
-    }
-    if text.is_empty() {
-        return Ok(text);
-    }
-    Ok(format!("| claim | paper | measured | verdict | figure |\n|---|---|---|---|---|\n{text}"))
 }
