@@ -2,8 +2,8 @@
 
 use crate::nearby::{Cells, Query, Search as _, Space};
 
-/// Pairs of links that cross between their ends. `None` if a place is not in the
-/// plane, i.e. has a third coordinate that is not 0. O(links x links close by).
+/// Pairs of links that cross between their ends. `None` if a place is not in the plane, i.e. has a
+/// third coordinate that is not 0. O(links x links close by).
 #[must_use]
 pub fn crossings<const D: usize>(places_m: &[[f64; D]], links: &[(u32, u32)]) -> Option<usize> {
     if D < 2 || places_m.iter().any(|place| place.iter().skip(2).any(|z| *z != 0.0)) {
