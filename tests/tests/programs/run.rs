@@ -426,9 +426,9 @@ fn studies_print_tables_and_json_and_write_pictures() {
     };
     let flock = "experiment flock --seeds 1 --set plane.robots.cloud.count=10 --set ticks=100";
     let report = json(flock);
-    assert_eq!(report["points"].as_array().map(Vec::len), Some(7));
-    assert_eq!(report["points"][4]["figures"]["flock.inside"]["max"], 0.0);
-    let name = "pictures/flock-free-10-100";
+    assert_eq!(report["points"].as_array().map(Vec::len), Some(4));
+    assert_eq!(report["points"][0]["figures"]["collisions"]["max"], 0.0);
+    let name = "pictures/flock-free-packets-10-100";
     for picture in [format!("{name}.png"), format!("{name}-flock.svg")] {
         assert!(dir.path().join("out").join(&picture).exists(), "{picture}: {report}");
     }
