@@ -32,8 +32,7 @@ impl Default for PublishedParams {
     /// a sum of 30 cells (10 per neighbour) down to 9. With `halved_per_ticks = 0.5` the error is
     /// then 1 to 1.6 times the published one (`paper-light` of `staya experiment formation`). A
     /// gain of 2, an eps of 15 and `halved_per_ticks = 1` keep it below, for half as much time
-    /// again (`paper`). With the lighter weights,
-    /// a smaller r0 makes most runs jam.
+    /// again (`paper`). With the lighter weights a smaller r0 makes most runs jam.
     fn default() -> Self {
         Self {
             eps: 10,

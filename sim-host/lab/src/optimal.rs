@@ -74,7 +74,7 @@ impl Planner {
         let moves = self.moves(norm);
         self.cost[start] = 0;
         self.buckets[0].push((0, start as u32));
-        self.spread(goal, &moves, corner_cutting);
+        self.spread(Some(goal), false, &moves, corner_cutting);
         let cost = self.cost[goal];
         if cost == UNKNOWN {
             return None;
@@ -97,6 +97,21 @@ impl Planner {
         }
         cells.reverse();
         Some(Route { cost, cells })
+    }
+
+    /// The cost of the cheapest route to `to` from each cell, row by row from the south;
+    /// [`u64::MAX`] where there is none. O(size).
+    pub fn costs_to(&mut self, terrain: &Terrain, to: Cell, norm: Norm, corner_cutting: bool) -> Vec<u64> {
+        self.load(terrain);
+        if terrain.is_passable(to) {
+            let start = self.index(to);
+            self.cost[start] = 0;
+            self.buckets[0].push((0, start as u32));
+            let moves = self.moves(norm);
+            self.spread(None, true, &moves, corner_cutting);
+        }
+        let inner = self.cost.chunks_exact(self.stride).skip(1).take(usize::from(terrain.height()));
+        inner.flat_map(|row| &row[1..self.stride - 1]).copied().collect()
     }
 
     fn load(&mut self, terrain: &Terrain) {
@@ -139,11 +154,13 @@ impl Planner {
             .is_none_or(|beside| beside.iter().all(|offset| self.land[at.wrapping_add_signed(*offset)] != BLOCKED))
     }
 
-    fn spread(&mut self, goal: usize, moves: &[Step; 8], corner_cutting: bool) {
+    /// Finds costs from the cells in the first bucket until that of `goal` is known, or all;
+    /// `is_back`: costs of the ways there.
+    fn spread(&mut self, goal: Option<usize>, is_back: bool, moves: &[Step; 8], corner_cutting: bool) {
         let mut waiting = 1_usize;
         let mut number = 0_u64;
         let mut bucket = Vec::new();
-        while waiting > 0 && self.cost[goal] >= number * u64::from(UNIT) {
+        while waiting > 0 && goal.is_none_or(|goal| self.cost[goal] >= number * u64::from(UNIT)) {
             std::mem::swap(&mut bucket, &mut self.buckets[number as usize % RING]);
             waiting -= bucket.len();
             for (cost, at) in bucket.drain(..) {
@@ -154,7 +171,8 @@ impl Planner {
                 for step in moves {
                     let next = at.wrapping_add_signed(step.offset);
                     let u = self.land[next];
-                    let reached = cost + step.length * u64::from(u);
+                    let entered = if is_back { self.land[at] } else { u };
+                    let reached = cost + step.length * u64::from(entered);
                     let is_better = u != BLOCKED && reached < self.cost[next];
                     if is_better && (corner_cutting || self.is_open(at, step)) {
                         self.cost[next] = reached;
@@ -237,6 +255,22 @@ mod tests {
             }
             prop_assert_eq!(cost, expected);
         }
+    }
+
+    #[test]
+    fn costs_to_a_cell_are_those_of_the_routes_from_all_others() {
+        let mut land = Terrain::from_cells(4, 3, vec![1, 2, 9, 1, 3, 1, 1, 7, 1, 4, 2, 5]).unwrap();
+        land.set(Cell::new(2, 0), BLOCKED);
+        let goal = Cell::new(3, 0);
+        for (norm, corner_cutting) in [(Norm::Euclidean, true), (Norm::Chebyshev, false)] {
+            let costs = Planner::default().costs_to(&land, goal, norm, corner_cutting);
+            for (at, cost) in (0..12).zip(costs) {
+                let found = route(&land, Cell::new(at % 4, at / 4), goal, norm, corner_cutting);
+                assert_eq!(cost, found.map_or(u64::MAX, |route| route.cost), "{at}");
+            }
+        }
+        let none = Planner::default().costs_to(&land, Cell::new(2, 0), Norm::Euclidean, true);
+        assert_eq!(none, [u64::MAX; 12]);
     }
 
     #[test]

@@ -15,8 +15,6 @@ use staya_plot::map::{FOOTER, Map};
 use staya_sim::terrain::Terrain;
 use staya_sim::terrain::generate::{LandPlan, natural};
 use staya_voxel::Model;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 pub const MEASURES: &[(&str, &str)] = &[
     ("arrived", "1: the robot reached its goal"),
@@ -46,7 +44,7 @@ impl Trip {
         let plan = LandPlan { width: SIDE, height: SIDE, classes: 9, seed };
         let land = natural(&plan, parameters.obstacles, Norm::Euclidean).map_err(|error| error.to_string())?;
         let fastest = optimal::route(&land, FROM, TO, Norm::Euclidean, true).ok_or("there is no route")?;
-        let times = travel_times(&land, TO);
+        let times = optimal::Planner::default().costs_to(&land, TO, Norm::Euclidean, true);
         let last = f64::from(SIDE - 1);
         let grid = Grid { extent: [[0.0, last]; 2], nodes: [parameters.nodes; 2] };
         let function = Function::new(move |at| interpolated(&times, at));
@@ -137,27 +135,6 @@ fn around(cell: Cell) -> impl Iterator<Item = Cell> {
     let side = 0..SIDE as i16;
     let cells = Dir::MOVES.into_iter().map(move |dir| cell + dir.offset());
     cells.filter(move |cell| side.contains(&cell.x) && side.contains(&cell.y))
-}
-
-/// Travel time from each cell to the goal by Dijkstra's algorithm, in [`UNIT`]ths of a tick.
-pub(super) fn travel_times(land: &Terrain, goal: Cell) -> Vec<u64> {
-    let mut times = vec![u64::MAX; usize::from(SIDE) * usize::from(SIDE)];
-    let mut open = BinaryHeap::from([Reverse((0, goal.x, goal.y))]);
-    times[index(goal)] = 0;
-    while let Some(Reverse((time, x, y))) = open.pop() {
-        let here = Cell::new(x, y);
-        if time > times[index(here)] {
-            continue;
-        }
-        for before in around(here) {
-            let longer = time + price(land, before, here);
-            if longer < times[index(before)] {
-                times[index(before)] = longer;
-                open.push(Reverse((longer, before.x, before.y)));
-            }
-        }
-    }
-    times
 }
 
 /// Between the four cells around the point, in ticks; beyond the border as on it.

@@ -1,7 +1,4 @@
 use super::*;
-use crate::optimal;
-use staya_controller::grid::{Cell, Norm};
-use staya_sim::terrain::generate::{LandPlan, natural};
 
 fn value(parameters: &Parameters, name: &str) -> f64 {
     let measured = parameters.measure(5, &|_| true).unwrap();
@@ -20,18 +17,6 @@ fn formula_gives_the_papers_example() {
     assert!((value(&half, "point_y") - 0.896_447).abs() < 1e-6);
     assert_eq!(value(&whole, "agreement"), 1.0);
     assert!(value(&whole, "agreement_printed") < 0.9);
-}
-
-#[test]
-fn travel_times_are_those_of_the_fastest_routes() {
-    let plan = LandPlan { width: 100, height: 100, classes: 9, seed: 4 };
-    let land = natural(&plan, 40, Norm::Euclidean).unwrap();
-    let goal = Cell::new(98, 98);
-    let times = path::travel_times(&land, goal);
-    for (x, y) in [(1, 1), (50, 3), (0, 99), (97, 98)] {
-        let route = optimal::route(&land, Cell::new(x, y), goal, Norm::Euclidean, true).unwrap();
-        assert_eq!(times[usize::from(y as u16) * 100 + usize::from(x as u16)], route.cost, "{x}, {y}");
-    }
 }
 
 #[test]
