@@ -1,15 +1,18 @@
-//! `staya terrain generate | metrics | draw`: random terrain, statistics, pictures.
+//! `staya terrain generate | metrics | draw | model`: random terrain, statistics, pictures, tables of
+//! costs to go.
 
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand, ValueEnum};
 use serde::Serialize;
 use staya_console::{Ended, Global, options, print, print_json};
-use staya_controller::grid::Norm;
+use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_plot::terrain::{draw, scale_for};
-use staya_sim::record::Files;
+use staya_sim::record::{Files, write_atomically};
 use staya_sim::shown::Shown as _;
 use staya_sim::terrain::generate::{ByMetrics, Hills, LandPlan, by_metrics, natural_by, uniform};
+use staya_sim::terrain::known::{LEAST_BYTES, cost_to_go};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
+use staya_sim::terrain::optimal::Planner;
 use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -38,6 +41,95 @@ enum Action {
         #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
         scale: Option<u32>,
     },
+    /// Make a table of travel times to a goal, which a robot's firmware carries in flash.
+    Model(Model),
+}
+
+#[derive(Args, Clone, Debug)]
+struct Model {
+    #[command(flatten)]
+    source: Source,
+    /// The goal: column and row, from the south-west cell.
+    #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 1, allow_hyphen_values = true, required = true)]
+    goal: Vec<i16>,
+    /// Most bytes of the table.
+    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(LEAST_BYTES as i64..=65536))]
+    bytes: u32,
+    /// Length of diagonal moves.
+    #[arg(long, default_value = "euclidean", value_parser = options::norm())]
+    norm: Norm,
+    /// Diagonal moves may pass a blocked corner.
+    #[arg(long)]
+    corner_cutting: bool,
+    /// Output file.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// The table, and how far it is from the travel times of cells.
+#[derive(Debug, Serialize)]
+struct ModelReport {
+    file: PathBuf,
+    bytes: usize,
+    nodes: [u8; 2],
+    /// Cells with a way to the goal.
+    cells: usize,
+    /// The longest travel time, ticks.
+    longest: f64,
+    /// Mean and largest error, ticks.
+    mean_error: f64,
+    largest_error: f64,
+}
+
+impl Model {
+    fn run(&self, global: &Global) -> Result<()> {
+        let terrain = self.source.load()?;
+        let &[x, y] = &self.goal[..] else { bail!("--goal needs two numbers; give X,Y in cells") };
+        let (goal, moves) = (Cell::new(x, y), (self.norm, self.corner_cutting));
+        let table = cost_to_go(&terrain, goal, moves, self.bytes as usize)?;
+        let bytes = table.bytes();
+        let inputs = [Some(self.source.file.clone()), Terrain::picture(&self.source.file)];
+        Files::reading(inputs.into_iter().flatten()).claim(&self.out)?;
+        write_atomically(&self.out, bytes)?;
+        let times = Planner::default().costs_to(&terrain, goal, self.norm, self.corner_cutting);
+        let unit = f64::from(UNIT);
+        let width = usize::from(terrain.width());
+        let reached = times.iter().enumerate().filter(|&(_, &time)| time != u64::MAX);
+        let errors = reached.clone().map(|(at, &time)| {
+            let cell = Cell::new((at % width) as i16, (at / width) as i16);
+            (table.at(cell) as f64 / 256.0 - time as f64).abs() / unit
+        });
+        let cells = reached.clone().count();
+        let report = ModelReport {
+            file: self.out.clone(),
+            bytes: bytes.len(),
+            nodes: table.header().nodes,
+            cells,
+            longest: reached.map(|(_, &time)| time as f64).fold(0.0, f64::max) / unit,
+            mean_error: errors.clone().sum::<f64>() / cells as f64,
+            largest_error: errors.fold(0.0, f64::max),
+        };
+        report.print(global)
+    }
+}
+
+impl ModelReport {
+    fn print(&self, global: &Global) -> Result<()> {
+        if global.json {
+            return print_json(self);
+        }
+        let [columns, rows] = self.nodes;
+        let mut text = String::new();
+        writeln!(text, "{}", self.file.shown())?;
+        writeln!(text, "  size                  {} bytes, {columns} x {rows} nodes of 12 bits", self.bytes)?;
+        writeln!(text, "  cells with a way      {}, at most {:.1} ticks", self.cells, self.longest)?;
+        writeln!(
+            text,
+            "  error                 {:.2} ticks on average, {:.1} at most",
+            self.mean_error, self.largest_error
+        )?;
+        print(&text)
+    }
 }
 
 /// Kind of random terrain.
@@ -192,6 +284,7 @@ impl TerrainArgs {
                 draw(&terrain, scale.unwrap_or(scale_for(&terrain, 1000)), out)?;
                 LandReport::new(out.clone(), &terrain).print(global)?;
             }
+            Action::Model(model) => model.run(global)?,
         }
         Ok(Ended::Done)
     }
@@ -230,6 +323,7 @@ impl Generate {
 mod tests {
     use super::*;
     use clap::Parser;
+    use staya_controller::land::CostToGo;
 
     #[derive(Debug, Parser)]
     struct Line {
@@ -260,6 +354,10 @@ mod tests {
             let terrain = Terrain::load(land.as_ref()).unwrap();
             assert_eq!((terrain.width(), terrain.height()), (30, 20));
         }
+        let table = path("goal.ctg");
+        run(&["model", &land, "--goal", "3,4", "--bytes", "200", "--out", &table]).unwrap();
+        let header = *CostToGo::from_bytes(std::fs::read(&table).unwrap()).unwrap().header();
+        assert_eq!((header.cells, header.goal), ([30, 20], Cell::new(3, 4)));
         let metrics = Metrics::of(&Terrain::load(land.as_ref()).unwrap());
         assert!(metrics.total_edge.abs_diff(300) <= 2);
         assert_eq!(run(&["metrics", &land]).unwrap(), Ended::Done);
@@ -279,5 +377,8 @@ mod tests {
         let land = land.to_str().unwrap();
         assert!(message(&["metrics", land, "--crop", "1,2"]).contains("X,Y,WIDTH,HEIGHT"));
         assert!(message(&["metrics", land, "--crop", "1,2,9,9"]).contains("leaves the map of 3 x 3"));
+        assert!(message(&["model", land, "--goal", "1", "--out", "a.ctg"]).contains("X,Y"));
+        assert!(message(&["model", land, "--goal", "1,9", "--out", "a.ctg"]).contains("give a free cell"));
+        assert!(message(&["model", land, "--goal", "1,1", "--out", land]).contains("a.yaml"));
     }
 }

@@ -123,7 +123,7 @@ pub use crate::laws::any::{Large, dispatch};
 pub use crate::laws::any_protocol::{AnyMessage, AnyOrder, AnyPayload, AnyProtocol, InAny, OtherPayload, Raw};
 pub use crate::laws::boids::{BoidsGuidance, BoidsSettings};
 pub use crate::laws::cells::{
-    CellFollower, FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace,
+    CellFollower, FarMap, Grid, GridMessage, GridNeighbor, GridOrder, GridPayload, GridTask, GridWorkspace, KnownMap,
     MAX_TEMPLATE, OverCells, PartError, SharedMap, TEMPLATE_PART, TemplateAssembler, TemplatePart,
 };
 pub use crate::laws::external::{External, Incoming};

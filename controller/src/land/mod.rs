@@ -4,11 +4,13 @@
 //! [`LandMap`] keeps a square of tiles: own observations ([`LandMap::see`]) and received ones
 //! ([`LandMap::hear`]), sent as a [`LandPatch`] of 32 tiles ([`LandMap::say`]). [`Outlook`] is the
 //! cheapest path onwards from each tile; [`crate::route`] prices the exits of its window by it.
+//! [`CostToGo`] prices them by a table in flash, made from a map that is known before the mission.
 //!
 //! The newer tile wins, of equally new ones the dearer, so that order and repetition of messages do
 //! not matter. Own observations override messages for a quarter of the lifetime of tiles. A message
 //! never adds a wall but only a high price that expires: a false report cannot wall a robot in.
 
+pub mod cost_to_go;
 mod map;
 mod outlook;
 mod tile;
@@ -16,6 +18,7 @@ mod tile;
 #[cfg(test)]
 mod tests;
 
+pub use cost_to_go::CostToGo;
 pub use map::{LandMap, MapParams};
 pub use outlook::{FarLand, Gains, Outlook};
 pub use tile::{AGES, LandPatch, PATCH_HEIGHT, PATCH_TILES, PATCH_WIDTH, TILE, Tile};

@@ -1,5 +1,5 @@
 use super::{LandMap, TILE, Tile, tile_of};
-use crate::cost::{Cost, Gain};
+use crate::cost::{Cost, EXCLUDED, Gain};
 use crate::grid::{Cell, DIAGONAL, Norm, UNIT};
 use core::fmt::Debug;
 
@@ -26,12 +26,24 @@ pub struct Gains {
 pub trait FarLand: Debug {
     /// Calls `to` with the path to the cell `target` across the tiles, if any is known. O(T) for a
     /// map of `T` tiles; 6 bytes per tile on the stack.
-    fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&Outlook<'_>));
+    fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&dyn Outlook));
+
+    /// Whether it covers all the land, so that a long detour can be right.
+    fn is_whole(&self) -> bool {
+        false
+    }
+}
+
+/// Prices of paths to the target.
+pub trait Outlook {
+    /// Cost of the path from `cell` to the target, below [`EXCLUDED`]; `straight` is that of a
+    /// straight line across unknown land.
+    fn price(&self, cell: Cell, straight: Cost) -> Cost;
 }
 
 /// The cost of the path to the target from each tile, compared to unknown land.
 #[derive(Clone, Copy, Debug)]
-pub struct Outlook<'a> {
+struct OverTiles<'a> {
     costs: &'a [Cost],
     origin: Cell,
     bits: u32,
@@ -39,11 +51,10 @@ pub struct Outlook<'a> {
     gains: Gains,
 }
 
-impl Outlook<'_> {
+impl OverTiles<'_> {
     /// How much more (below 0: less) the path from `cell` to the target costs than across unknown
     /// land; interpolated between four tiles, 0 where no tile is known.
-    #[must_use]
-    pub fn surplus(&self, cell: Cell) -> i64 {
+    fn surplus(&self, cell: Cell) -> i64 {
         // Eighths of a tile, from the centre of the first one.
         let last = (8 << self.bits) - 9;
         // Not `clamp`, which could panic.
@@ -62,6 +73,13 @@ impl Outlook<'_> {
             + at(1, 1) * east * north;
         // The best path through a tile is cheaper than its mean.
         (sum * BELIEVED_16) >> 10
+    }
+}
+
+impl Outlook for OverTiles<'_> {
+    fn price(&self, cell: Cell, straight: Cost) -> Cost {
+        let price = i64::from(straight).saturating_add(self.surplus(cell));
+        price.clamp(0, (EXCLUDED - 1).into()) as Cost
     }
 }
 
@@ -147,7 +165,7 @@ impl<const T: usize> LandMap<T> {
 
 impl<const T: usize> FarLand for LandMap<T> {
     #[inline(never)]
-    fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&Outlook<'_>)) {
+    fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&dyn Outlook)) {
         if self.is_empty() {
             return;
         }
@@ -169,6 +187,6 @@ impl<const T: usize> FarLand for LandMap<T> {
             }
         }
         search.sweep(gains.norm);
-        to(&Outlook { costs: &search.cost, origin, bits, target, gains: *gains });
+        to(&OverTiles { costs: &search.cost, origin, bits, target, gains: *gains });
     }
 }

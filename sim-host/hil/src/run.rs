@@ -107,6 +107,9 @@ pub(crate) fn drive(
     if scenario.laws.maps.is_some() {
         bail!("maps.share is not available in firmware; remove [maps], or run without devices");
     }
+    if scenario.land.known.is_some() {
+        bail!("scouting.model_bytes is not available in firmware; leave it out, or run without devices");
+    }
     if scenario.sensing().is_some() {
         bail!("plane.sensing is not available on devices; remove it, or run without devices");
     }

@@ -14,9 +14,9 @@
 //! Between these ends nothing is known here. Times are continuous; in the simulator moves start at
 //! whole ticks. Diagonal moves may cross, as in the paper.
 
-use crate::optimal::Planner;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm};
 use staya_sim::terrain::Terrain;
+use staya_sim::terrain::optimal::Planner;
 
 /// The last arrival of robots without formation, [`UNIT`](staya_controller::grid::UNIT)ths of a
 /// tick.

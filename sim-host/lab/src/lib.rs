@@ -9,7 +9,6 @@ pub mod figure;
 pub mod joint;
 pub mod measure;
 mod migrate;
-pub mod optimal;
 pub mod probe;
 pub mod study;
 pub mod sweep;

@@ -1,14 +1,17 @@
-//! Tests of robots on the grid that share maps.
+//! Tests of robots on the grid with maps beyond their windows: shared, or known before the mission.
 
 use super::*;
-use crate::agent::{CELLS, GridWorkspace, MAP_TILES, OnGrid, RouteGuidance, SharedMap, VISITS};
+use crate::agent::{CELLS, FarMap, GridWorkspace, KnownMap, MAP_TILES, OnGrid, RouteGuidance, SharedMap, VISITS};
+use crate::grid::UNIT;
 use crate::grid::{BLOCKED, Window};
-use crate::land::{LandPatch, MapParams, PATCH_TILES, Tile, tile_of};
+use crate::land::cost_to_go::Header as Table;
+use crate::land::{CostToGo, LandPatch, MapParams, PATCH_TILES, Tile, tile_of};
 use crate::route::RouteParams;
 use crate::wire::{Broadcast, Header, Message, encode};
 use heapless::Vec;
 
-type Sharer = Agent<f32, RouteGuidance<CELLS, VISITS, 0, SharedMap<MAP_TILES>>, NEIGHBORS>;
+type Planner<H> = Agent<f32, RouteGuidance<CELLS, VISITS, 0, H>, NEIGHBORS>;
+type Sharer = Planner<SharedMap<MAP_TILES>>;
 
 const TICK: Duration = Duration::from_millis(1000);
 
@@ -23,8 +26,8 @@ fn said(patch: LandPatch) -> Message {
     Message::Broadcast(Broadcast { protocol, content })
 }
 
-fn step(
-    agent: &mut Sharer,
+fn step<H: FarMap>(
+    agent: &mut Planner<H>,
     land: &dyn Fn(Cell) -> u8,
     cell: Cell,
     now: Instant,
@@ -110,5 +113,76 @@ fn false_maps_cost_time_but_do_not_trap_a_robot() {
     });
     for lied in [among, lure] {
         assert!(lied.is_some_and(|moves| moves < 12 * honest), "{lied:?} moves instead of {honest}");
+    }
+}
+
+const SIDE: i16 = 41;
+const GOAL: Cell = Cell::new(30, 20);
+
+/// A bay that is open to the west, deeper than the view.
+const fn bay(cell: Cell) -> u8 {
+    match (cell.x, cell.y) {
+        (5..=20, 8 | 32) | (20, 8..=32) => BLOCKED,
+        (0..SIDE, 0..SIDE) => 1,
+        _ => BLOCKED,
+    }
+}
+
+/// Moves from each cell to the goal, by rounds over all cells.
+fn moves_to_goal() -> std::vec::Vec<u16> {
+    let at = |cell: Cell| (cell.y * SIDE + cell.x) as usize;
+    let cells = || (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| Cell::new(x, y)));
+    let mut moves = std::vec![999; at(Cell::new(0, SIDE))];
+    moves[at(GOAL)] = 0;
+    for _ in 0..100 {
+        for cell in cells().filter(|&cell| bay(cell) != BLOCKED && cell != GOAL) {
+            let axes = [Cell::new(1, 0), Cell::new(-1, 0), Cell::new(0, 1), Cell::new(0, -1)];
+            let beside = axes.map(|way| cell + way).into_iter().filter(|&next| bay(next) != BLOCKED);
+            moves[at(cell)] = beside.map(|next| moves[at(next)] + 1).min().unwrap();
+        }
+    }
+    moves
+}
+
+/// Moves to `goal` out of the bay, by a table for [`GOAL`] with these ticks to go in each cell.
+fn moves_by_table(goal: Cell, ticks_to_go: impl Fn(i16, i16) -> u16) -> Option<u32> {
+    let (nodes, cells) = ([SIDE as u8; 2], [SIDE as u16; 2]);
+    let header = Table { nodes, cells, origin: Cell::new(0, 0), goal: GOAL, unit: 256 * UNIT };
+    let mut bytes = std::vec![0; header.len()];
+    header.write(&mut bytes, |x, y| ticks_to_go(x.into(), y.into())).expect("in range");
+    let map = KnownMap::new(CostToGo::from_bytes(&bytes[..]).expect("sound"));
+    let config = AgentConfig::new(RobotId(1), 0.0, TICK);
+    let mut robot = Agent::new(&config, RouteGuidance::with_map(RouteParams::default(), map), Unguarded, Postcard);
+    robot.order(&GridOrder::Goal(goal));
+    let (mut cell, mut now) = (Cell::new(18, 20), Instant::from_micros(0));
+    for moves in 0..2000 {
+        if cell == goal {
+            return Some(moves);
+        }
+        (cell, _) = step(&mut robot, &bay, cell, now, &[]);
+        now = now + TICK;
+    }
+    None
+}
+
+#[test]
+fn a_known_map_leads_out_of_a_bay_that_is_deeper_than_the_view() {
+    let moves = moves_to_goal();
+    let table = |x: i16, y: i16| moves[(y * SIDE + x) as usize];
+    let by_table = moves_by_table(GOAL, table).expect("arrives");
+    assert!(by_table <= 52, "{by_table} moves");
+    // Another goal has no table: the robot follows the wall.
+    let alone = moves_by_table(GOAL + Cell::new(0, 1), table).expect("arrives");
+    assert!(alone > by_table + 20, "{alone} moves, {by_table} by the table");
+}
+
+#[test]
+fn a_wrong_table_costs_time_but_does_not_trap_a_robot() {
+    for (name, moves) in [
+        ("level", moves_by_table(GOAL, |_, _| 7)),
+        ("a pit in the bay", moves_by_table(GOAL, |x, y| 100 + (x - 12).abs().max((y - 20).abs()).cast_unsigned())),
+        ("a lure to the east", moves_by_table(GOAL, |x, _| 500 - x.cast_unsigned())),
+    ] {
+        assert!(moves.is_some_and(|moves| moves < 500), "{name}: {moves:?} moves");
     }
 }

@@ -1,6 +1,8 @@
 //! Settings of formations.
 
-use super::{FormationGuidance, FormationInPlane, FormationParams, NEVER, NextMove, Prediction, Recovery, Steering};
+use super::{
+    Footprint, FormationGuidance, FormationInPlane, FormationParams, NEVER, NextMove, Prediction, Recovery, Steering,
+};
 use crate::law::{Around, Contradiction, Goals, MakesLaw, Motion, Settings, SettingsOfLaw};
 use crate::laws::any::{Large, large};
 use crate::laws::cells::{FarMap, OverCells};
@@ -62,6 +64,12 @@ impl FormationSettings {
         }
         let law = FormationGuidance::steered(self.route.params, params, self.template.clone(), steering, map);
         law.sharpness(self.route.sharpness)
+    }
+
+    /// How a leader prices the land under the others.
+    #[must_use]
+    pub const fn footprint(&self) -> Footprint {
+        if self.route.speed_mps.is_some() { Footprint::Dearest } else { Footprint::Mean(self.params.footprint) }
     }
 }
 

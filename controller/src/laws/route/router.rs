@@ -149,7 +149,8 @@ impl<const M: usize, const L: usize> Router<M, L> {
     }
 
     /// Like [`Router::weights`], with exits priced by the known `land` beyond the window instead of
-    /// learning, if any tile is known. Additional work: [`FarLand::look`].
+    /// learning, if any tile is known; along no wall if all of it is. Additional work:
+    /// [`FarLand::look`].
     ///
     /// # Errors
     /// [`Unreachable`] if no exit of the window can be reached.
@@ -162,7 +163,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         others: impl IntoIterator<Item = Cell> + Clone,
         land: Option<&dyn FarLand>,
     ) -> Result<Weights, Unreachable> {
-        if self.escapes() {
+        if !land.is_some_and(FarLand::is_whole) && self.escapes() {
             let mut weights = field.weights(params, window, from, target, others, Some(&self.visits))?;
             let escape = self.escape.get_or_insert(Escape::new());
             if let Some(dir) = escape.choose(params, window, from, target) {

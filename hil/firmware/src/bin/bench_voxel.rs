@@ -1,5 +1,5 @@
-//! Measures functional voxel models: queries, half-planes, and whole steps of an agent under heavy
-//! load. Prints `case scalar calls median max`: instructions (on a board: clock cycles).
+//! Measures tables in flash: queries and half-planes of functional voxel models, whole steps of an
+//! agent under heavy load, and routes by a table of costs to go. Prints `case scalar calls median max`: instructions (on a board: clock cycles).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -13,8 +13,11 @@ mod program {
     use staya_cases::{Probe, worst_orca};
     use staya_controller::agent::{Agent, Inputs, Law, Outputs, Safety};
     use staya_controller::geom::Vec2;
+    use staya_controller::grid::{Cell, Window};
+    use staya_controller::land::{CostToGo, FarLand};
     use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VoxelTable2k};
     use staya_controller::rand::Rng;
+    use staya_controller::route::{CostField, RouteParams, Router};
     #[cfg(part = "stm32f405")]
     use staya_controller::scalar::Fast32;
     use staya_controller::scalar::{Q16, Scalar};
@@ -29,6 +32,8 @@ mod program {
     /// `staya voxel build neighbor --resolution 17` with the same depths.
     const PAIRS: [(&str, &[u8]); 2] =
         [("8", include_bytes!("../../models/neighbor-8.fvm")), ("16", include_bytes!("../../models/neighbor-16.fvm"))];
+    /// `staya terrain model` of `staya terrain generate --seed 1`, with `--goal 98,98`.
+    const FAR: &[u8] = include_bytes!("../../models/far.ctg");
     const CALLS: u32 = 256;
     const NEIGHBORS: usize = if cfg!(part = "nrf51") { 8 } else { 16 };
     const HALF_PLANES: usize = 2 * NEIGHBORS;
@@ -74,6 +79,7 @@ mod program {
         #[cfg(part = "stm32f405")]
         all::<Fast32>(&Table { scalar: "Fast32", start });
         all::<Q16>(&Table { scalar: "Q16", start });
+        far(&Table { scalar: "integer", start });
         runtime::exit(0)
     }
 
@@ -108,6 +114,34 @@ mod program {
             neighbor::<S, _>("model_", depth, table, VoxelNeighbor::new(model));
             step::<S, _>("model_", depth, table, VoxelNeighbor::new(model));
         }
+    }
+
+    #[inline(never)]
+    fn far(table: &Table<'_>) {
+        let Ok(costs) = CostToGo::from_bytes(black_box(FAR)) else { return };
+        let (mut query, mut straight, mut by_table) = (Meter::new(), Meter::new(), Meter::new());
+        let mut rng = Rng::new(1);
+        let (goal, params) = (costs.header().goal, RouteParams::default());
+        let mut field = CostField::<169>::new();
+        let mut router = Router::<64>::new();
+        for _ in 0..CALLS {
+            let mut along = || 5 + rng.below(80) as i16;
+            let here = Cell::new(along(), along());
+            black_box(query.measure(|| black_box(&costs).at(black_box(here))));
+            let mut cells = [0_u8; 121];
+            for class in &mut cells {
+                *class = 1 + rng.below(9) as u8;
+            }
+            let Some(window) = Window::new(&cells, here - Cell::new(5, 5), 11, 11) else { continue };
+            for (meter, land) in [(&mut straight, None), (&mut by_table, Some(&costs as &dyn FarLand))] {
+                router.forget_route();
+                let ends = (here, goal);
+                black_box(meter.measure(|| router.weights_over(&params, &mut field, &window, ends, [], land).ok()));
+            }
+        }
+        row("costs_to_go", ["at", ""], table, query);
+        row("route", ["straight", ""], table, straight);
+        row("route", ["by_costs_to_go", ""], table, by_table);
     }
 
     fn about<S: Scalar>(rng: &mut Rng, milli: i32) -> S {

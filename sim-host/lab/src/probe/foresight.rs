@@ -32,7 +32,9 @@ impl Probe for Least {
             let land = (&scenario.land.terrain, &scenario.land.changes[..], scenario.seed);
             let ends = [robot.start, robot.goal];
             // The least travel time is at most that of the robot.
-            let least = Foresight::default().least_cost(land, ends, scenario.route().params.norm, time).unwrap_or(time);
+            let params = scenario.route().params;
+            let moves = (params.norm, params.corner_cutting);
+            let least = Foresight::default().least_cost(land, ends, moves, time).unwrap_or(time);
             100.0 * (time as f64 / least.max(1) as f64 - 1.0)
         });
         vec![loss]
@@ -51,12 +53,12 @@ struct Foresight {
 
 impl Foresight {
     /// Smallest travel time, [`UNIT`]ths of a tick; `None` above `most`. Routes may wait for closed
-    /// cells and cut their corners. O((cells + changes) log cells).
+    /// cells, and cut corners of cells that open at some time. O((cells + changes) log cells).
     fn least_cost(
         &mut self,
         (land, changes, seed): Changing<'_>,
         [from, to]: [Cell; 2],
-        norm: Norm,
+        (norm, corner_cutting): (Norm, bool),
         most: u64,
     ) -> Option<u64> {
         self.foresee((land, changes, seed), most.div_ceil(u64::from(UNIT)) as u32);
@@ -77,6 +79,11 @@ impl Foresight {
             let cell = cell_of(land, at);
             for dir in Dir::MOVES {
                 let Some(next) = land.index(cell + dir.offset()) else { continue };
+                let Cell { x, y } = dir.offset();
+                let is_wall = |side: Cell| land.index(cell + side).is_some_and(|at| self.is_wall(at));
+                if dir.is_diagonal() && !corner_cutting && [Cell::new(x, 0), Cell::new(0, y)].into_iter().any(is_wall) {
+                    continue;
+                }
                 let there = self.crossed(next, now, dir.length(norm).into());
                 if there <= most && there < self.arrival[next] {
                     self.arrival[next] = there;
@@ -85,6 +92,11 @@ impl Foresight {
             }
         }
         None
+    }
+
+    /// Whether a cell never opens.
+    fn is_wall(&self, cell: usize) -> bool {
+        self.classes[cell].iter().all(|&(_, class)| class == BLOCKED)
     }
 
     fn crossed(&self, cell: usize, now: u64, length: u64) -> u64 {

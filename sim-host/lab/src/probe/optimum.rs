@@ -1,11 +1,11 @@
 //! Travel times on the grid over those of the fastest routes on the whole map, for a robot alone.
 
 use super::{Kind, Probe};
-use crate::optimal::Planner;
 use staya_controller::grid::UNIT;
 use staya_controller::route::RouteParams;
 use staya_sim::engine::Outcome;
 use staya_sim::scenario::{Robot, Scenario};
+use staya_sim::terrain::optimal::Planner;
 
 pub const KIND: Kind = Kind {
     name: "optimum",

@@ -9,7 +9,6 @@ use super::walk::{self, Maker, Walks, maker, percent, whole};
 use super::{Given, Study};
 use crate::error::SweepError;
 use crate::measure::{Job, Measured};
-use crate::optimal;
 use crate::walk::{Task, Walk};
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
@@ -20,6 +19,7 @@ use staya_plot::map::{FOOTER, Map};
 use staya_sim::scenario::Scenario;
 use staya_sim::table;
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
+use staya_sim::terrain::optimal;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

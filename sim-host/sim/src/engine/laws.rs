@@ -2,15 +2,19 @@
 
 use super::witness::Witness;
 use crate::own_law::{Own, OwnLaw, Site};
-use crate::scenario::{LawSetup, Scenario};
+use crate::scenario::{KnownLand, LawSetup, Robot, Scenario};
+use crate::terrain::known::{cost_to_go, under};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, AnySafety, FormationGuidance, GridWorkspace, Guided, HALF_PLANES, LEARNED, MAP_TILES, SharedMap, TEMPLATE,
-    VISITS,
+    AnyLaw, AnySafety, FormationGuidance, GridWorkspace, Guided, HALF_PLANES, KnownMap, LEARNED, MAP_TILES, SharedMap,
+    TEMPLATE, VISITS,
 };
+use staya_controller::land::CostToGo;
 use staya_controller::laws;
 use staya_papers::{Course, PublishedFormation};
 use std::collections::HashMap;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Law of an agent: any law of scenario files or of a caller, which an operator may override.
@@ -23,7 +27,9 @@ pub type Agents = Box<dyn Fn(usize) -> (HostLaw, HostSafety) + Send + Sync>;
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
 pub const WIDE: usize = 1225;
 
-type Map = Option<Box<SharedMap<MAP_TILES>>>;
+/// A table of costs to go; robots with one goal share its bytes.
+type Table = CostToGo<Arc<[u8]>>;
+type Map = (Option<Box<KnownMap<Arc<[u8]>>>>, Option<Box<SharedMap<MAP_TILES>>>);
 
 laws! {
     /// A law of a robot in a scenario.
@@ -66,12 +72,36 @@ pub fn agents(scenario: &Scenario) -> Agents {
     });
     let of_robots: Vec<usize> = of_robots.collect();
     let maps = scenario.laws.maps;
+    let tables = tables(scenario);
     Box::new(move |index| {
         let (law, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
-        let map = maps.filter(|_| law.is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
+        let shared = maps.filter(|_| law.is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
+        let table = tables.get(index).cloned().flatten();
+        let map = (table.map(|table| Box::new(KnownMap::new(table))), shared);
         (Guided::new(law_of(law, map), *speed_mps, *tolerance_m), Witness::new(safety.layer()))
     })
+}
+
+/// The robots' tables, by index; `None` where the map shows no way, empty if they have none.
+fn tables(scenario: &Scenario) -> Vec<Option<Table>> {
+    let Some(KnownLand { map, bytes, moves }) = &scenario.land.known else { return Vec::new() };
+    // The land under a formation differs by place.
+    let kind = |(index, robot): (usize, &Robot)| (robot.goal, scenario.formation_of(index).map(|_| index));
+    let kinds: Vec<_> = scenario.robots.iter().enumerate().map(kind).collect();
+    let mut different = kinds.clone();
+    different.sort_unstable();
+    different.dedup();
+    let made = different.into_par_iter().map(|kind @ (goal, place)| {
+        let law = place.map(|index| scenario.law(index));
+        let priced = law
+            .as_ref()
+            .and_then(LawSetup::formation)
+            .map(|settings| under(map, &settings.template.entries, settings.footprint()));
+        (kind, cost_to_go(priced.as_ref().unwrap_or(map), goal, *moves, *bytes).ok())
+    });
+    let made: HashMap<_, _> = made.collect();
+    kinds.iter().map(|kind| made[kind].clone()).collect()
 }
 
 /// Speed and arrival distance of a robot that an operator sends to a waypoint, m/s and metres.

@@ -1,6 +1,6 @@
 //! A hash of everything that determines a run.
 
-use super::{KeyRotation, Land, Scenario, Scouting, Trust};
+use super::{KeyRotation, KnownLand, Land, Scenario, Scouting, Trust};
 use staya_controller::auth::Key;
 use std::fmt::{self, Debug, Write as _};
 
@@ -42,7 +42,7 @@ impl Scenario {
             ticks: _,
             tick_us,
             clocks,
-            land: Land { terrain, changes, scouting },
+            land: Land { terrain, changes, scouting, known },
             radio,
             robots,
             formations,
@@ -58,6 +58,10 @@ impl Scenario {
         if let Some(Scouting { map, sight }) = scouting {
             all.mix(map.cells());
             all.add(sight);
+        }
+        if let Some(KnownLand { map, bytes, moves }) = known {
+            all.mix(map.cells());
+            all.add(&(bytes, moves));
         }
         all.add(&clocks);
         all.add(&(seed, tick_us, radio, robots, formations, movement, laws, events, misnumbered, plausibility));

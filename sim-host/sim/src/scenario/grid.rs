@@ -34,9 +34,15 @@ const MAX_RADIUS: u8 = SIGHT.range[1] as u8;
 
 /// Sight of the robots in each direction, cells: that of a map which they know before they see it.
 pub(super) fn radius(draft: &Draft<'_>) -> Checked<u8> {
-    let Some(scouting) = &draft.file.scouting else { return Ok(draft.file.grid.radius) };
+    let sight = draft.file.grid.radius;
+    let Some(scouting) = &draft.file.scouting else { return Ok(sight) };
+    if scouting.model_bytes.is_some() {
+        let (what, remedy) = ("robots with a model plan in their sight", "leave one of radius and model_bytes out");
+        draft.require(scouting.radius.is_none(), "scouting.radius", what, remedy)?;
+        return Ok(sight);
+    }
     let wide = scouting.radius.unwrap_or(MAX_RADIUS);
-    draft.within("scouting.radius", wide.into(), draft.file.grid.radius.into()..=MAX_RADIUS.into(), "cells")?;
+    draft.within("scouting.radius", wide.into(), sight.into()..=MAX_RADIUS.into(), "cells")?;
     Ok(wide)
 }
 

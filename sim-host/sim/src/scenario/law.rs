@@ -145,6 +145,17 @@ impl LawSetup {
         }
     }
 
+    /// Settings of a law that keeps a formation, as far as Staya's own.
+    #[must_use]
+    pub const fn formation(&self) -> Option<&FormationSettings> {
+        match self {
+            Self::BuiltIn(LawSettings::Formation(settings)) | Self::Lookahead(LookaheadSettings(settings)) => {
+                Some(settings)
+            }
+            _ => None,
+        }
+    }
+
     /// Whether robots with or without places in a formation can have it; laws of the program may
     /// know of no places.
     #[must_use]

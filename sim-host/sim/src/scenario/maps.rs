@@ -27,6 +27,16 @@ pub(super) fn sharing(draft: &Draft<'_>, laws: &[&LawSetup]) -> Checked<Option<M
         draft.require(forget_after_s.is_none(), field, "no robot shares a map", remedy)?;
         return Ok(None);
     }
+    plans_far(draft, laws, "maps.share")?;
+    let keeps_map = draft.file.scouting.as_ref().is_some_and(|scouting| scouting.model_bytes.is_none());
+    let what = "robots that have a map ([scouting]) plan by that one";
+    draft.require(!keeps_map, "maps.share", what, "leave one of the two out, or give scouting.model_bytes")?;
+    let MapParams { forget_after } = MapParams::default();
+    Ok(Some(MapParams { forget_after: forget_after_s.map_or(forget_after, duration) }))
+}
+
+/// Refuses laws that plan no way beyond their sight; `field` asks for one.
+pub(super) fn plans_far(draft: &Draft<'_>, laws: &[&LawSetup], field: &str) -> Checked<()> {
     let routes = || laws.iter().filter_map(|law| law.route());
     for (fits, what, remedy) in [
         (
@@ -45,18 +55,12 @@ pub(super) fn sharing(draft: &Draft<'_>, laws: &[&LawSetup]) -> Checked<Option<M
             "give \"each_cell\"",
         ),
         (
-            draft.file.scouting.is_none(),
-            "robots that have a map ([scouting]) plan by that one",
-            "leave one of the two out",
-        ),
-        (
             !laws.iter().any(|law| matches!(law, LawSetup::Published(_))),
             "the paper's law knows the window alone",
             "give law = \"formation\", or leave it out",
         ),
     ] {
-        draft.require(fits, "maps.share", what, remedy)?;
+        draft.require(fits, field, what, remedy)?;
     }
-    let MapParams { forget_after } = MapParams::default();
-    Ok(Some(MapParams { forget_after: forget_after_s.map_or(forget_after, duration) }))
+    Ok(())
 }

@@ -55,6 +55,7 @@ pub use schema::{
     FaultTable, LandSource, Lie, MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, Secret,
     TerrainTable, UniformTable,
 };
+pub use scouting::KnownLand;
 pub use setting::{Setting, named, text_with, with_settings};
 use source::{Checked, Section};
 pub use source::{Location, ScenarioError, Source};
@@ -217,6 +218,8 @@ pub struct Land {
     pub changes: Vec<LandChange>,
     /// Terrain that robots know before they see it; `None`: only what their laws remember.
     pub scouting: Option<Scouting>,
+    /// The map that robots carry as tables; `None`: none.
+    pub known: Option<KnownLand>,
 }
 
 /// How the bodies of a scenario move.
@@ -346,7 +349,8 @@ impl Scenario {
             None => vec![&on_grid],
         };
         let maps = maps::sharing(draft, &kinds)?;
-        let scouting = scouting::scouting(draft, plane.map_or(&on_grid, |plane| &plane.general.law), land.as_ref())?;
+        let law = plane.map_or(&on_grid, |plane| &plane.general.law);
+        let (scouting, known) = scouting::scouting(draft, law, &kinds, land.as_ref())?;
         let laws = Laws { on_grid, radius, usual_route: grid::usual_route(draft)?, maps };
         let terrain = land.unwrap_or_else(|| Terrain::flat(1, 1));
         check::memory(draft, &robots, plane, &terrain)?;
@@ -356,7 +360,7 @@ impl Scenario {
             ticks: file.ticks,
             tick_us: ranges::micros(file.tick_s),
             clocks,
-            land: Land { changes: land::changes(draft, &terrain)?, terrain, scouting },
+            land: Land { changes: land::changes(draft, &terrain)?, terrain, scouting, known },
             radio: file.radio.clone(),
             trust: Trust {
                 misnumbered: check::misnumbered(draft, &robots)?,

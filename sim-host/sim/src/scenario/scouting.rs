@@ -2,15 +2,30 @@
 
 use super::law::LawSetup;
 use super::source::Checked;
-use super::{Draft, check};
+use super::{Draft, check, maps};
 use crate::terrain::Terrain;
 use crate::terrain::scouted::{Scouted, usual_class};
 use crate::world::scouts::Scouting;
+use staya_controller::grid::Norm;
 use std::sync::Arc;
 
+/// A map that robots carry as tables of costs to go to their goals.
+#[derive(Clone, Debug)]
+pub struct KnownLand {
+    /// The map, of the terrain's size.
+    pub map: Arc<Terrain>,
+    /// Most bytes of a table.
+    pub bytes: usize,
+    /// Length of diagonal moves, and whether they may pass a blocked corner.
+    pub moves: (Norm, bool),
+}
+
+/// The map that robots keep as it is, or as tables.
+type Known = (Option<Scouting>, Option<KnownLand>);
+
 /// Checks the table; `land` is `None` for robots that move without terrain.
-pub(super) fn scouting(draft: &Draft<'_>, law: &LawSetup, land: Option<&Terrain>) -> Checked<Option<Scouting>> {
-    let Some(table) = &draft.file.scouting else { return Ok(None) };
+pub(super) fn scouting(draft: &Draft<'_>, law: &LawSetup, all: &[&LawSetup], land: Option<&Terrain>) -> Checked<Known> {
+    let Some(table) = &draft.file.scouting else { return Ok((None, None)) };
     let land = land.filter(|_| law.is_on_grid());
     let (Some(land), Some(terrain)) = (land, &draft.file.terrain) else {
         let (what, remedy) = ("these robots plan on no land", "leave this table out, or give law = \"route\"");
@@ -32,7 +47,10 @@ pub(super) fn scouting(draft: &Draft<'_>, law: &LawSetup, land: Option<&Terrain>
         assumed: table.assumed.unwrap_or_else(|| usual_class(old)),
         seed: table.seed.unwrap_or(draft.file.seed),
     };
-    Ok(Some(Scouting { map: Arc::new(scouted.map(old)), sight: draft.file.grid.radius }))
+    let (map, grid) = (Arc::new(scouted.map(old)), &draft.file.grid);
+    let Some(bytes) = table.model_bytes else { return Ok((Some(Scouting { map, sight: grid.radius }), None)) };
+    maps::plans_far(draft, all, "scouting.model_bytes")?;
+    Ok((None, Some(KnownLand { map, bytes: bytes as usize, moves: (grid.norm, grid.corner_cutting) })))
 }
 
 #[cfg(test)]

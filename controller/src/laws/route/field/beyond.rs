@@ -7,7 +7,7 @@ use crate::land::Outlook;
 pub(in crate::route) struct Beyond<'a> {
     /// Lower bounds of the cost.
     pub learned: &'a [(Cell, Cost)],
-    pub land: Option<&'a Outlook<'a>>,
+    pub land: Option<&'a dyn Outlook>,
 }
 
 impl<const CELLS: usize> CostField<CELLS> {
@@ -25,10 +25,7 @@ impl<const CELLS: usize> CostField<CELLS> {
             if let Some(at) = self.index(cell) {
                 let known = beyond.learned.iter().find(|&&(at, _)| at == cell).map_or(0, |&(_, cost)| cost);
                 let straight = params.a3.of(distance(cell) - base);
-                let price = beyond.land.map_or(straight, |land| {
-                    let price = i64::from(straight).saturating_add(land.surplus(cell));
-                    price.clamp(0, (EXCLUDED - 1).into()) as Cost
-                });
+                let price = beyond.land.map_or(straight, |land| land.price(cell, straight));
                 self.offer(at, price.max(known.min(EXCLUDED - 1)));
             }
         }

@@ -1,10 +1,11 @@
 use super::*;
-use crate::optimal;
 use proptest::prelude::*;
 use staya_sim::terrain::change::ChangeKind;
 use staya_sim::terrain::generate::{LandPlan, natural};
+use staya_sim::terrain::optimal;
 use std::num::NonZeroU32;
 
+const MOVES: (Norm, bool) = (Norm::Euclidean, false);
 const ENDS: [Cell; 2] = [Cell::new(1, 1), Cell::new(28, 28)];
 
 fn land(seed: u64) -> Terrain {
@@ -14,10 +15,16 @@ fn land(seed: u64) -> Terrain {
 #[test]
 fn static_land_gives_the_fastest_route() {
     for seed in 0..8 {
-        let land = land(seed);
-        let best = optimal::route(&land, ENDS[0], ENDS[1], Norm::Euclidean, false).expect("a way").cost;
-        let least = Foresight::default().least_cost((&land, &[], seed), ENDS, Norm::Euclidean, 1 << 30);
-        assert_eq!(least, Some(best));
+        let mut land = land(seed);
+        for at in 0..25 {
+            land.set(Cell::new(at, 29 - at), BLOCKED);
+        }
+        for corner_cutting in [false, true] {
+            let best = optimal::route(&land, ENDS[0], ENDS[1], Norm::Euclidean, corner_cutting).expect("a way").cost;
+            let moves = (Norm::Euclidean, corner_cutting);
+            let least = Foresight::default().least_cost((&land, &[], seed), ENDS, moves, 1 << 30);
+            assert_eq!(least, Some(best));
+        }
     }
 }
 
@@ -30,12 +37,12 @@ fn foresight_waits_for_a_gate() {
     let changes = [LandChange { first: 3, every: None, kind: kind(0, 17) }];
     let ends = [Cell::new(0, 0), Cell::new(4, 0)];
     let mut foresight = Foresight::default();
-    assert_eq!(foresight.least_cost((&road, &changes, 0), ends, Norm::Euclidean, 1 << 20), Some(12 * 70));
+    assert_eq!(foresight.least_cost((&road, &changes, 0), ends, MOVES, 1 << 20), Some(12 * 70));
     // If the cell takes 200 ticks, waiting for its opening is faster.
     let road = Terrain::from_cells(5, 1, vec![1, 1, 200, 1, 1]).expect("fits");
-    let least = foresight.least_cost((&road, &changes, 0), ends, Norm::Euclidean, 1 << 20);
+    let least = foresight.least_cost((&road, &changes, 0), ends, MOVES, 1 << 20);
     assert_eq!(least, Some(19 * 70 + 1 + 3 * 70));
-    assert_eq!(foresight.least_cost((&road, &changes, 0), ends, Norm::Euclidean, 19 * 70), None);
+    assert_eq!(foresight.least_cost((&road, &changes, 0), ends, MOVES, 19 * 70), None);
 }
 
 proptest! {
@@ -58,7 +65,7 @@ proptest! {
             let dir = Dir::between(pair[0], pair[1]).expect("adjacent");
             cost += u64::from(dir.length(Norm::Euclidean)) * u64::from(now.get(pair[1]));
         }
-        let least = Foresight::default().least_cost((&first, &changes, seed), ENDS, Norm::Euclidean, cost);
+        let least = Foresight::default().least_cost((&first, &changes, seed), ENDS, MOVES, cost);
         prop_assert!(least.is_some_and(|least| least <= cost));
     }
 }

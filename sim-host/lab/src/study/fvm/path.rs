@@ -6,7 +6,6 @@
 //! that it has visited costs more with each visit, since errors of a coarse model may form pits.
 
 use super::{Parameters, Values};
-use crate::optimal;
 use staya_controller::grid::{Cell, Dir, Norm, UNIT};
 use staya_fvm::{Function, Grid, build};
 use staya_plot::canvas::{Anchor, Canvas, Stroke, Text};
@@ -14,6 +13,7 @@ use staya_plot::colour::{INK, PALETTE, WHITE};
 use staya_plot::map::{FOOTER, Map};
 use staya_sim::terrain::Terrain;
 use staya_sim::terrain::generate::{LandPlan, natural};
+use staya_sim::terrain::optimal;
 use staya_voxel::Model;
 
 pub const MEASURES: &[(&str, &str)] = &[

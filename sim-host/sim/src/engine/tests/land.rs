@@ -247,6 +247,11 @@ fn a_robot_with_a_map_goes_straight_to_an_unseen_door() {
     assert!(with_map < 27 && alone > with_map, "{with_map} with a map, {alone} without");
     let memory = ticks("[scouting]\nunknown = 1\n");
     assert!((with_map..=2 * alone).contains(&memory), "{memory}");
+    // As a table of costs to go, with a node for each cell, and of a tenth of the bytes.
+    for bytes in [400, 66] {
+        let with_table = ticks(&format!("[scouting]\nmap = \"old.map\"\nmodel_bytes = {bytes}\n"));
+        assert!(with_table <= with_map + 2, "{with_table} by {bytes} bytes, {with_map} with a map");
+    }
 }
 
 #[test]
@@ -267,8 +272,12 @@ fn a_map_without_a_route_does_not_prevent_exploration() {
     let closed: Vec<String> =
         (0..8).map(|row| if row == 7 { ".@@@@@@@@@@@@@@@@@@." } else { "@@@@@@@@@@@@@@@@@@@@" }.to_owned()).collect();
     let closed: Vec<&str> = closed.iter().map(String::as_str).collect();
-    let (outcome, stuck) = run(&with_maps(&WALL, &closed, "[scouting]\nmap = \"old.map\"\n"));
-    assert_eq!((outcome.arrived, stuck.len()), (1, 0));
+    for how in ["", "model_bytes = 400\n"] {
+        let (outcome, stuck) = run(&with_maps(&WALL, &closed, &format!("[scouting]\nmap = \"old.map\"\n{how}")));
+        assert_eq!((outcome.arrived, stuck.len()), (1, 0), "{how}");
+    }
+    let wrong = "[scouting]\nmap = \"old.map\"\nmodel_bytes = 400\n";
+    assert_eq!(run(&with_maps(&WALL, &NO_DOOR_IN_THE_NORTH, wrong)).0.arrived, 1);
 }
 
 #[test]
@@ -282,6 +291,8 @@ fn in_the_plane_a_map_leads_to_an_unseen_door_too() {
     };
     let (alone, with_map) = (ticks(""), ticks("[scouting]\nmap = \"old.map\"\n"));
     assert!(with_map < alone, "{with_map} with a map, {alone} without");
+    let with_table = ticks("[scouting]\nmap = \"old.map\"\nmodel_bytes = 400\n");
+    assert!(with_table < alone, "{with_table} with a table, {alone} without");
 }
 
 #[test]

@@ -170,6 +170,9 @@ fn runs_with_changing_terrain_and_memory_resume() {
     let on_grid = scenario(TWO, changes);
     resumes(&on_grid, "grid", 40, &[1, 4, 5, 7, 8, 9, 12]);
     moves(&on_grid, "grid", 9, 40);
+    let by_table = scenario(TWO, &changes.replace("radius = 8", "model_bytes = 300"));
+    resumes(&by_table, "table", 40, &[1, 5, 8, 12]);
+    moves(&by_table, "table", 9, 40);
     let in_plane = "tick_s = 0.1\nname = \"t\"\nticks = 200\n[terrain]\nuniform = { width = 12, height = 6, classes = 2 }\n\
         [[terrain.change]]\nat_s = 2\nfor_s = 3\nclass = 0\nrectangle = { x = 2, y = 0, width = 4, height = 6 }\n\
         [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nlaw = \"route\"\n[scouting]\nunknown = 0.5\n\

@@ -27,6 +27,9 @@ fn known_terrain_is_part_of_the_fingerprint() {
         print("[scouting]\n"),
         print("[scouting]\nradius = 9\n"),
         print("[scouting]\nunknown = 0.5\n"),
+        print("[scouting]\nmodel_bytes = 400\n"),
+        print("[scouting]\nmodel_bytes = 401\n"),
+        print("[scouting]\nunknown = 0.5\nmodel_bytes = 400\n"),
         print("[scouting]\nunknown = 0.5\nseed = 9\n"),
         print("[[terrain.change]]\nclass = 0\ncells = [[3, 3]]\n"),
         print("[[terrain.change]]\nclass = 0\ncells = [[3, 4]]\n"),
@@ -48,6 +51,10 @@ fn invalid_scouting_is_refused_with_place_and_remedy() {
         ("[scouting]\nradius = 4\n", "scouting.radius", "5 to 16"),
         ("[scouting]\nradius = 17\n", "scouting.radius", "5 to 16"),
         ("[scouting]\nmap = \"none.map\"\n", "scouting.map", "relative to the scenario"),
+        ("[scouting]\nmodel_bytes = 31\n", "scouting.model_bytes", "32 to 65536"),
+        ("[scouting]\nmodel_bytes = 400\nradius = 9\n", "scouting.radius", "leave one of radius and model_bytes out"),
+        ("[grid.route]\nexit = \"ray\"\n[scouting]\nmodel_bytes = 400\n", "scouting.model_bytes", "exit = \"best\""),
+        ("[grid]\nlaw = \"negotiation\"\n[scouting]\nmodel_bytes = 400\n", "scouting.model_bytes", "give a law"),
     ] {
         let message = parse(&format!("{LAND}{rest}")).unwrap_err();
         assert!(message.contains(&format!("{field}: ")) && message.contains(remedy), "{rest}: {message}");
@@ -75,4 +82,13 @@ fn an_old_map_must_have_the_size_of_the_land() {
     assert_eq!(with("good.map").expect("good").land.scouting.expect("scouted").map.cells(), [1, 0, 1, 1]);
     let message = with("old.map").unwrap_err();
     assert!(message.contains("it has 5 x 1 cells, the land has 4 x 1 cells; give a map of the same"), "{message}");
+}
+
+#[test]
+fn a_model_takes_the_place_of_the_map_and_can_be_beside_shared_ones() {
+    let scenario = parse(&format!("{LAND}[grid]\nradius = 4\n[maps]\nshare = true\n[scouting]\nmodel_bytes = 400\n"));
+    let scenario = scenario.expect("good");
+    assert!(scenario.land.scouting.is_none() && scenario.laws.maps.is_some());
+    let known = scenario.land.known.expect("a model");
+    assert_eq!((known.bytes, scenario.laws.radius, &*known.map), (400, 4, &scenario.land.terrain));
 }

@@ -5,8 +5,8 @@
 //! cell cannot improve another one in its own bucket, so the result is exact for any order within a
 //! bucket.
 
+use super::Terrain;
 use staya_controller::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT};
-use staya_sim::terrain::Terrain;
 
 /// More buckets than the most expensive move spans (a diagonal into class 255).
 const RING: usize = 512;
