@@ -1,6 +1,8 @@
 //! `cargo xtask claims`: runs figures of papers with all their seeds, and keeps what they showed in
 //! their folders; docs/results.md prints it beside what the papers claim.
 
+pub mod planted;
+
 use crate::prelude::*;
 use serde_json::Value;
 

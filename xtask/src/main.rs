@@ -81,6 +81,9 @@ enum Command {
     Claims {
         /// Only figures with these short names
         names: Vec<String>,
+        /// Plant a wrong constant in each law: a figure must show it
+        #[arg(long, conflicts_with = "names")]
+        planted: bool,
     },
     /// MAVLink clients against staya
     Clients {
@@ -156,7 +159,8 @@ fn main() -> ExitCode {
         Command::Book => python::book(s),
         Command::Browser => python::browser(s),
         Command::C => c::run(s),
-        Command::Claims { names } => claims::run(s, &names),
+        Command::Claims { planted: true, .. } => claims::planted::run(s),
+        Command::Claims { names, .. } => claims::run(s, &names),
         Command::Clients { name } => python::clients(s, name.as_deref(), true),
         Command::Cluster => python::cluster(s),
         Command::Example => firmware::example(s),

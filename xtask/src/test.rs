@@ -4,7 +4,9 @@
 use crate::device::PARTS;
 use crate::prelude::*;
 use crate::repo::BLESS;
-use crate::{bench, c, emulate, firmware, law, mpi, mutants, plants, project, proof, python, size, soak, swarms};
+use crate::{
+    bench, c, claims, emulate, firmware, law, mpi, mutants, plants, project, proof, python, size, soak, swarms,
+};
 
 /// Properties are tried on the same random cases each time, so that a failure is the change's;
 /// `cargo test` alone takes new ones.
@@ -66,6 +68,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     s.report.step("experiments show what they should, with few seeds", || {
         execute(s.repo.command(staya?).args(["experiment", "--all", "--quick", "--restart"]))
     });
+    claims::planted::run(s);
     mutants::run(s, &mutants::Options::default());
     bench::run_goals(s);
 }

@@ -293,6 +293,29 @@ fn single_robots_get_around_obstacles() {
     }
 }
 
+/// On the border to a millimetre, a step whose chord would cut deeper than that.
+#[test]
+fn a_robot_on_the_border_goes_on_whatever_the_length_of_its_step() {
+    for (model, mm, radius, speed) in MODELS.into_iter().flat_map(|model| {
+        [-0.9, -0.3, 0.0, 0.4].into_iter().flat_map(move |mm| {
+            [0.15, 1.0, 4.0].into_iter().flat_map(move |radius| [0.5, 2.0, 8.0].map(|speed| (model, mm, radius, speed)))
+        })
+    }) {
+        let case = std::format!("{model:?}, {mm} mm, a ball of {radius} m, {speed} m/s");
+        let own = Body { max_speed_mps: speed, step_s: 0.1, ..body() };
+        let center = v(2.0 + radius + mm / 1000.0, 0.0);
+        for angle in [0.05_f64, 0.7, 1.4, -0.3, -1.2] {
+            let wish = v(angle.cos(), angle.sin()) * speed;
+            let step = push_out(&params(model, Evasion::Multiple), &own, wish, &[], &[ball(center, radius)]) * 0.1;
+            let least = speed * 0.1 * angle.sin().abs() * 0.4;
+            assert!(step.norm() >= least, "{case}, {angle} rad: {step:?}");
+            let points = (0..=100).map(|k| (center - step * (f64::from(k) / 100.0)).norm() - radius);
+            let nearest = points.fold(f64::MAX, f64::min);
+            assert!(nearest >= 2.0 - 0.001_01, "{case}, {angle} rad: {nearest}");
+        }
+    }
+}
+
 #[test]
 fn pairs_pass_each_other_and_keep_the_distance_to_a_step() {
     for model in MODELS {

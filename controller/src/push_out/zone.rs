@@ -242,7 +242,12 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             // The border beyond the tangent point cannot be reached in a straight line.
             let horizon = radius.checked_div(distance).unwrap_or(S::ONE);
             if -away.dot(ahead) < horizon {
-                let reach = ((distance - radius) * (distance + radius)).sqrt();
+                // On the border the tangent point is here: along it, as far as pushed.
+                let gap = distance - radius;
+                let reach = match gap < -inside {
+                    true => (center + away * radius).norm(),
+                    false => (gap * (distance + radius)).sqrt(),
+                };
                 let direction = step.normalized().unwrap_or(ahead);
                 if let Some(tangent) = turn(shape, direction * reach, true) {
                     return tangent;
@@ -275,7 +280,9 @@ fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<V
 
 /// Of the angle between the centre at `distance` and a step that ends on the border or touches it.
 fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
+    // A robot on the border counts as outside: a chord would lead in.
     let gap = distance - radius;
+    let gap = if gap < S::ZERO && gap >= -S::from_milli(TOLERANCE_MM) { S::ZERO } else { gap };
     let sum = distance + radius;
     let over = |x: S| x.checked_div(distance);
     if gap >= S::ZERO && length * length >= gap * sum {

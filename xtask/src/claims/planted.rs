@@ -1,0 +1,73 @@
+//! A wrong constant in a law turns a figure of its paper red: errors are planted in a copy of the
+//! sources, one at a time, and a figure must show each.
+
+use crate::prelude::*;
+
+/// An error in a law.
+struct Plant {
+    name: &'static str,
+    file: &'static str,
+    /// Stands there once.
+    right: &'static str,
+    wrong: &'static str,
+    /// The figure that must be red then.
+    figure: &'static str,
+}
+
+/// One error in each law of a paper.
+#[rustfmt::skip]
+const PLANTS: [Plant; 7] = [
+    Plant { name: "route: the way behind the window at an eighth of its price (KUZ)", figure: "route",
+        file: "controller/src/laws/route/field/beyond.rs",
+        right: "params.a3.of(distance(cell) - base)",
+        wrong: "params.a3.of((distance(cell) - base) >> 3)" },
+    Plant { name: "formation: a leader that never waits (KUZ)", figure: "formation",
+        file: "controller/src/laws/formation/steering.rs",
+        right: "self.waits = lag > u32::from(limit);",
+        wrong: "self.waits = lag > u32::from(limit) << 8;" },
+    Plant { name: "formation_paper: places at a tenth of their weight (KUZ)", figure: "formation",
+        file: "controller/src/laws/formation/steering.rs",
+        right: "params.gain.of(length).min(EXCLUDED - 1)",
+        wrong: "params.gain.of(length / 10).min(EXCLUDED - 1)" },
+    Plant { name: "goal_flock: repulsion that ends at R_MinDist (PAV)", figure: "hooking",
+        file: "controller/src/laws/goal_flock/mod.rs",
+        right: "let lack = S::TWO - ratio.unwrap_or(S::TWO).clamp(S::HALF, S::TWO);",
+        wrong: "let lack = S::ONE - ratio.unwrap_or(S::ONE).clamp(S::HALF, S::ONE);" },
+    Plant { name: "alpha_flock: neighbours up to 1.6 spacings (OLF)", figure: "flock",
+        file: "controller/src/laws/lattice/mod.rs",
+        right: "range_ratio: S::from_ratio(6, 5),",
+        wrong: "range_ratio: S::from_ratio(8, 5)," },
+    Plant { name: "orca: the whole change instead of a robot's share (FVM)", figure: "fvm-example",
+        file: "controller/src/orca/plane.rs",
+        right: "let point = own_velocity_mps + normal * (u * params.share);",
+        wrong: "let point = own_velocity_mps + normal * u;" },
+    Plant { name: "boids: headings that turn away from the mean (STA)", figure: "patterns",
+        file: "controller/src/laws/boids/mod.rs",
+        right: "let aligned = self.towards(heading, velocities);",
+        wrong: "let aligned = self.towards(heading, -velocities);" },
+];
+
+/// Builds each copy and runs the plant's figure with few seeds.
+pub fn run(s: &mut Session) {
+    for plant in &PLANTS {
+        s.report.step(&format!("a figure shows it: {}", plant.name), || is_shown(&s.repo, plant));
+    }
+}
+
+fn is_shown(repo: &Repo, plant: &Plant) -> Result<()> {
+    let (folder, target) = (repo.target.join("planted-laws"), repo.target.join("planted-laws-target"));
+    repo.plant(&folder, plant.file, plant.right, plant.wrong)?;
+    let mut build = repo.cargo("build --locked --release --package staya-lab --bin staya-lab");
+    execute(build.current_dir(&folder).env("CARGO_TARGET_DIR", &target))?;
+    let mut figure = repo.command(target.join("release/staya-lab"));
+    figure.args(["experiment", plant.figure, "--quick", "--restart", "--out"]).arg(folder.join("out"));
+    let output = figure.current_dir(&folder).output().context("cannot start staya-lab")?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    let verdict = said.lines().find(|line| line.contains("DOES NOT HOLD"));
+    if let (Some(verdict), Some(1)) = (verdict, output.status.code()) {
+        println!("{verdict}");
+        return Ok(());
+    }
+    print!("{said}{}", String::from_utf8_lossy(&output.stderr));
+    bail!("`{}` in {} leaves the figure {} as it is", plant.wrong, plant.file, plant.figure)
+}
