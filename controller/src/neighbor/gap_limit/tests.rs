@@ -89,6 +89,35 @@ fn a_body_with_inertia_approaches_a_wall_as_fast_as_it_can_brake() {
     assert!((v.x - room_m / 0.35).abs() < 1e-6, "{v:?}");
 }
 
+/// At 0.4 m/s a body with a lag of 0.25 s rolls on for 0.1 m.
+#[test]
+fn a_body_with_a_lag_leaves_a_wall_the_way_that_it_rolls_on() {
+    let body = Mover::new(1, [0.0; 3], f64::MAX).body;
+    let room_m = 0.14;
+    let x = RADIUS_M + f64::from(ROUNDING_MM) / 1000.0 + room_m;
+    let wall = [Obstacle::Wall([Vec2::new(x, -1.0), Vec2::new(x, 1.0)])];
+    let step_m = |lag_s| {
+        let own_mps = Vec3::new(0.4, 0.0, 0.0);
+        let rule = GapLimit { lag_s, own_mps, ..still(&body, Position::ORIGIN, moment(1)) };
+        rule.before(&wall, Vec3::new(9.0, 0.0, 0.0)).x * body.step_s
+    };
+    assert!((step_m(0.0) - room_m).abs() < 1e-6 && (step_m(0.25) - (room_m - 0.1)).abs() < 1e-6);
+}
+
+/// A neighbour that comes at 1 m/s, 0.5 m away after its step. It covers 0.25 m while it brakes at
+/// 2 m/s^2, and 0.2 m more with a lag of 0.2 s.
+#[test]
+fn a_neighbour_that_comes_nearer_is_left_the_way_on_which_it_stops() {
+    for (most, lag_s, stops_m) in [(f64::MAX, 0.4, 0.4), (2.0, 0.0, 0.25), (2.0, 0.2, 0.45)] {
+        let body = Mover::new(1, [0.0; 3], most).body;
+        let mut other = Mover::<f64>::new(2, [0.6 + 2.0 * RADIUS_M, 0.0, 0.0], most);
+        other.body.velocity_mps.x = -1.0;
+        let rule = GapLimit { lag_s, ..still(&body, Position::ORIGIN, moment(1)) };
+        let left_m = rule.limit_of(&mut other.news(0), STANDS_AFTER).0.left_m;
+        assert!((left_m - (0.5 - stops_m).min(0.25)).abs() < 0.01, "{left_m} of 0.5 m less {stops_m} m");
+    }
+}
+
 /// The ball of a lost robot may have moved, and the direction of its centre is as uncertain.
 #[test]
 fn the_direction_of_a_lost_robot_is_as_uncertain_as_its_place() {
