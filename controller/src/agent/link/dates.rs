@@ -107,6 +107,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::agent::AgentConfig;
+    use crate::geom::Position;
+    use crate::neighbor::Neighbor;
+    use crate::wire::{Beacon, Postcard};
     use proptest::prelude::*;
 
     const PACE: Pace = Pace { period: Duration::from_millis(100), latency: Duration::from_millis(50) };
@@ -177,6 +181,27 @@ mod tests {
         assert_eq!(next_beacon(8, 0), 8, "a beacon that is early");
         assert_eq!(next_beacon(u16::MAX, 1), 0);
         assert!(next_beacon(0, u16::MAX) < 1 << 14, "it does not look older");
+    }
+
+    #[test]
+    fn a_new_sender_replaces_one_that_is_in_no_table() {
+        let config = AgentConfig::<f32>::new(RobotId(9), 0.2, Duration::from_millis(100));
+        let mut link = Link::<f32, 3, Postcard, ()>::new(&config, Postcard);
+        for id in [1, 2, 3] {
+            link.note_sender(Sender::silent(RobotId(id)));
+        }
+        for id in [1, 3, 4] {
+            let beacon = Beacon::default();
+            let robot = Neighbor::from_beacon(RobotId(id), &beacon, <()>::ID, at(0));
+            let _ = link.table.put(robot, Position::ORIGIN, at(0), |_| false);
+        }
+        let mut note = |id| {
+            link.note_sender(Sender::silent(RobotId(id)));
+            let ids: std::vec::Vec<u32> = link.senders.iter().map(|known| known.id.0).collect();
+            ids
+        };
+        assert_eq!(note(4), [1, 3, 4]);
+        assert_eq!(note(3), [1, 4, 3], "once");
     }
 
     proptest! {
