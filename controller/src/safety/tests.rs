@@ -114,6 +114,19 @@ fn a_layer_chosen_at_run_time_acts_as_the_layer_itself() {
 }
 
 #[test]
+fn the_settings_of_a_layer_name_its_parameters() {
+    assert_eq!(LayerSettings::ALL.len(), all().len());
+    for (name, _) in LayerSettings::ALL {
+        let mut settings = LayerSettings::by_name(name).unwrap();
+        let mut rows = Vec::new();
+        settings.tables(&mut |table| rows.extend(table.table().iter().map(|row| row.name)));
+        let own = names(&mut settings.layer::<f64, 8>());
+        assert!(own.iter().all(|row| rows.contains(row)), "{name}: {own:?}, not {rows:?}");
+        assert_eq!((settings.is_none(), own.is_empty()), (rows.is_empty(), rows.is_empty()), "{name}");
+    }
+}
+
+#[test]
 fn only_layers_that_predict_have_balls_that_grow() {
     let grows = all().map(|safety| safety.inflation());
     assert_eq!(grows, [None, Some(INFLATION), Some(INFLATION), Some(INFLATION), None]);
