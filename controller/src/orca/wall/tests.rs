@@ -28,6 +28,16 @@ fn walls_ahead_beside_and_touching() {
     assert!(wall(forward, [v(f64::NAN, 0.0), v(1.0, 1.0)], 0.5, 1.0).is_none());
 }
 
+/// The velocity is nearer to the border of the disc at an end of the wall, which the side hides.
+#[test]
+fn beside_a_short_wall_its_side_counts() {
+    for y in [0.05, 0.25, 0.45] {
+        let plane = wall(v(1.9, y), [v(2.0, 0.0), v(2.0, 0.5)], 0.5, 1.0).unwrap();
+        assert!((plane.normal - v(-1.0, 0.0)).norm() < 1e-9, "{plane:?}");
+        assert!((plane.point.x - 1.5).abs() < 1e-9, "{plane:?}");
+    }
+}
+
 #[test]
 fn a_wall_without_a_radius_a_horizon_or_finite_ends_forbids_nothing() {
     let ends = [v(2.0, -1.0), v(2.0, 1.0)];
