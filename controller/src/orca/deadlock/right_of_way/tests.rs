@@ -134,6 +134,43 @@ fn rank_counts_robots_that_wait_nearer_to_the_door() {
 }
 
 #[test]
+fn robots_inside_a_passage_are_neither_before_nor_behind_it() {
+    let inside = |middle_m: f64, speed: f64| {
+        let gap = Gap { middle: Vec2::new(middle_m, 0.0), depth: 0.5, ..DOOR };
+        with_approach(gap, &[robot(4, [0.7, 0.0], [speed, 0.0])], |approach| approach.traffic())
+    };
+    for speed in [0.0, 0.3, -0.3] {
+        let traffic = inside(1.0, speed);
+        assert_eq!((traffic.rank, traffic.opposite, traffic.comes_out), (0, false, false), "{speed}");
+        assert_eq!((traffic.leads, traffic.against), (speed > 0.0, speed < 0.0), "{speed}");
+    }
+    assert!(!inside(0.3, 0.3).leads, "both are inside");
+}
+
+#[test]
+fn a_robot_at_a_tenth_of_the_top_speed_does_not_move() {
+    let seen = |x: f64, speed: f64| with_approach(DOOR, &[robot(9, [x, 0.0], [speed, 0.0])], |near| near.traffic());
+    let moves = |speed: f64| {
+        let (before, inside, behind) = (seen(0.6, speed), seen(1.0, speed), seen(1.5, speed));
+        if speed > 0.0 {
+            [before.leads, before.flows, inside.ahead, inside.leads]
+        } else {
+            [before.comes_out, before.flows, inside.against, behind.oncoming]
+        }
+    };
+    for slow in [0.05, -0.05] {
+        assert_eq!([moves(slow), moves(1.01 * slow)], [[false; 4], [true; 4]], "{slow}");
+    }
+}
+
+#[test]
+fn a_robot_beside_the_door_is_not_in_it() {
+    for (y, is_inside) in [(0.0, true), (0.199, true), (0.2, false), (-0.199, true), (-0.2, false)] {
+        assert_eq!(seen(&[(9, [1.0, y], 0.3, Mode::Cruise)]).1, is_inside, "{y}");
+    }
+}
+
+#[test]
 fn robots_behind_the_door_are_opposite_unless_parked_or_leaving() {
     for (at, speed, mode, is_opposite) in [
         ([1.5, 0.0], 0.0, Mode::Cruise, true),
