@@ -26,6 +26,10 @@ fn field(obstacles: &[Obstacle<f64>], goal: V) -> Field<'_, f64> {
     field
 }
 
+fn point(center: V) -> Bend<f64> {
+    Bend { obstacle: None, center, radius: 0.0 }
+}
+
 /// The lengths with the first obstacle on the left and on the right.
 fn lengths(obstacles: &[Obstacle<f64>], x: f64, y: f64) -> [Option<f64>; 2] {
     let field = field(obstacles, v(x, y));
@@ -43,6 +47,7 @@ fn a_free_way_is_straight() {
     let floor = Obstacle::Plane { normal: Vec3::new(-1.0, 0.0, 0.0), distance_m: 3.0 };
     assert_eq!(ahead(&[floor], 9.0, 0.0), None, "planes do not count");
     assert_eq!(ahead(&[ball(9.0, 0.0, 2.0)], 9.0, 0.0), None, "a goal in an obstacle");
+    assert!(field(&[ball(9.0, 0.0, 2.0)], v(9.0, 0.0)).is_free());
 }
 
 #[test]
@@ -94,11 +99,177 @@ fn the_side_is_kept_until_the_other_way_is_shorter_than_any_seen() {
     let mut course = Course::NEW;
     let wish = |course: &mut Course<f64>, y: f64| course.ahead(&[ball(5.0, y, 2.0)], v(10.0, 0.0), 1.0).unwrap().y;
     assert!(wish(&mut course, -0.5) > 0.0);
+    assert_eq!(course.changes, 0, "the first choice");
     assert!(wish(&mut course, 0.2) > 0.0, "now the other side is shorter, but not than the first way");
-    assert!(wish(&mut course, 1.5) < 0.0);
+    assert!(wish(&mut course, -1.5) > 0.0);
+    assert!(wish(&mut course, 1.0) > 0.0, "shorter than the first way, but not than the last one");
+    assert!(wish(&mut course, 1.8) < 0.0);
     assert_eq!(course.changes, 1);
     assert_eq!(course.ahead(&[], v(10.0, 0.0), 1.0), None);
     assert_eq!(course, Course::NEW);
+}
+
+/// The end of the wall is 2 m to the right, and the heading leads to the other one.
+#[test]
+fn a_robot_that_has_turned_often_turns_only_for_a_way_that_is_much_shorter() {
+    let turns = |left_m: f64, changes: u8, least: f64| {
+        let walls = [wall(3.0, -2.0, 3.0, left_m)];
+        let [right, left] = lengths(&walls, 6.0, 0.0).map(Option::unwrap);
+        let heading = v(0.6, 0.8);
+        let mut course = Course { heading, changes, least_m: right / least };
+        let ahead = course.ahead(&walls, v(6.0, 0.0), 1.0).unwrap();
+        (ahead.y < 0.0, right / left)
+    };
+    // The other way has 0.9 of the length of the shortest one seen.
+    assert!(turns(3.0, 0, 0.9).0 && turns(3.0, 3, 0.9).0 && !turns(3.0, 8, 0.9).0);
+    assert!(!turns(3.0, 0, 1.0).0 && !turns(3.0, 0, 1.1).0 && !turns(3.0, 8, 1.1).0);
+    // A longer one, but less than half as long as the present one, or less than 0.3 of it.
+    let [(far, half), (farther, third)] = [(9.0, 0.5), (20.0, 0.3)].map(|(left_m, most)| {
+        let (is_turned, share) = turns(left_m, 0, 2.0);
+        assert!(is_turned && share < most && share > most - 0.2, "{share}");
+        (turns(left_m, 8, 2.0).0, share)
+    });
+    assert!(!far && farther, "{half} {third}");
+    assert!(!turns(4.0, 0, 2.0).0, "{}", turns(4.0, 0, 2.0).1);
+}
+
+#[test]
+fn a_leg_with_exactly_its_room_meets_nothing() {
+    let leg = Leg::between(&point(V::ZERO), &point(v(4.0, 0.0))).unwrap();
+    // 5 m from its end.
+    for side in [1.0, -1.0] {
+        let meets = |room_m| {
+            let wall = leg.meets(&wall(7.0, 4.0 * side, 7.0, 9.0 * side), room_m);
+            [wall, leg.meets(&ball(7.0, 4.0 * side, 1.0), room_m - 1.0)].map(|place| place.is_some())
+        };
+        assert_eq!([meets(5.0), meets(5.001)], [[false; 2], [true; 2]]);
+    }
+}
+
+fn string(bends: &[(f64, f64, f64)], x: f64, y: f64) -> (f64, V) {
+    let bend = |&(x, y, radius): &(f64, f64, f64)| Bend { obstacle: Some(0), center: v(x, y), radius };
+    let ends = [(0.0, 0.0, 0.0), (x, y, 0.0)];
+    let all: List<_> = ends[..1].iter().chain(bends).chain(&ends[1..]).map(bend).collect();
+    Field::measure(&all).unwrap()
+}
+
+#[test]
+fn each_wall_of_a_row_is_passed_on_its_shorter_side() {
+    for side in [1.0, -1.0] {
+        let wall = |ax, ay: f64, bx, by: f64| wall(ax, ay * side, bx, by * side);
+        // The far end of the last one is nearer to the second one, but off the way.
+        let walls = [wall(5.0, -1.0, 5.0, 6.0), wall(12.0, -9.0, 12.0, 2.0), wall(13.0, 7.0, 22.0, -1.5)];
+        let room = 1.03 * side;
+        let ends = [(5.0, -side, room), (12.0, 2.0 * side, -room), (22.0, -1.5 * side, room)];
+        let (length, ahead) = string(&ends, 30.0, 0.0);
+        let field = field(&walls, v(30.0, 0.0));
+        let [best, other] = [side > 0.0, side < 0.0].map(|on_left| field.best(on_left).unwrap());
+        assert!((best.0 - length).abs() < 1e-9 && (best.1 - ahead).norm() < 1e-9, "{best:?} {length}");
+        assert!(other.0 > length);
+    }
+}
+
+/// Each with the side on which it is passed, and the bends of the string.
+#[test]
+fn around_obstacles_without_room_between_them_the_string_is_taut() {
+    const R: f64 = 1.03;
+    let scenes: [(&[Obstacle<f64>], bool, &[(f64, f64, f64)]); 9] = [
+        (&[ball(7.0, -2.5, 2.5), wall(7.5, -2.5, 10.5, 1.5)], false, &[(10.5, 1.5, -R)]),
+        (&[wall(2.0, -3.5, 12.0, 0.0), wall(13.0, 0.0, 4.5, 0.5)], false, &[(4.5, 0.5, -R), (13.0, 0.0, -R)]),
+        (
+            &[wall(3.0, 0.5, 11.5, 0.5), wall(11.5, 0.5, 5.0, 5.0), ball(12.5, 1.0, 1.0)],
+            true,
+            &[(3.0, 0.5, R), (12.5, 1.0, 1.0 + R)],
+        ),
+        (
+            &[wall(13.0, 2.5, 7.5, -5.0), wall(7.5, -5.0, 5.5, 1.0), ball(9.5, 2.5, 0.5)],
+            false,
+            &[(9.5, 2.5, -0.5 - R), (13.0, 2.5, -R)],
+        ),
+        (&[wall(13.5, -6.0, 8.0, 5.5), ball(8.0, 2.0, 2.5)], false, &[(8.0, 2.0, -2.5 - R)]),
+        (&[ball(9.0, -0.5, 2.5), wall(5.0, 1.0, 5.0, 4.5), wall(5.5, 2.0, 11.0, -6.0)], true, &[(9.0, -0.5, 2.5 + R)]),
+        // A bend that the string no longer needs lies before the last one.
+        (&[wall(4.5, -6.0, 11.5, 4.0), ball(13.5, 5.0, 2.0), wall(3.5, -0.5, 5.5, -1.0)], true, &[(4.5, -6.0, R)]),
+        // There is room between the first obstacle and the others.
+        (
+            &[ball(5.0, 4.0, 0.5), wall(7.5, 2.5, 7.5, 2.0), ball(6.0, -0.5, 2.0)],
+            false,
+            &[(6.0, -0.5, -2.0 - R), (5.0, 4.0, 0.5 + R), (7.5, 2.5, -R)],
+        ),
+        (
+            &[wall(11.0, 1.0, 7.5, -7.0), ball(8.5, 3.0, 1.5), wall(4.0, 4.0, 13.5, 4.0), wall(13.5, 4.0, 10.0, 4.5)],
+            false,
+            &[(4.0, 4.0, -R), (8.5, 3.0, -1.5 - R), (10.0, 4.5, -R), (13.5, 4.0, -R)],
+        ),
+    ];
+    for (obstacles, on_left, bends) in scenes {
+        for side in [1.0, -1.0] {
+            let mirrored = obstacles.iter().map(|obstacle| match *obstacle {
+                Obstacle::Wall([a, b]) => wall(a.x, a.y * side, b.x, b.y * side),
+                Obstacle::Ball { center_m, radius_m } => ball(center_m.x, center_m.y * side, radius_m),
+                Obstacle::Plane { .. } => *obstacle,
+            });
+            let mirrored: List<_> = mirrored.collect();
+            let bends: List<_> = bends.iter().map(|(x, y, radius)| (*x, *y * side, *radius * side)).collect();
+            let (length, ahead) = string(&bends, 16.0, 0.3 * side);
+            let best = field(&mirrored, v(16.0, 0.3 * side)).best(on_left == (side > 0.0)).unwrap();
+            assert!((best.0 - length).abs() < 1e-9, "{mirrored:?}: {} {length}", best.0);
+            assert!((best.1 - ahead).norm() < 1e-9, "{mirrored:?}");
+        }
+    }
+}
+
+#[test]
+fn a_goal_beside_an_obstacle_is_reached_around_it() {
+    for obstacle in [wall(13.5, -4.0, 13.5, 1.5), ball(13.5, 1.5, 2.0)] {
+        let [left, right] = lengths(&[obstacle], 16.0, 0.4).map(Option::unwrap);
+        assert!(left > 16.0 && right > 16.0 && left.min(right) < 17.5, "{left} {right}");
+    }
+    // Nearer to the end of the wall than the string usually is.
+    let (wall, goal) = ([wall(13.0, -4.0, 13.0, 0.0)], v(13.3, -0.4));
+    let near = 0.5 - 0.015 * 1.03;
+    let (length, _) = string(&[(13.0, 0.0, -near)], goal.x, goal.y);
+    assert!((lengths(&wall, goal.x, goal.y)[1].unwrap() - length).abs() < 1e-9);
+}
+
+#[test]
+fn a_turn_of_more_than_half_a_turn_counts_and_one_by_rounding_does_not() {
+    let tangent = |away: f64| libm::sqrt(away * away - 1.0);
+    for side in [1.0, -1.0] {
+        // Around a disc and back.
+        let (length, _) = string(&[(5.0, 0.0, side)], 0.0, 0.0);
+        let turn = core::f64::consts::PI + 2.0 * libm::asin(0.2);
+        assert!((length - 2.0 * tangent(5.0) - turn).abs() < 1e-9, "{length}");
+        // The disc is on the other side of the string.
+        let (length, _) = string(&[(5.0, 1.5 * side, side)], 10.0, 0.0);
+        assert!((length - 2.0 * tangent(libm::hypot(5.0, 1.5))).abs() < 1e-9, "{length}");
+    }
+}
+
+#[test]
+fn a_string_with_too_many_bends_counts_as_longer_than_it_is_known() {
+    let [one, _] = lengths(&[ball(70.0, 0.0, 65.0)], 150.0, 1.0).map(Option::unwrap);
+    for length in lengths(&polygon(70.0, 0.0, 65.0, 120), 150.0, 1.0).map(Option::unwrap) {
+        assert!(length > 1.5 * one && length < 2.0 * one, "{length} {one}");
+    }
+}
+
+#[test]
+fn walls_that_cross_leave_no_room_wherever_they_are() {
+    for at in [v(0.0, 0.0), v(30.0, -7.0), v(-4.0, 50.0)] {
+        let wall = |a: V, b: V| Obstacle::Wall([at + a, at + b]);
+        let one = wall(v(-9.0, -3.0), v(9.0, 3.0));
+        let is_closed = |other: Obstacle<f64>| {
+            let pair = [one, other];
+            let field = field(&pair, v(10.0, 0.0));
+            assert_eq!(field.is_closed(0, 1), field.is_closed(1, 0));
+            field.is_closed(0, 1)
+        };
+        assert!(is_closed(wall(v(-4.0, 9.0), v(5.0, -8.0))));
+        assert!(!is_closed(wall(v(-4.0, 9.0), v(-1.0, 2.0))));
+        assert!(is_closed(wall(v(-4.0, 9.0), v(-1.0, 1.5))));
+        assert!(!is_closed(wall(v(12.0, 9.0), v(12.0, -8.0))));
+    }
 }
 
 #[test]
@@ -147,6 +318,39 @@ proptest! {
             if let Some((got, exact)) = got.zip(exact).filter(|_| y.abs() > 0.01) {
                 prop_assert!((got - exact).norm() < 0.01, "{got:?} {exact:?}");
             }
+        }
+    }
+
+    /// The least distance is that of many places on the leg.
+    #[test]
+    fn a_leg_meets_what_comes_nearer_than_its_room(
+        [ax, ay, bx, by] in [-5.0..5.0_f64, -5.0..5.0, -5.0..5.0, -5.0..5.0],
+        [from_x, from_y, to_x, to_y] in [-5.0..5.0_f64, -5.0..5.0, -5.0..5.0, -5.0..5.0],
+        room in 0.3..2.0_f64, is_ball in any::<bool>(),
+    ) {
+        let obstacle = if is_ball { ball(ax, ay, bx.abs()) } else { wall(ax, ay, bx, by) };
+        let [from, to] = [(from_x, from_y), (to_x, to_y)].map(|(x, y)| point(v(x, y)));
+        let leg = Leg::between(&from, &to).unwrap();
+        let away = |x: f64| distance(&obstacle, leg.from + leg.unit * x).unwrap();
+        let least = (0..=200).map(|k| away(leg.length * f64::from(k) / 200.0)).fold(f64::MAX, f64::min);
+        let met = leg.meets(&obstacle, room);
+        if (least - room).abs() > 0.02 {
+            prop_assert_eq!(met.is_some(), least < room, "{} {}", least, room);
+        }
+        let near = met.filter(|_| !is_ball).map(|x| away(x.clamp(0.0, leg.length)));
+        prop_assert!(near.is_none_or(|away| away < room + 1e-9), "{near:?}");
+    }
+
+    #[test]
+    fn mirrored_walls_give_mirrored_ways(
+        ends in proptest::collection::vec([1.5..20.0_f64, -9.0..9.0, 1.5..20.0, -9.0..9.0], 1..3),
+    ) {
+        let [seen, mirrored] = [1.0, -1.0].map(|side| {
+            let walls: List<_> = ends.iter().map(|[a, b, c, d]| wall(*a, *b * side, *c, *d * side)).collect();
+            lengths(&walls, 24.0, 0.0)
+        });
+        for (one, other) in seen.iter().zip(mirrored.iter().rev()) {
+            prop_assert!((one.unwrap_or(0.0) - other.unwrap_or(0.0)).abs() < 1e-9, "{seen:?} {mirrored:?}");
         }
     }
 
