@@ -122,6 +122,7 @@ fn the_settings_of_a_layer_name_its_parameters() {
         settings.tables(&mut |table| rows.extend(table.table().iter().map(|row| row.name)));
         let own = names(&mut settings.layer::<f64, 8>());
         assert!(own.iter().all(|row| rows.contains(row)), "{name}: {own:?}, not {rows:?}");
+        assert_eq!(settings.flies(), rows.contains(&"downwash"), "{name}");
         assert_eq!((settings.is_none(), own.is_empty()), (rows.is_empty(), rows.is_empty()), "{name}");
     }
 }
