@@ -169,11 +169,13 @@ fn each_wall_of_a_row_is_passed_on_its_shorter_side() {
     }
 }
 
-/// Each with the side on which it is passed, and the bends of the string.
+/// Obstacles, the side on which the first one is passed, and the bends of the string.
+type Scene<'a> = (&'a [Obstacle<f64>], bool, &'a [(f64, f64, f64)]);
+
 #[test]
 fn around_obstacles_without_room_between_them_the_string_is_taut() {
     const R: f64 = 1.03;
-    let scenes: [(&[Obstacle<f64>], bool, &[(f64, f64, f64)]); 9] = [
+    let scenes: [Scene<'_>; 9] = [
         (&[ball(7.0, -2.5, 2.5), wall(7.5, -2.5, 10.5, 1.5)], false, &[(10.5, 1.5, -R)]),
         (&[wall(2.0, -3.5, 12.0, 0.0), wall(13.0, 0.0, 4.5, 0.5)], false, &[(4.5, 0.5, -R), (13.0, 0.0, -R)]),
         (
