@@ -308,7 +308,11 @@ impl<S: Scalar> Field<'_, S> {
                 None if path.len() == 2 && is_whole => self.outermost(index, on_left, &near, &leg),
                 None if path.len() == 2 => self.bend(index, on_left, &near),
                 None => {
-                    let cost = |bend: &Bend<S>| (bend.center - leg.from).norm() + (bend.center - leg.to()).norm();
+                    // The centre of a ball is as far from the leg on both sides.
+                    let cost = |bend: &Bend<S>| {
+                        let place = bend.center - leg.unit.perp() * bend.radius;
+                        (place - leg.from).norm() + (place - leg.to()).norm()
+                    };
                     let both = [true, false].map(|on_left| self.bend(index, on_left, &near));
                     let both = both.into_iter().flatten();
                     if core::mem::take(&mut is_other) {

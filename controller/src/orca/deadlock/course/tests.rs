@@ -257,6 +257,16 @@ fn a_string_with_too_many_bends_counts_as_longer_than_it_is_known() {
 }
 
 #[test]
+fn a_row_of_balls_is_passed_on_its_shorter_side() {
+    let best = |side: f64| {
+        let row = [6.0, 14.0, 22.0, 30.0].map(|x| ball(x, -1.5 * side, 2.0));
+        lengths(&row, 36.0, 0.0).into_iter().flatten().fold(f64::MAX, f64::min)
+    };
+    let [left, right] = [1.0, -1.0].map(best);
+    assert!((left - right).abs() < 1e-9 && left < 36.5, "{left} {right}");
+}
+
+#[test]
 fn walls_that_cross_leave_no_room_wherever_they_are() {
     for at in [v(0.0, 0.0), v(30.0, -7.0), v(-4.0, 50.0)] {
         let wall = |a: V, b: V| Obstacle::Wall([at + a, at + b]);
