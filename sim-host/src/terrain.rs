@@ -1,5 +1,5 @@
-//! `staya terrain generate | metrics | draw | model`: random terrain, statistics, pictures, tables of
-//! costs to go.
+//! `staya terrain generate | metrics | draw | model`: random terrain, statistics, pictures, tables
+//! of costs to go.
 
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand, ValueEnum};

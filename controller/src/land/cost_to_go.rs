@@ -54,7 +54,7 @@ pub struct Header {
     pub unit: u32,
 }
 
-/// Why bytes are no table.
+/// Why bytes are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum TableError {
@@ -79,7 +79,7 @@ impl Display for TableError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let again = "make it again with `staya terrain model`";
         match *self {
-            Self::NotATable => write!(out, "no table of costs to go: {again}"),
+            Self::NotATable => write!(out, "these bytes hold no costs to go: {again}"),
             Self::Version(version) => write!(out, "version {version} of the format; this reads {VERSION}: {again}"),
             Self::Field(byte) => write!(out, "the header's field at byte {byte} is out of range: {again}"),
             Self::Length { needed, found } => {
@@ -95,7 +95,7 @@ impl core::error::Error for TableError {}
 impl Header {
     /// Length of a table with this header, bytes.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn length(&self) -> usize {
         let [columns, rows] = self.nodes.map(usize::from);
         HEADER_LEN.saturating_add(columns.saturating_mul(rows).saturating_mul(3).div_ceil(2))
     }
@@ -104,7 +104,7 @@ impl Header {
     /// length; `None` if the bytes are too few or a field is out of range.
     #[must_use]
     pub fn write(&self, bytes: &mut [u8], mut count: impl FnMut(u8, u8) -> u16) -> Option<usize> {
-        let bytes = bytes.get_mut(..self.len())?;
+        let bytes = bytes.get_mut(..self.length())?;
         bytes.fill(0);
         let [columns, rows] = self.nodes;
         let [width, height] = self.cells;
@@ -164,8 +164,8 @@ impl Header {
                 return Err(TableError::Field(byte));
             }
         }
-        if bytes.len() != header.len() {
-            return Err(TableError::Length { needed: header.len(), found: bytes.len() });
+        if bytes.len() != header.length() {
+            return Err(TableError::Length { needed: header.length(), found: bytes.len() });
         }
         let stored = u32::from(number(CHECKED)) | u32::from(number(CHECKED.saturating_add(2))) << 16;
         if stored == checksum(bytes) { Ok(header) } else { Err(TableError::Damaged) }

@@ -305,9 +305,9 @@ fn a_robot_on_the_border_goes_on_whatever_the_length_of_its_step() {
         let own = Body { max_speed_mps: speed, step_s: 0.1, ..body() };
         let center = v(2.0 + radius + mm / 1000.0, 0.0);
         for angle in [0.05_f64, 0.7, 1.4, -0.3, -1.2] {
-            let wish = v(angle.cos(), angle.sin()) * speed;
+            let wish = v(libm::cos(angle), libm::sin(angle)) * speed;
             let step = push_out(&params(model, Evasion::Multiple), &own, wish, &[], &[ball(center, radius)]) * 0.1;
-            let least = speed * 0.1 * angle.sin().abs() * 0.4;
+            let least = speed * 0.1 * libm::sin(angle).abs() * 0.4;
             assert!(step.norm() >= least, "{case}, {angle} rad: {step:?}");
             let points = (0..=100).map(|k| (center - step * (f64::from(k) / 100.0)).norm() - radius);
             let nearest = points.fold(f64::MAX, f64::min);

@@ -148,7 +148,7 @@ fn moves_to_goal() -> std::vec::Vec<u16> {
 fn moves_by_table(goal: Cell, ticks_to_go: impl Fn(i16, i16) -> u16) -> Option<u32> {
     let (nodes, cells) = ([SIDE as u8; 2], [SIDE as u16; 2]);
     let header = Table { nodes, cells, origin: Cell::new(0, 0), goal: GOAL, unit: 256 * UNIT };
-    let mut bytes = std::vec![0; header.len()];
+    let mut bytes = std::vec![0; header.length()];
     header.write(&mut bytes, |x, y| ticks_to_go(x.into(), y.into())).expect("in range");
     let map = KnownMap::new(CostToGo::from_bytes(&bytes[..]).expect("sound"));
     let config = AgentConfig::new(RobotId(1), 0.0, TICK);

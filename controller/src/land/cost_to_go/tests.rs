@@ -11,7 +11,7 @@ const HEADER: Header =
     Header { nodes: [3, 2], cells: [9, 5], origin: Cell::new(-2, 3), goal: Cell::new(6, 7), unit: 256 * UNIT };
 
 fn written(header: &Header, count: impl FnMut(u8, u8) -> u16) -> Vec<u8> {
-    let mut bytes = vec![0xAA; header.len() + 5];
+    let mut bytes = vec![0xAA; header.length() + 5];
     let length = header.write(&mut bytes, count).expect("in range");
     bytes.truncate(length);
     bytes
@@ -127,7 +127,7 @@ proptest! {
         prop_assert!(CostToGo::from_bytes(&bytes[..]).is_err(), "a checksum by chance");
         let (origin, goal) = (Cell::new(origin.0, origin.1), Cell::new(goal.0, goal.1));
         let header = Header { nodes: [columns, rows], cells, origin, goal, unit };
-        let mut bytes = vec![0; header.len()];
+        let mut bytes = vec![0; header.length()];
         if header.write(&mut bytes, |x, y| u16::from(x) * 255 + u16::from(y)).is_some() {
             let table = CostToGo::from_bytes(bytes).expect("written");
             prop_assert!(table.at(Cell::new(x, y)) <= u64::from(unit) * u64::from(MOST));

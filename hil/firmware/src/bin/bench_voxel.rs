@@ -1,5 +1,6 @@
 //! Measures tables in flash: queries and half-planes of functional voxel models, whole steps of an
-//! agent under heavy load, and routes by a table of costs to go. Prints `case scalar calls median max`: instructions (on a board: clock cycles).
+//! agent under heavy load, and routes by a table of costs to go. Prints `case scalar calls median
+//! max`: instructions (on a board: clock cycles).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);

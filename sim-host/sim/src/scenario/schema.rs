@@ -232,8 +232,8 @@ table! {
         pub seed: Option<u64>;
         /// Planning radius, cells in each direction, 1 to 16, at least `grid.radius`. Default: 16.
         pub radius: Option<u8>;
-        /// Robots keep, instead of the map, a table of costs to go to their goals of at most so many
-        /// bytes, 32 to 65536.
+        /// Most bytes of a table of costs to go to its goal, which each robot keeps instead of the
+        /// map, 32 to 65536. Default: none.
         pub model_bytes: Option<u32>, 32.0..=65536.0, "bytes";
     }
 }

@@ -56,7 +56,7 @@ pub fn cost_to_go(
     let highest = fitted.iter().copied().fold(1.0, f64::max);
     let unit = (highest * 256.0 / f64::from(MOST)).ceil().max(1.0) as u32;
     let header = Header { nodes, cells, origin: Cell::new(0, 0), goal, unit };
-    let mut table = vec![0; header.len()];
+    let mut table = vec![0; header.length()];
     let count = |column: u8, row: u8| {
         let at = usize::from(row) * usize::from(nodes[0]) + usize::from(column);
         (fitted[at].max(0.0) * 256.0 / f64::from(unit)).round() as u16
@@ -66,7 +66,8 @@ pub fn cost_to_go(
     Ok(CostToGo::from_bytes(Arc::from(table)).expect("just written"))
 }
 
-/// The land as the leader of a formation prices it, with the others at `entries`. O(cells x entries).
+/// The land as the leader of a formation prices it, with the others at `entries`. O(cells x
+/// entries).
 #[must_use]
 pub fn under(land: &Terrain, entries: &[TemplateEntry], footprint: Footprint) -> Terrain {
     const RADIUS: u8 = 127;
@@ -134,7 +135,7 @@ impl Fit {
             // Each node begins with the time of the nearest cell.
             for [dx, dy] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
                 let node = (y + dy) * columns + x + dx;
-                let away = (east - dx as f64).hypot(north - dy as f64);
+                let away = libm::hypot(east - dx as f64, north - dy as f64);
                 if away < nearest[node] {
                     (nearest[node], start[node]) = (away, Some(time as f64));
                 }
@@ -217,7 +218,7 @@ mod tests {
         let times = Planner::default().costs_to(&land, goal, MOVES.0, MOVES.1);
         let errors = |bytes: usize| {
             let table = cost_to_go(&land, goal, MOVES, bytes).expect("a way");
-            assert!(table.header().len() <= bytes && table.header().goal == goal);
+            assert!(table.header().length() <= bytes && table.header().goal == goal);
             let error = |at: usize| {
                 let cell = Cell::new((at % 60) as i16, (at / 60) as i16);
                 (ticks(&table, cell) - times[at] as f64 / f64::from(UNIT)).abs()

@@ -3,8 +3,8 @@
 //! File formats: [`movingai`] (`.map`, `.scen`), [`esri`] heights (`.asc`) through [`slope`], and
 //! [`ros`] (`.yaml` with `.pgm`; also the format that Staya writes). [`Terrain::load`] chooses by
 //! extension. [`generate`] creates random terrain, [`metrics`] measures it, [`change`] changes it
-//! during a run, and [`scouted`] creates incomplete maps of it. [`optimal`] finds routes on the whole
-//! map, [`known`] makes tables of them that robots carry.
+//! during a run, and [`scouted`] creates incomplete maps of it. [`optimal`] finds routes on the
+//! whole map, [`known`] makes tables of them that robots carry.
 
 pub mod change;
 pub mod esri;
