@@ -5,6 +5,11 @@
 //! the functional voxel method (FVM, figure 1a: the way by descent). 4096 bytes hold 52 x 52 nodes.
 //! All arithmetic is in integers, so that a route is the same on every target.
 //!
+//! 30 November 2026: nodes hold values, not planes as in `staya-voxel`. A plane takes 4 bytes, so
+//! 4 KiB would hold 32 x 32 of them, and a path by descent on such a model loses 1 to 3 %
+//! (`staya experiment fvm-path`), not 0.1 %. The law needs no gradient. It is a module of the
+//! controller because laws read it.
+//!
 //! | bytes | content |
 //! | --- | --- |
 //! | 0..4 | `CTG` and [`VERSION`] |
