@@ -122,7 +122,8 @@ pub(super) fn memory(draft: &Draft<'_>, robots: &[Robot], plane: Option<&PlaneSe
         None => robots.iter().map(|robot| land.center_m(robot.start)).map(|[x, y]| [x, y, 0.0]).collect(),
     };
     let (robots, cells) = (positions_m.len(), u64::from(land.width()) * u64::from(land.height()));
-    let bytes = robots as u64 * ROBOT_BYTES + cells * CELL_BYTES;
+    let table = draft.file.scouting.as_ref().and_then(|scouting| scouting.model_bytes).unwrap_or(0);
+    let bytes = robots as u64 * (ROBOT_BYTES + u64::from(table)) + cells * CELL_BYTES;
     let per_tick = 1.0 / f64::from(draft.step_ticks().max(1));
     let packets = radio::expected_bytes(&draft.file.radio, micros(draft.file.tick_s), per_tick, &positions_m);
     if has_memory(bytes.saturating_add(packets)) {

@@ -350,7 +350,7 @@ impl Scenario {
         };
         let maps = maps::sharing(draft, &kinds)?;
         let law = plane.map_or(&on_grid, |plane| &plane.general.law);
-        let (scouting, known) = scouting::scouting(draft, law, &kinds, land.as_ref())?;
+        let (scouting, known) = scouting::scouting(draft, law, &kinds, robots.len(), land.as_ref())?;
         let laws = Laws { on_grid, radius, usual_route: grid::usual_route(draft)?, maps };
         let terrain = land.unwrap_or_else(|| Terrain::flat(1, 1));
         check::memory(draft, &robots, plane, &terrain)?;

@@ -20,11 +20,20 @@ pub struct KnownLand {
     pub moves: (Norm, bool),
 }
 
+/// Most cells of all tables together: a quarter of an hour on one processor.
+const MOST_WORK: u64 = 1_000_000_000;
+
 /// The map that robots keep as it is, or as tables.
 type Known = (Option<Scouting>, Option<KnownLand>);
 
 /// Checks the table; `land` is `None` for robots that move without terrain.
-pub(super) fn scouting(draft: &Draft<'_>, law: &LawSetup, all: &[&LawSetup], land: Option<&Terrain>) -> Checked<Known> {
+pub(super) fn scouting(
+    draft: &Draft<'_>,
+    law: &LawSetup,
+    all: &[&LawSetup],
+    robots: usize,
+    land: Option<&Terrain>,
+) -> Checked<Known> {
     let Some(table) = &draft.file.scouting else { return Ok((None, None)) };
     let land = land.filter(|_| law.is_on_grid());
     let (Some(land), Some(terrain)) = (land, &draft.file.terrain) else {
@@ -49,7 +58,11 @@ pub(super) fn scouting(draft: &Draft<'_>, law: &LawSetup, all: &[&LawSetup], lan
     };
     let (map, grid) = (Arc::new(scouted.map(old)), &draft.file.grid);
     let Some(bytes) = table.model_bytes else { return Ok((Some(Scouting { map, sight: grid.radius }), None)) };
-    maps::plans_far(draft, all, "scouting.model_bytes")?;
+    let field = "scouting.model_bytes";
+    maps::plans_far(draft, all, field)?;
+    let what = format!("tables for {robots} robots, each from {width} x {height} cells, take hours to make");
+    let work = robots as u64 * u64::from(width) * u64::from(height);
+    draft.require(work <= MOST_WORK, field, what, "give fewer robots or less land: in all 1,000,000,000 cells")?;
     Ok((None, Some(KnownLand { map, bytes: bytes as usize, moves: (grid.norm, grid.corner_cutting) })))
 }
 

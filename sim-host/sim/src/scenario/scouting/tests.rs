@@ -90,5 +90,11 @@ fn a_model_takes_the_place_of_the_map_and_can_be_beside_shared_ones() {
     let scenario = scenario.expect("good");
     assert!(scenario.land.scouting.is_none() && scenario.laws.maps.is_some());
     let known = scenario.land.known.expect("a model");
+    let many = "[terrain]\nuniform = { width = 1000, height = 1100 }\n[robots.scattered]\ncount = 1000\n";
+    let message = parse(&format!("{many}[scouting]\nmodel_bytes = 400\n")).unwrap_err();
+    assert!(
+        message.contains("1000 robots, each from 1000 x 1100 cells") && message.contains("fewer robots"),
+        "{message}"
+    );
     assert_eq!((known.bytes, scenario.laws.radius, &*known.map), (400, 4, &scenario.land.terrain));
 }
