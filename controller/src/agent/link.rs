@@ -273,7 +273,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
                 return Q::Message::decode(Q::ID, *protocol, content)
                     .map(|message| Received::Message(id, message, None));
             }
-            Message::Ack(ack) if Q::Message::EXISTS && is_mine(ack.to) => {
+            Message::Ack(ack) if Q::Message::EXISTS => {
                 let _ = self.outgoing.acknowledged(header.sender, ack);
             }
             Message::Order(Addressed { to, number, protocol, content })

@@ -61,6 +61,24 @@ fn a_robot_that_is_not_heard_leaves_a_neighbour_all_of_its_path() {
     assert!(limit(false) <= 0.0, "{}", limit(false));
 }
 
+/// One neighbour is fresh, and `lost` ones were last heard `silent` ago.
+#[test]
+fn lost_robots_that_have_stood_for_long_say_nothing_of_the_radio() {
+    let body = Mover::<f64>::new(1, [0.0; 3], f64::INFINITY).body;
+    let now = moment(2_000);
+    let is_bad = |lost: u32, silent: Duration| {
+        let mut table = NeighborTable::<f64, 4>::new(Ages { stale_after: STEP, expire_after: STEP });
+        for id in 2..3 + lost {
+            let (age, trace) = if id == 2 { (Duration::ZERO, Trace::Heard) } else { (silent, Trace::Lost) };
+            let heard = Neighbor::from_beacon(RobotId(id), &Beacon::default(), ProtocolId::NONE, now - age);
+            let _ = table.put(Neighbor { trace, ..heard }, Position::ORIGIN, now, |_| false);
+        }
+        still(&body, Position::ORIGIN, now).is_bad(&table)
+    };
+    assert_eq!([1, 2].map(|lost| is_bad(lost, STEP.saturating_mul(10))), [false, true]);
+    assert_eq!([1, 2].map(|lost| is_bad(lost, STEP.saturating_mul(700))), [false, false]);
+}
+
 /// A velocity inside the cone, beside it, and one whose direction is known but for rounding.
 #[test]
 fn a_velocity_is_turned_until_its_approach_is_the_permitted_one() {
