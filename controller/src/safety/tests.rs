@@ -123,6 +123,7 @@ fn the_settings_of_a_layer_name_its_parameters() {
         let own = names(&mut settings.layer::<f64, 8>());
         assert!(own.iter().all(|row| rows.contains(row)), "{name}: {own:?}, not {rows:?}");
         assert_eq!(settings.flies(), rows.contains(&"downwash"), "{name}");
+        assert_eq!(settings.orca().is_some(), rows.contains(&"horizon_s"), "{name}");
         assert_eq!((settings.is_none(), own.is_empty()), (rows.is_empty(), rows.is_empty()), "{name}");
     }
 }

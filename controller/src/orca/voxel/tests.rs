@@ -58,7 +58,7 @@ impl Errors {
 }
 
 fn looked_up(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
-    half_plane_from_table(own, other, &PARAMS).unwrap()
+    VoxelTable2k.half_space(own, other, &PARAMS).unwrap()
 }
 
 /// Uses the nearest direction of the level below.
