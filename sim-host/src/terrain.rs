@@ -10,7 +10,7 @@ use staya_plot::terrain::{draw, scale_for};
 use staya_sim::record::{Files, write_atomically};
 use staya_sim::shown::Shown as _;
 use staya_sim::terrain::generate::{ByMetrics, Hills, LandPlan, by_metrics, natural_by, uniform};
-use staya_sim::terrain::known::{LEAST_BYTES, cost_to_go};
+use staya_sim::terrain::known::{LEAST_BYTES, MOST_BYTES, cost_to_go};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
 use staya_sim::terrain::optimal::Planner;
 use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
@@ -53,7 +53,7 @@ struct Model {
     #[arg(long, value_name = "X,Y", value_delimiter = ',', num_args = 1, allow_hyphen_values = true, required = true)]
     goal: Vec<i16>,
     /// Most bytes of the table.
-    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(LEAST_BYTES as i64..=65536))]
+    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(LEAST_BYTES as i64..=MOST_BYTES as i64))]
     bytes: u32,
     /// Length of diagonal moves.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]

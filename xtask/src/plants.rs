@@ -13,12 +13,8 @@ pub const SYMBOL: &str = "staya_panic_is_reachable";
 const COPY: &str = "planted";
 
 /// A mistake of the kind that people make.
-struct Plant {
-    name: &'static str,
-    file: &'static str,
-    /// Stands there once.
-    right: &'static str,
-    wrong: &'static str,
+struct Mistake {
+    plant: Plant,
     /// The program that must not link then.
     bin: &'static str,
     /// Whether that takes minutes.
@@ -27,32 +23,32 @@ struct Plant {
 
 /// Each kind of code that the proof is for.
 #[rustfmt::skip]
-const PLANTS: [Plant; 6] = [
-    Plant { name: "the UART's ring", file: "hil/firmware/src/ring.rs", bin: "lockstep", is_long: false,
+const MISTAKES: [Mistake; 6] = [
+    Mistake { bin: "lockstep", is_long: false, plant: Plant { name: "the UART's ring", file: "hil/firmware/src/ring.rs",
         right: "self.bytes.get(tail)?.load(",
-        wrong: "self.bytes[tail].load(" },
-    Plant { name: "the UART's interrupt", file: "hil/firmware/src/part/stm32f405.rs", bin: "lockstep", is_long: false,
+        wrong: "self.bytes[tail].load(" } },
+    Mistake { bin: "lockstep", is_long: false, plant: Plant { name: "the UART's interrupt", file: "hil/firmware/src/part/stm32f405.rs",
         right: "RECEIVED.push(byte);",
-        wrong: "RECEIVED.push(byte.checked_add(1).unwrap());" },
-    Plant { name: "start-up", file: "hil/firmware/src/part/stm32f405.rs", bin: "lockstep", is_long: false,
+        wrong: "RECEIVED.push(byte.checked_add(1).unwrap());" } },
+    Mistake { bin: "lockstep", is_long: false, plant: Plant { name: "start-up", file: "hil/firmware/src/part/stm32f405.rs",
         right: "    if !comes(|| RCC.cr().read().pllrdy()) {",
-        wrong: "    assert!(comes(|| RCC.cr().read().pllrdy()));\n    if false {" },
-    Plant { name: "lockstep itself", file: "hil/firmware/src/lockstep.rs", bin: "lockstep", is_long: false,
+        wrong: "    assert!(comes(|| RCC.cr().read().pllrdy()));\n    if false {" } },
+    Mistake { bin: "lockstep", is_long: false, plant: Plant { name: "lockstep itself", file: "hil/firmware/src/lockstep.rs",
         right: "fault::over_the_link(format_args!(\"stack overflow: all of {} bytes used\", stack::size()));",
-        wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());" },
-    Plant { name: "logs", file: "hil/firmware/src/log.rs", bin: "lockstep", is_long: false,
+        wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());" } },
+    Mistake { bin: "lockstep", is_long: false, plant: Plant { name: "logs", file: "hil/firmware/src/log.rs",
         right: "if let Some(place) = self.bytes.get_mut(self.used) {",
-        wrong: "{\n                let place = &mut self.bytes[self.used];" },
-    Plant { name: "an operator's orders", file: "controller/src/laws/guided.rs", bin: "nopanic_operator", is_long: true,
+        wrong: "{\n                let place = &mut self.bytes[self.used];" } },
+    Mistake { bin: "nopanic_operator", is_long: true, plant: Plant { name: "an operator's orders", file: "controller/src/laws/guided.rs",
         right: "self.wish = wish;",
-        wrong: "self.wish = [wish][core::hint::black_box(1)];" },
+        wrong: "self.wish = [wish][core::hint::black_box(1)];" } },
 ];
 
 /// Plants on the part whose firmware has them all; those that take minutes only if `all` is set.
 pub fn run(s: &mut Session, all: bool) {
-    for plant in PLANTS.iter().filter(|plant| all || !plant.is_long) {
-        let name = format!("a panic in {} does not link", plant.name);
-        s.with_toolchain(&name, STM32F405.target, |repo, toolchain| is_refused(repo, toolchain, STM32F405, plant));
+    for mistake in MISTAKES.iter().filter(|mistake| all || !mistake.is_long) {
+        let name = format!("a panic in {} does not link", mistake.plant.name);
+        s.with_toolchain(&name, STM32F405.target, |repo, toolchain| is_refused(repo, toolchain, STM32F405, mistake));
     }
 }
 
@@ -75,12 +71,12 @@ fn panicking_log(text: &str) -> Option<String> {
     PANICS.iter().map(|name| format!("defmt::{name}")).find(|name| text.contains(name))
 }
 
-fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) -> Result<()> {
+fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, mistake: &Mistake) -> Result<()> {
     let copy = repo.target.join(COPY);
-    repo.plant(&copy, plant.file, plant.right, plant.wrong)?;
+    repo.plant(&copy, &mistake.plant)?;
     let line = "build --locked --profile firmware --package staya-firmware --bin";
     let mut build = toolchain.cargo(repo, part.target, line);
-    build.arg(plant.bin).current_dir(&copy);
+    build.arg(mistake.bin).current_dir(&copy);
     println!("$ {}", shown(&build));
     let output = build.output().context("cannot start")?;
     ensure!(!output.status.success(), "it links");
@@ -106,7 +102,7 @@ mod tests {
     #[test]
     fn every_plant_has_its_place() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        for plant in &PLANTS {
+        for Mistake { plant, .. } in &MISTAKES {
             let text = files::read(&root.join(plant.file)).expect(plant.file);
             assert_eq!(text.matches(plant.right).count(), 1, "{}", plant.name);
         }

@@ -31,17 +31,7 @@ const AXIOMS: [&str; 3] = ["sig_forall_dec", "sig_not_dec", "functional_extensio
 /// An axiom in the modules that come along with the real numbers. No theorem uses it.
 const LOADED: &str = "classic";
 
-/// An error in the rule or in an assumption.
-struct Plant {
-    name: &'static str,
-    /// One of [`FILES`].
-    file: &'static str,
-    /// Stands there once.
-    right: &'static str,
-    wrong: &'static str,
-}
-
-/// Each part of the rule that the theorems depend on.
+/// Each part of the rule that the theorems depend on; `file` is one of [`FILES`].
 #[rustfmt::skip]
 const PLANTS: [Plant; 20] = [
     Plant { name: "share 6/10", file: "Invariant",
@@ -160,15 +150,16 @@ const CHANGES: [(&str, &str, &str); 15] = [
 /// the rule in Rust.
 pub fn run(s: &mut Session) {
     theorems_hold(s);
-    for change in &CHANGES {
-        s.report.step(&format!("noticed in Rust: {}", change.0), || is_noticed(&s.repo, change));
+    for (name, right, wrong) in CHANGES {
+        let plant = Plant { name, file: RULE, right, wrong };
+        s.report.step(&format!("noticed in Rust: {name}"), || is_noticed(&s.repo, &plant));
     }
 }
 
 /// Whether a test finds a decision that breaks a hypothesis, if the rule in Rust is changed.
-fn is_noticed(repo: &Repo, (_, right, wrong): &(&str, &str, &str)) -> Result<()> {
+fn is_noticed(repo: &Repo, plant: &Plant) -> Result<()> {
     let folder = repo.target.join("proof/rust");
-    repo.plant(&folder, RULE, right, wrong)?;
+    repo.plant(&folder, plant)?;
     let mut test = repo.cargo(TIE);
     test.current_dir(&folder).env("CARGO_TARGET_DIR", repo.target.join("proof/rust-target"));
     test.env("CARGO_PROFILE_DEV_OPT_LEVEL", "1");
@@ -180,7 +171,7 @@ fn is_noticed(repo: &Repo, (_, right, wrong): &(&str, &str, &str)) -> Result<()>
     }
     print!("{said}");
     ensure!(said.contains("1 passed"), "the test does not run");
-    bail!("the test still passes with `{wrong}`")
+    bail!("the test still passes with `{}`", plant.wrong)
 }
 
 fn theorems_hold(s: &mut Session) {
@@ -288,7 +279,7 @@ fn is_refused(repo: &Repo, whole: &Path, plant: &Plant) -> Result<()> {
     copy(repo, &folder)?;
     let source = folder.join(format!("{}.v", plant.file));
     let text = files::read(&source)?;
-    files::write(&source, planted(plant, &text)?)?;
+    files::write(&source, plant.planted(&text)?)?;
     let mut is_behind = false;
     for file in FILES {
         is_behind |= file == plant.file;
@@ -308,14 +299,6 @@ fn is_refused(repo: &Repo, whole: &Path, plant: &Plant) -> Result<()> {
         }
     }
     bail!("{}.v: the proof still passes with `{}`", plant.file, plant.wrong)
-}
-
-/// The text of a file with the error in it.
-fn planted(plant: &Plant, text: &str) -> Result<String> {
-    let Plant { file, right, wrong, .. } = plant;
-    ensure!(text.matches(right).count() == 1, "{file}.v: not once `{right}`: bring PLANTS up to date");
-    ensure!(right != wrong, "{file}.v: the error changes nothing");
-    Ok(text.replace(right, wrong))
 }
 
 /// Whether a step of a proof fails, and not merely the spelling of the error.
@@ -350,7 +333,7 @@ mod tests {
         assert_eq!(names.len(), PLANTS.len());
         for plant in &PLANTS {
             let text = files::read(&folder().join(format!("{}.v", plant.file))).expect(plant.file);
-            assert_ne!(planted(plant, &text).expect(plant.name), text);
+            assert_ne!(plant.planted(&text).expect(plant.name), text);
         }
     }
 
@@ -365,9 +348,9 @@ mod tests {
     #[test]
     fn error_that_changes_nothing_or_has_no_place_is_a_failure() {
         let plant = Plant { name: "", file: "Rule", right: "a", wrong: "b" };
-        assert_eq!(planted(&plant, "a c").ok().as_deref(), Some("b c"));
-        assert!(planted(&plant, "a a").is_err() && planted(&plant, "c").is_err());
-        assert!(planted(&Plant { wrong: "a", ..plant }, "a").is_err());
+        assert_eq!(plant.planted("a c").ok().as_deref(), Some("b c"));
+        assert!(plant.planted("a a").is_err() && plant.planted("c").is_err());
+        assert!(Plant { wrong: "a", ..plant }.planted("a").is_err());
     }
 
     #[test]

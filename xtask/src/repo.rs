@@ -21,6 +21,27 @@ impl Words for Command {
     }
 }
 
+/// An error that a command plants in a copy of a file: something else must notice it.
+pub struct Plant {
+    /// A name of the error.
+    pub name: &'static str,
+    pub file: &'static str,
+    /// Stands there once.
+    pub right: &'static str,
+    pub wrong: &'static str,
+}
+
+impl Plant {
+    /// The text of the file with the error in it.
+    pub fn planted(&self, text: &str) -> Result<String> {
+        let Self { file, right, wrong, .. } = self;
+        let times = text.matches(right).count();
+        ensure!(times == 1, "{file}: {times} times `{right}`: bring the list of errors up to date");
+        ensure!(right != wrong, "{file}: the error changes nothing");
+        Ok(text.replace(right, wrong))
+    }
+}
+
 /// The repository that this program was built from.
 pub struct Repo {
     /// Its top folder.
@@ -96,19 +117,10 @@ impl Repo {
         Ok(())
     }
 
-    /// A copy in which `right`, which stands once in a file, is changed to `wrong`.
-    pub fn plant(&self, to: &Path, file: &str, right: &str, wrong: &str) -> Result<()> {
-        let mut times = 0;
-        self.copy(to, |path, bytes| {
-            if path != Path::new(file) {
-                return bytes;
-            }
-            let text = String::from_utf8_lossy(&bytes);
-            times = text.matches(right).count();
-            text.replace(right, wrong).into_bytes()
-        })?;
-        ensure!(times == 1, "{file}: {times} times `{right}`: bring the list of changes up to date");
-        Ok(())
+    /// A copy with the error.
+    pub fn plant(&self, to: &Path, plant: &Plant) -> Result<()> {
+        let text = plant.planted(&files::read(&self.root.join(plant.file))?)?;
+        self.copy(to, |path, bytes| if path == Path::new(plant.file) { text.clone().into_bytes() } else { bytes })
     }
 
     /// A program that was built by the profile `debug` or `release`.

@@ -2,9 +2,9 @@
 //!
 //! A [`Tile`] stores the average cost of [`TILE`] x [`TILE`] cells and its age in one byte.
 //! [`LandMap`] keeps a square of tiles: own observations ([`LandMap::see`]) and received ones
-//! ([`LandMap::hear`]), sent as a [`LandPatch`] of 32 tiles ([`LandMap::say`]). [`Outlook`] is the
-//! cheapest path onwards from each tile; [`crate::route`] prices the exits of its window by it.
-//! [`CostToGo`] prices them by a table in flash, made from a map that is known before the mission.
+//! ([`LandMap::hear`]), sent as a [`LandPatch`] of 32 tiles ([`LandMap::say`]). Its
+//! [`Outlook`] has the cheapest path onwards from each tile; [`crate::route`] prices the exits of
+//! its window by it, or by [`CostToGo`], a table in flash, made from a map before the mission.
 //!
 //! The newer tile wins, of equally new ones the dearer, so that order and repetition of messages do
 //! not matter. Own observations override messages for a quarter of the lifetime of tiles. A message

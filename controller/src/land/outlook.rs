@@ -24,8 +24,8 @@ pub struct Gains {
 
 /// A source of knowledge about the land beyond the window.
 pub trait FarLand: Debug {
-    /// Calls `to` with the path to the cell `target` across the tiles, if any is known. O(T) for a
-    /// map of `T` tiles; 6 bytes per tile on the stack.
+    /// Calls `to` with the prices of paths to the cell `target`, if any are known. For a map of `T`
+    /// tiles O(T), with 6 bytes per tile on the stack.
     fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&dyn Outlook));
 
     /// Whether it covers all the land, so that a long detour can be right.

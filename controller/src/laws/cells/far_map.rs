@@ -76,7 +76,7 @@ impl<H: FarMap> FarMap for Option<alloc::boxed::Box<H>> {
 const PATIENCE: u8 = 32;
 
 /// Whether a map brings the robot nearer to its goal.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
     way: Option<(Cell, Cell)>,
     least: u64,

@@ -24,7 +24,7 @@ impl<const T: usize> SharedMap<T> {
     /// Creates an empty map.
     #[must_use]
     pub fn new(params: MapParams) -> Self {
-        Self { land: LandMap::new(), params, progress: Progress::default() }
+        Self { land: LandMap::new(), params, progress: Progress::NONE }
     }
 
     /// The map itself.

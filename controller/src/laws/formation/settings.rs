@@ -66,10 +66,10 @@ impl FormationSettings {
         law.sharpness(self.route.sharpness)
     }
 
-    /// How a leader prices the land under the others.
+    /// How a leader prices the land under the others, if it does.
     #[must_use]
-    pub const fn footprint(&self) -> Footprint {
-        if self.route.speed_mps.is_some() { Footprint::Dearest } else { Footprint::Mean(self.params.footprint) }
+    pub const fn footprint(&self) -> Option<Footprint> {
+        Footprint::of(self.params.footprint, self.route.speed_mps.is_some())
     }
 }
 

@@ -142,6 +142,19 @@ pub enum Footprint {
     Dearest,
 }
 
+impl Footprint {
+    /// For a formation on the grid by its `share`, sixteenths, `None` for 0; in the plane
+    /// (`is_rigid`) all robots move at one pace.
+    #[must_use]
+    pub const fn of(share: u8, is_rigid: bool) -> Option<Self> {
+        match (share, is_rigid) {
+            (0, _) => None,
+            (_, true) => Some(Self::Dearest),
+            (share, false) => Some(Self::Mean(share)),
+        }
+    }
+}
+
 /// Writes to `out` the formation's price of each cell of its leader within `radius` of `center`.
 ///
 /// The price combines the leader's cell and those of the others' visible and passable places, as

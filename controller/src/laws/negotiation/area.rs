@@ -183,7 +183,7 @@ impl Area {
             let step = Cell::new((center.x - self.center.x).signum(), (center.y - self.center.y).signum());
             self.center = self.center + step;
             self.version = self.version.wrapping_add(1);
-            // The column and the row that are new, and the border behind them.
+            // The column and the row that are added, and the border behind them.
             let edge = |at: i16, step: i16| [at + step * (HALF - 1), at + step * HALF].map(place);
             if step.x != 0 {
                 let columns = edge(self.center.x, step.x).into_iter().fold(0, |bits, column| bits | 1 << column);

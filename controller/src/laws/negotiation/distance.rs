@@ -19,7 +19,7 @@ impl Distances {
     /// Reaches nothing.
     pub const EMPTY: Self = Self { goal: Cell::new(0, 0), version: 0, low: [!0; SIDE], high: [!0; SIDE] };
 
-    /// Whether it holds for this goal and what is known.
+    /// Whether it holds for this goal and the known cells.
     #[must_use]
     pub fn is_for(&self, goal: Cell, area: &Area) -> bool {
         (self.goal, self.version) == (goal, area.version())

@@ -32,7 +32,7 @@ const REFUSALS: u8 = 4;
 const MOST_BLOCKED: usize = 2;
 const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
 
-/// What a robot says of itself in each step, before it decides; 14 bytes on the air.
+/// A robot's report on itself in each step, before it decides; 14 bytes on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Said {
     /// Where it is.
@@ -52,7 +52,7 @@ pub struct Said {
     pub manners: Manners,
 }
 
-/// What a robot broadcasts after it has heard the others in a step; at most 37 bytes on the air.
+/// A robot's broadcast after it has heard the others in a step; at most 37 bytes on the air.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
     /// Where it is.
@@ -91,7 +91,7 @@ struct Known {
 pub struct Negotiator<const N: usize, const F: usize> {
     id: RobotId,
     goal: Cell,
-    /// What it says; its goal is its own cell where it stays beside its goal.
+    /// Its report; its goal is its own cell where it stays beside its goal.
     own: Said,
     sight: Sight,
     moves: Moves,
@@ -105,7 +105,7 @@ pub struct Negotiator<const N: usize, const F: usize> {
     refused: u8,
     /// The cell that it did not get, and how often in a row without a word of a robot there.
     barred: (Cell, u8),
-    /// How it behaves by what it saw in this step, and how it promised to behave.
+    /// How it behaves after its view of this step, and how it promised to behave.
     manners: Manners,
     promised: Option<Manners>,
     /// As in [`Member::leaves_by`], in this step.
@@ -203,12 +203,12 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         Wish::new(cell, &self.area, distances, self.moves)
     }
 
-    /// What to say after a decision, before the next step: it is where it goes.
+    /// The report after a decision, before the next step: its next cell.
     pub fn promise(&mut self) -> Said {
         self.promise_of(self.chosen)
     }
 
-    /// What to say instead of a [`promise`](Self::promise) if it does not move after all.
+    /// The report instead of a [`promise`](Self::promise) if it does not move after all.
     pub fn stay(&mut self) -> Said {
         self.promise_of(Dir::Stay)
     }
@@ -344,7 +344,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
     }
 
-    /// What to broadcast after the others were heard.
+    /// The broadcast after the others were heard.
     #[must_use]
     pub fn report(&self) -> Report {
         let mut near: Vec<(u32, RobotId, Cell), N> = Vec::new();

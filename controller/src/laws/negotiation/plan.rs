@@ -33,7 +33,7 @@ impl Moves {
     }
 }
 
-/// What a robot thinks of the cells around it: two bits for each move. 0: nearer to its goal, 1: as
+/// A robot's view of the cells around it: two bits for each move. 0: nearer to its goal, 1: as
 /// far as its own cell, 2: farther, 3: closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Wish(#[serde(with = "fixint")] pub u16);
@@ -70,7 +70,7 @@ impl Wish {
     }
 }
 
-/// What a robot does to end a stalemate, in one step. The default is what it does otherwise.
+/// A robot's part in ending a stalemate, in one step. The default is its usual behaviour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "u8", into = "u8")]
 pub struct Manners {
@@ -299,7 +299,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             let own = self.member(top).cell;
             let next = turn.order.get(..usize::from(turn.count)).and_then(|order| order.get(usize::from(turn.tried)));
             let Some(dir) = next else {
-                // Nothing is free: it stays, and who asked tries another cell.
+                // Nothing is free: it stays, and the one that asked tries another cell.
                 self.go(top, own);
                 let Some(above) = turn.asked_by else { return };
                 if let Some(above) = self.turn(above) {

@@ -94,10 +94,9 @@ fn tables(scenario: &Scenario) -> Vec<Option<Table>> {
     different.dedup();
     let made = different.into_par_iter().map(|kind @ (goal, place)| {
         let law = place.map(|index| scenario.law(index));
-        let priced = law
-            .as_ref()
-            .and_then(LawSetup::formation)
-            .map(|settings| under(map, &settings.template.entries, settings.footprint()));
+        let priced = law.as_ref().and_then(LawSetup::formation).and_then(|settings| {
+            settings.footprint().map(|footprint| under(map, &settings.template.entries, footprint))
+        });
         (kind, cost_to_go(priced.as_ref().unwrap_or(map), goal, *moves, *bytes).ok())
     });
     let made: HashMap<_, _> = made.collect();

@@ -416,7 +416,11 @@ impl Scenario {
             "[study] has no effect on this run; `staya experiment` uses it with the figure that names this file"
                 .to_owned()
         });
-        key.chain(study).chain(self.plane().into_iter().flat_map(|setup| plane::remarks(self, setup))).collect()
+        let known = scouting::remark(self);
+        key.chain(study)
+            .chain(known)
+            .chain(self.plane().into_iter().flat_map(|setup| plane::remarks(self, setup)))
+            .collect()
     }
 
     /// The number of faults of the robot that has most of them.

@@ -15,6 +15,7 @@ use super::robots::RobotsTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
 use crate::terrain::generate::Hills;
+use crate::terrain::known::{LEAST_BYTES, MOST_BYTES};
 use crate::{choice, names, one_of, table};
 use staya_controller::grid::Norm;
 use std::path::PathBuf;
@@ -234,7 +235,7 @@ table! {
         pub radius: Option<u8>;
         /// Most bytes of a table of costs to go to its goal, which each robot keeps instead of the
         /// map, 32 to 65536. Default: none.
-        pub model_bytes: Option<u32>, 32.0..=65536.0, "bytes";
+        pub model_bytes: Option<u32>, LEAST_BYTES as f64..=MOST_BYTES as f64, "bytes";
     }
 }
 

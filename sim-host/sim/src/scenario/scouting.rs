@@ -2,7 +2,7 @@
 
 use super::law::LawSetup;
 use super::source::Checked;
-use super::{Draft, check, maps};
+use super::{Draft, Scenario, check, maps};
 use crate::terrain::Terrain;
 use crate::terrain::scouted::{Scouted, usual_class};
 use crate::world::scouts::Scouting;
@@ -61,9 +61,26 @@ pub(super) fn scouting(
     let field = "scouting.model_bytes";
     maps::plans_far(draft, all, field)?;
     let what = format!("tables for {robots} robots, each from {width} x {height} cells, take hours to make");
+    let is_wide = width.min(height) > 1;
+    draft.require(is_wide, field, "the land is one cell wide", "give wider land, or leave it out")?;
     let work = robots as u64 * u64::from(width) * u64::from(height);
     draft.require(work <= MOST_WORK, field, what, "give fewer robots or less land: in all 1,000,000,000 cells")?;
     Ok((None, Some(KnownLand { map, bytes: bytes as usize, moves: (grid.norm, grid.corner_cutting) })))
+}
+
+/// Robots without a table, as the map shows no way to their goals.
+pub(super) fn remark(scenario: &Scenario) -> Option<String> {
+    let known = scenario.land.known.as_ref()?;
+    let blocked = scenario.robots.iter().filter(|robot| !known.map.is_passable(robot.goal));
+    let ids: Vec<String> = blocked.map(|robot| robot.id.0.to_string()).collect();
+    let first = ids.iter().take(5).cloned().collect::<Vec<_>>().join(", ");
+    let rest = if ids.len() > 5 { ", ..." } else { "" };
+    (!ids.is_empty()).then(|| {
+        format!(
+            "scouting.model_bytes: {} robots plan without a table (robot {first}{rest}), as their goals are blocked on the map",
+            ids.len()
+        )
+    })
 }
 
 #[cfg(test)]

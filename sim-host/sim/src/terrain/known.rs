@@ -17,6 +17,8 @@ use thiserror::Error;
 const ROUNDS: usize = 30;
 /// Least length of a table, bytes: two nodes along each side.
 pub const LEAST_BYTES: usize = HEADER_LEN + 6;
+/// Greatest length of a table that is worth its flash; a choice.
+pub const MOST_BYTES: usize = 1 << 16;
 
 /// Why a table cannot be made.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]

@@ -199,13 +199,9 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         H: FarMap,
     {
         let GridWorkspace { field, land, .. } = workspace;
-        let shown = if self.formation.footprint == 0 || found.members.is_empty() {
-            None
-        } else {
-            let around = (cell, self.route.radius);
-            let footprint = if self.is_rigid { Footprint::Dearest } else { Footprint::Mean(self.formation.footprint) };
-            blended(window, around, &view.entries, footprint, land)
-        };
+        let footprint = Footprint::of(self.formation.footprint, self.is_rigid).filter(|_| !found.members.is_empty());
+        let around = (cell, self.route.radius);
+        let shown = footprint.and_then(|footprint| blended(window, around, &view.entries, footprint, land));
         let shown = shown.as_ref().unwrap_or(window);
         let others = input.on_grid().map(|neighbor| neighbor.cell);
         self.router.weights_over(&self.route, field, shown, (cell, target), others, self.map.land()).ok()

@@ -251,6 +251,9 @@ fn a_robot_with_a_map_goes_straight_to_an_unseen_door() {
     for bytes in [400, 66] {
         let with_table = ticks(&format!("[scouting]\nmap = \"old.map\"\nmodel_bytes = {bytes}\n"));
         assert!(with_table <= with_map + 2, "{with_table} by {bytes} bytes, {with_map} with a map");
+        // A map that is shared, too, does not take its place.
+        let both = ticks(&format!("[maps]\nshare = true\n[scouting]\nmap = \"old.map\"\nmodel_bytes = {bytes}\n"));
+        assert_eq!(both, with_table, "{bytes}");
     }
 }
 

@@ -89,6 +89,7 @@ fn a_model_takes_the_place_of_the_map_and_can_be_beside_shared_ones() {
     let scenario = parse(&format!("{LAND}[grid]\nradius = 4\n[maps]\nshare = true\n[scouting]\nmodel_bytes = 400\n"));
     let scenario = scenario.expect("good");
     assert!(scenario.land.scouting.is_none() && scenario.laws.maps.is_some());
+    assert!(scenario.remarks().is_empty());
     let known = scenario.land.known.expect("a model");
     let many = "[terrain]\nuniform = { width = 1000, height = 1100 }\n[robots.scattered]\ncount = 1000\n";
     let message = parse(&format!("{many}[scouting]\nmodel_bytes = 400\n")).unwrap_err();
@@ -97,4 +98,22 @@ fn a_model_takes_the_place_of_the_map_and_can_be_beside_shared_ones() {
         "{message}"
     );
     assert_eq!((known.bytes, scenario.laws.radius, &*known.map), (400, 4, &scenario.land.terrain));
+}
+
+#[test]
+fn robots_without_a_way_on_the_map_are_named_and_a_line_of_cells_is_refused() {
+    let dir = tempfile::tempdir().expect("a folder");
+    for (name, rows) in [("now.map", "....\n...."), ("old.map", "...@\n....")] {
+        let text = format!("type octile\nheight 2\nwidth 4\nmap\n{rows}\n");
+        std::fs::write(dir.path().join(name), text).expect("it can be written");
+    }
+    let text = "name = \"t\"\nticks = 9\n[terrain]\nfile = \"now.map\"\n[robots]\n\
+        list = [{ start = [0, 0], goal = [3, 1] }, { start = [1, 1], goal = [3, 0] }]\n\
+        [scouting]\nmap = \"old.map\"\nmodel_bytes = 64\n";
+    let scenario = Scenario::parse(text, &dir.path().join("t.toml"), &Overrides::default()).expect("good");
+    let remarks = scenario.remarks();
+    assert!(matches!(&remarks[..], [one] if one.contains("1 robots plan without a table (robot 1)")), "{remarks:?}");
+    let line = "[terrain]\nuniform = { width = 8, height = 1, classes = 4 }\n[robots]\n\
+        list = [{ start = [0, 0], goal = [7, 0] }]\n[scouting]\nmodel_bytes = 64\n";
+    assert!(parse(line).unwrap_err().contains("scouting.model_bytes: the land is one cell wide"));
 }
