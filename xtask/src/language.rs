@@ -6,7 +6,7 @@ use crate::prelude::*;
 use regex::{Regex, RegexBuilder};
 
 /// The most phrases that may break a rule.
-const BROKEN: usize = 40;
+const BROKEN: usize = 26;
 /// The most lines of comments and pages that exceed [`COLUMNS`].
 const LONG_LINES: usize = 0;
 /// The most words in all pages, without their code.
