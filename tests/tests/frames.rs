@@ -10,7 +10,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Addressed, Beacon, Broadcast, Bytes, Content as _, Frame, Header, LostRobot, Message, ProtocolId,
+    Ack, Addressed, Beacon, Broadcast, Bytes, Content as _, Frame, Header, LostRobot, Message, ProtocolId, Relayed,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;
@@ -23,7 +23,7 @@ fn bytes<const N: usize>(bytes: &[u8]) -> Bytes<N> {
     Bytes::from_slice(bytes).expect("fits")
 }
 
-fn messages() -> [(&'static str, Message, &'static str); 11] {
+fn messages() -> [(&'static str, Message, &'static str); 12] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {
         let (offset, entries) = (Cell::new(-6, 9), entries.iter().copied().collect());
@@ -48,6 +48,8 @@ fn messages() -> [(&'static str, Message, &'static str); 11] {
         protocol,
         payload,
     };
+    let Beacon { position_mm, radius_mm, mode, flock, payload, .. } = beacon.clone();
+    let said = Relayed { id: TO, age_cs: 12, position_mm, radius_mm, mode, flock, protocol, payload };
     let own = Beacon { mode: Mode::Hold, protocol: OWN, payload: bytes(&[1; 16]), ..Beacon::default() };
     let stop = GridMessage::Stop { origin: RobotId(9), valid_ms: 2_000 };
     let (protocol, content) = stop.encode(Grid::ID).expect("fits");
@@ -123,6 +125,12 @@ fn messages() -> [(&'static str, Message, &'static str); 11] {
                 radius_mm: 250,
             }),
             "x_mm=-1 y_mm=2000000 z_mm=3 radius_mm=250 age_cs=6553 robot=254 is_lost=1",
+        ),
+        (
+            "STAYA_RELAYED",
+            Message::Relayed(said),
+            "x_mm=12345 y_mm=-678901 z_mm=-2147483648 radius_mm=150 age_cs=12 robot=254 mode=5 flock=9 protocol=1 \
+             count=13 bytes=98,0,158,255,0,128,70,0,144,1,7,4,1,0,0,0",
         ),
     ]
 }

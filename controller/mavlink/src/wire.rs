@@ -11,7 +11,7 @@
 
 use crate::dialect::{
     STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LOST_DATA, STAYA_MESSAGE_DATA, STAYA_PLACE_DATA,
-    STAYA_TEMPLATE_DATA,
+    STAYA_RELAYED_DATA, STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
@@ -28,7 +28,7 @@ use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
     Ack, Addressed, Beacon, Broadcast, Bytes, Content, DecodeError, EncodeError, Frame, Header, LostRobot, MAX_CONTENT,
-    MAX_ORDER, MAX_PAYLOAD, Message, ProtocolId, Wire,
+    MAX_ORDER, MAX_PAYLOAD, Message, ProtocolId, Relayed, Wire,
 };
 
 /// The component of robots: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -145,6 +145,26 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
                 boot,
                 robot: system(lost.id)?,
                 is_lost: lost.is_lost.into(),
+            };
+            frame::encode(sender, &data, out)
+        }
+        Message::Relayed(said) => {
+            let [x_mm, y_mm, z_mm] = said.position_mm;
+            let (count, bytes) = padded(&said.payload);
+            let data = STAYA_RELAYED_DATA {
+                x_mm,
+                y_mm,
+                z_mm,
+                radius_mm: said.radius_mm,
+                age_cs: said.age_cs,
+                sequence,
+                boot,
+                robot: system(said.id)?,
+                mode: said.mode as u8,
+                flock: said.flock,
+                protocol: said.protocol.0,
+                count,
+                bytes,
             };
             frame::encode(sender, &data, out)
         }
@@ -284,6 +304,7 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
             };
             (data.boot, data.sequence, Message::Lost(lost))
         }
+        STAYA_RELAYED_DATA::ID => relayed(&body(&raw)?)?,
         _ => return Err(DecodeError::Foreign),
     };
     let header = Header { boot, sender: robot(raw.sender().system), sequence };
@@ -310,6 +331,21 @@ fn beacon(data: &STAYA_BEACON_DATA) -> Parts {
         payload: filled(data.count, &data.bytes)?,
     };
     Ok((data.boot, data.sequence, Message::Beacon(beacon)))
+}
+
+#[inline(never)]
+fn relayed(data: &STAYA_RELAYED_DATA) -> Parts {
+    let said = Relayed {
+        id: robot(data.robot),
+        age_cs: data.age_cs,
+        position_mm: [data.x_mm, data.y_mm, data.z_mm],
+        radius_mm: data.radius_mm,
+        mode: Mode::from_number(data.mode).ok_or(DecodeError::Body)?,
+        flock: data.flock,
+        protocol: ProtocolId(data.protocol),
+        payload: filled(data.count, &data.bytes)?,
+    };
+    Ok((data.boot, data.sequence, Message::Relayed(said)))
 }
 
 #[inline(never)]

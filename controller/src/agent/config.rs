@@ -52,6 +52,10 @@ pub struct AgentConfig<S> {
     pub contact_loss: ContactLossPolicy<S>,
     /// Limits on the values that other robots may report.
     pub plausibility: PlausibilityLimits<S>,
+    /// Frames behind each beacon that tell on what the robots said which the law needs, for members
+    /// of a formation that distance or land hides from each other. 0: none, and none are heard. A
+    /// frame must arrive within [`latency`](Self::latency) and a beacon period, or old states stay.
+    pub relays: u8,
     /// The own flock. A robot that [flocks](crate::flock) treats members of other flocks as
     /// obstacles.
     pub flock: u8,
@@ -77,6 +81,7 @@ impl<S: Scalar> AgentConfig<S> {
             message_valid: self.message_valid,
             contact_loss: self.contact_loss.cast(),
             plausibility: self.plausibility.cast(),
+            relays: self.relays,
             flock: self.flock,
         }
     }
@@ -122,6 +127,7 @@ impl<S: Scalar> AgentConfig<S> {
             message_valid: tick.saturating_mul(12),
             contact_loss: ContactLossPolicy::DEFAULT,
             plausibility: PlausibilityLimits::ANY,
+            relays: 0,
             flock: 0,
         }
     }

@@ -86,6 +86,7 @@ pub(super) struct ReceiveContext<'a, S> {
     pub(super) fastest_mps: Option<S>,
     pub(super) period: Duration,
     pub(super) latency: Duration,
+    pub(super) relays: u8,
     pub(super) plausibility: &'a PlausibilityLimits<S>,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
@@ -286,7 +287,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
                 let is_news = self.orders.is_news(header, number, subject);
                 return is_news.then_some(Received::Order(order, Receipt { header, number, subject }));
             }
-            Message::Lost(told) if listener.fastest_mps.is_some() => self.hear_told(id, told, now, listener, out),
+            Message::Lost(told) if listener.fastest_mps.is_some() => {
+                self.hear_told(id, told, None, now, listener, out);
+            }
+            Message::Relayed(said) if listener.relays > 0 => self.hear_relayed(id, said, now, listener, out),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     let held = KeyHeld { to: header.sender, generation, phase };
@@ -385,6 +389,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
     }
 
     /// Sends due messages, the beacon if it is due, then a broadcast and a told state if they fit.
+    /// Returns whether it sent a beacon.
     pub(super) fn speak(
         &mut self,
         now: Instant,
@@ -392,12 +397,13 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         beacon: Beacon,
         payload: impl FnOnce(&mut Radio<'_, Q>) -> Q::Payload,
         out: &mut Outputs<S>,
-    ) {
+    ) -> bool {
         if Q::Message::EXISTS {
             self.resend(now, out);
         }
         let period = config.beacon_period;
-        if !self.has_sent || now.has_reached(self.beacon_due, period) {
+        let is_beacon_due = !self.has_sent || now.has_reached(self.beacon_due, period);
+        if is_beacon_due {
             let own = Position::from_mm(beacon.position_mm);
             let mut outgoing = Outgoing::default();
             let payload = payload(&mut Radio::new(now, config.message_valid, &mut outgoing));
@@ -421,6 +427,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
         let message_due = if Q::Message::EXISTS { self.outgoing.poll_at(now) } else { None };
         out.call_again = message_due.filter(|due| due.is_before(self.beacon_due)).unwrap_or(self.beacon_due);
+        is_beacon_due
     }
 
     fn resend(&mut self, now: Instant, out: &mut Outputs<S>) {

@@ -185,6 +185,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 fastest_mps,
                 period: config.beacon_period,
                 latency: config.latency,
+                relays: config.relays,
                 plausibility: &config.plausibility,
                 needs: &|id| id == leader || id == config.id.duplicate() || law.needs(id),
             };
@@ -454,7 +455,10 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
         };
         let heading = last.heading;
         let payload = |radio: &mut Radio<'_, L::Protocol>| law.payload(&inputs.surroundings, heading, radio);
-        self.link.speak(now, config, beacon(config, mode, &inputs.state, velocity_mps), payload, out);
+        let has_sent = self.link.speak(now, config, beacon(config, mode, &inputs.state, velocity_mps), payload, out);
+        if has_sent {
+            self.link.relay(config.relays, |id| law.needs(id), now, out);
+        }
         let busy = inputs.surroundings.on_grid().map_or(Duration::ZERO, |grid| grid.cell.busy);
         let decision = now + if busy > Duration::ZERO { busy } else { config.tick };
         if decision.is_before(out.call_again) {

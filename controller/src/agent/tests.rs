@@ -453,6 +453,7 @@ mod payload;
 mod plane;
 mod protocol;
 mod relay;
+mod relayed;
 mod sealed;
 mod setup;
 mod sighted;

@@ -52,6 +52,13 @@ pub fn beacon() -> impl Strategy<Value = Beacon> {
     })
 }
 
+pub fn relayed() -> impl Strategy<Value = Relayed> {
+    (robot(), any::<u16>(), beacon()).prop_map(|(id, age_cs, beacon)| {
+        let Beacon { position_mm, velocity_mmps: _, radius_mm, mode, flock, protocol, payload } = beacon;
+        Relayed { id, age_cs, position_mm, radius_mm, mode, flock, protocol, payload }
+    })
+}
+
 fn addressed() -> impl Strategy<Value = Addressed> {
     (robot(), any::<u8>(), protocol(), bytes()).prop_map(|(to, number, protocol, content)| Addressed {
         to,
@@ -77,5 +84,8 @@ pub fn message() -> impl Strategy<Value = Message> {
     let lost = lost.prop_map(|(id, is_lost, age_cs, position_mm, radius_mm)| {
         Message::Lost(LostRobot { id, is_lost, age_cs, position_mm, radius_mm })
     });
-    prop_oneof![2 => beacon, 2 => law, 1 => ack, 1 => broadcast, 2 => order, 1 => lost, 1 => key, 1 => held]
+    let relayed = relayed().prop_map(Message::Relayed);
+    prop_oneof![
+        2 => beacon, 2 => law, 1 => ack, 1 => broadcast, 2 => order, 1 => lost, 1 => key, 1 => held, 1 => relayed
+    ]
 }

@@ -21,7 +21,7 @@
 //! Flash on a Cortex-M0 (`opt-level = "s"`): CRC table 512 bytes, [`encode`] and [`decode`] 7 KiB.
 
 use super::content::{MAX_CONTENT, MAX_ORDER, MAX_PAYLOAD};
-use super::message::{Ack, Addressed, Beacon, Broadcast, KeyAssignment, KeyHeld, LostRobot, Message};
+use super::message::{Ack, Addressed, Beacon, Broadcast, KeyAssignment, KeyHeld, LostRobot, Message, Relayed};
 use crate::robot::RobotId;
 use core::fmt;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
@@ -87,6 +87,11 @@ impl LostRobot {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 2 + 3 * 4 + 2;
 }
 
+impl Relayed {
+    /// Maximum length of its frame in bytes, with tag and delimiter.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 2 + 3 * 4 + 2 + 1 + 1 + 1 + 1 + MAX_PAYLOAD;
+}
+
 /// Maximum length of any frame in bytes, with tag and delimiter.
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
@@ -97,6 +102,7 @@ pub const MAX_FRAME_LEN: usize = {
         LostRobot::MAX_FRAME_LEN,
         KeyAssignment::MAX_FRAME_LEN,
         KeyHeld::MAX_FRAME_LEN,
+        Relayed::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();

@@ -91,6 +91,33 @@ pub struct LostRobot {
     pub radius_mm: u16,
 }
 
+/// What a robot of the own formation last said, told on to those that do not hear it: its beacon
+/// without the velocity. Robots send those of the robots that their law needs in turn, behind their
+/// beacons.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Relayed {
+    /// The robot.
+    pub id: RobotId,
+    /// Time since that beacon, hundredths of a second.
+    #[serde(with = "fixint")]
+    pub age_cs: u16,
+    /// Its position, mm.
+    #[serde(with = "fixint")]
+    pub position_mm: [i32; 3],
+    /// Its radius, mm.
+    #[serde(with = "fixint")]
+    pub radius_mm: u16,
+    /// Its activity.
+    pub mode: Mode,
+    /// The number of its flock.
+    pub flock: u8,
+    /// The protocol of its law.
+    pub protocol: ProtocolId,
+    /// The payload of its law.
+    pub payload: Bytes<MAX_PAYLOAD>,
+}
+
 /// The stages of a key change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -153,6 +180,8 @@ pub enum Message {
     Key(KeyAssignment),
     /// A robot's progress with its keys.
     KeyHeld(KeyHeld),
+    /// What another robot last said.
+    Relayed(Relayed),
 }
 
 impl Message {
@@ -160,7 +189,7 @@ impl Message {
     #[must_use]
     pub const fn addressee(&self) -> Option<RobotId> {
         let to = match self {
-            Self::Beacon(_) | Self::Broadcast(_) | Self::Lost(_) => return None,
+            Self::Beacon(_) | Self::Broadcast(_) | Self::Lost(_) | Self::Relayed(_) => return None,
             Self::Law(message) | Self::Order(message) => message.to,
             Self::Ack(ack) => ack.to,
             Self::Key(key) => key.to,

@@ -23,7 +23,7 @@ pub use frame::{
     decode_verified, encode, encode_tagged, frames,
 };
 pub use incoming::{IncomingMessages, IncomingOrders};
-pub use message::{Ack, Addressed, Beacon, Broadcast, KeyAssignment, KeyHeld, KeyPhase, LostRobot, Message};
+pub use message::{Ack, Addressed, Beacon, Broadcast, KeyAssignment, KeyHeld, KeyPhase, LostRobot, Message, Relayed};
 pub use newest::Newest;
 #[cfg(feature = "auth")]
 pub use operator::OperatorWire;

@@ -10,6 +10,7 @@ mod free;
 mod joint;
 mod optimum;
 mod process;
+mod touch;
 
 use staya_plot::Panels;
 use staya_sim::engine::{Moment, Outcome};
@@ -52,7 +53,7 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 9] = [
+pub const KINDS: [Kind; 10] = [
     free::KIND,
     flow::KIND,
     flock::KIND,
@@ -62,6 +63,7 @@ pub const KINDS: [Kind; 9] = [
     optimum::KIND,
     joint::KIND,
     foresight::KIND,
+    touch::KIND,
 ];
 
 /// Names and meanings of the measures of all probes.

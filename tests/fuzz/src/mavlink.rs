@@ -7,7 +7,7 @@ use staya_mavlink::mavlink_core::{Message as _, calculate_crc};
 use staya_mavlink::wire::{COMPONENT, decode, encode, next_frame};
 
 /// Ids of the swarm's messages.
-const IDS: [u32; 7] = [9_500_000, 9_500_002, 9_500_003, 9_500_004, 9_500_005, 9_500_006, 9_500_009];
+const IDS: [u32; 8] = [9_500_000, 9_500_002, 9_500_003, 9_500_004, 9_500_005, 9_500_006, 9_500_009, 9_500_010];
 
 /// Decodes the bytes as a radio stream and as the payload of an intact frame, without panics or
 /// lost bytes. An accepted message can be encoded, and its encoding is accepted.

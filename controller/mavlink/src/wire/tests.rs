@@ -101,7 +101,13 @@ fn any_message() -> impl Strategy<Value = Message> {
     let lost = lost.prop_map(|(id, is_lost, age_cs, position_mm, radius_mm)| {
         Message::Lost(LostRobot { id: robot(id), is_lost, age_cs, position_mm, radius_mm })
     });
-    prop_oneof![2 => beacon, 2 => law, 1 => broadcast, 1 => ack, 3 => built_in, 1 => other, 1 => lost]
+    let relayed = (any::<u8>(), any::<u16>(), beacon.clone()).prop_map(|(id, age_cs, beacon)| {
+        let Message::Beacon(beacon) = beacon else { unreachable!("it is a beacon") };
+        let Beacon { position_mm, radius_mm, mode, flock, protocol, payload, .. } = beacon;
+        let id = robot(id);
+        Message::Relayed(Relayed { id, age_cs, position_mm, radius_mm, mode, flock, protocol, payload })
+    });
+    prop_oneof![2 => beacon, 2 => law, 1 => broadcast, 1 => ack, 3 => built_in, 1 => other, 1 => lost, 1 => relayed]
 }
 
 /// Orders of built-in protocols in bytes that clients fill in by name otherwise.
@@ -218,6 +224,8 @@ fn invalid_fields_are_refused() {
         raw(&STAYA_MESSAGE_DATA { kind: TO_ONE, count: 35, ..message.clone() }),
         raw(&STAYA_MESSAGE_DATA { kind: ORDER, count: 35, ..message }),
         raw(&STAYA_LOST_DATA { is_lost: 2, ..STAYA_LOST_DATA::DEFAULT }),
+        raw(&STAYA_RELAYED_DATA { mode: 7, ..STAYA_RELAYED_DATA::DEFAULT }),
+        raw(&STAYA_RELAYED_DATA { count: 17, ..STAYA_RELAYED_DATA::DEFAULT }),
         raw(&STAYA_TEMPLATE_DATA { count: 3, ..STAYA_TEMPLATE_DATA::DEFAULT }),
     ];
     for bytes in bodies {

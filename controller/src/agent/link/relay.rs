@@ -6,6 +6,10 @@
 //! one of itself, of an id that two robots use, of one beyond
 //! [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown robot out of radio range, or
 //! at a place that the known robot cannot have reached.
+//!
+//! With [`relays`](crate::agent::AgentConfig::relays) it also tells on what the robots said that its
+//! law needs: so the members of a formation know each other's moves where hills or distance hide
+//! some of them.
 
 use super::audience::{Audience, Hearing};
 use super::dates::Sender;
@@ -18,7 +22,7 @@ use crate::neighbor::{Neighbor, Put, Trace};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use crate::wire::{Beacon, LostRobot, Wire};
+use crate::wire::{Beacon, Content as _, LostRobot, MAX_PAYLOAD, Message, Relayed, Wire};
 use serde::{Deserialize, Serialize};
 
 /// Beacons for each told state: after the start, while a robot is silent, and while none is.
@@ -46,13 +50,23 @@ pub(super) struct Relay {
     /// A robot of which another robot has told an old state, or that was just heard for the first
     /// time.
     urgent: RobotId,
+    /// The last robot in the turn of those whose words are told on.
+    relayed: RobotId,
     audience: Audience,
 }
 
 impl Relay {
     /// Each robot begins with those after itself, so that not all tell the same.
     pub(super) const fn new(own: RobotId) -> Self {
-        Self { beacons: 0, turn: 0, silent: own, any: own, urgent: RobotId::NONE, audience: Audience::NEW }
+        Self {
+            beacons: 0,
+            turn: 0,
+            silent: own,
+            any: own,
+            urgent: RobotId::NONE,
+            relayed: own,
+            audience: Audience::NEW,
+        }
     }
 
     /// Tells the state of this robot next, so that it knows that it is heard.
@@ -67,6 +81,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         &mut self,
         teller: RobotId,
         told: &LostRobot,
+        said: Option<&Relayed>,
         now: Instant,
         listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
@@ -84,7 +99,8 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let is_alive = !told.is_lost && told.radius_mm > 0;
         let mut heard = listener.heard_at - UNIT.saturating_mul(told.age_cs.into());
         if is_alive {
-            // Its velocity is not told, so it may have decided once more.
+            // Its velocity is not told, so it may have decided once more. On the grid the frame was
+            // under way for this long, or the state would get younger from robot to robot.
             heard = heard - listener.period;
         }
         let known = self.table.all().find(|known| known.id == id).copied();
@@ -94,7 +110,9 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         if let Some(known) = known
             && heard.since(known.heard) <= UNIT
         {
-            if known.heard.since(heard) > self.table.ages().stale_after {
+            // Of words that are told on one learns sooner who lacks them.
+            let late = if said.is_some() { listener.period.saturating_mul(2) } else { self.table.ages().stale_after };
+            if known.heard.since(heard) > late {
                 self.relay.urgent = id;
             }
             return;
@@ -102,12 +120,16 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let LostRobot { position_mm, radius_mm, .. } = *told;
         // A robot that was never heard is taken to give way.
         let mode = if is_alive { Mode::Cruise } else { Mode::Fault };
-        let beacon = Beacon { position_mm, radius_mm, mode, ..Beacon::default() };
+        let mut beacon = Beacon { position_mm, radius_mm, mode, ..Beacon::default() };
+        if let Some(Relayed { mode, flock, protocol, payload, .. }) = said {
+            beacon = Beacon { mode: *mode, flock: *flock, protocol: *protocol, payload: payload.clone(), ..beacon };
+        }
         let mut state = Neighbor::from_beacon(id, &beacon, Q::ID, heard);
         state.position = self.image(state.position, listener.position);
         let _ = listener.plausibility.cut(&mut state);
         let in_contact = known.filter(|known| !known.is_lost());
-        let is_near = self.table.is_within_reach(state.position.since(listener.position));
+        let is_on_grid = listener.fastest_mps.is_none();
+        let is_near = is_on_grid || self.table.is_within_reach(state.position.since(listener.position));
         state.trace = match (is_alive, is_near) {
             (false, _) => Trace::Lost,
             (true, true) => Trace::Told,
@@ -119,11 +141,15 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             if !is_alive || !is_within(state.position, &known, heard.since(known.heard), fastest_mps) {
                 return;
             }
-            let Neighbor { position, heard, radius_m, trace, .. } = state;
+            let Neighbor { position, heard, radius_m, trace, flock, mode, payload, .. } = state;
             state = Neighbor { position, heard, radius_m, trace, ..known };
+            if said.is_some() {
+                state = Neighbor { flock, mode, payload, ..state };
+            }
         } else {
             self.table.clear_lost(id);
-            let is_stored = told.is_lost || is_alive && is_near;
+            let is_wanted = is_near || said.is_some() && (listener.needs)(id);
+            let is_stored = told.is_lost || is_alive && is_wanted;
             if !is_stored {
                 return;
             }
@@ -134,6 +160,66 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             self.found(Sender::silent(id), put, now);
             report(out, Event::NeighborFound(id));
         }
+    }
+
+    /// Stores what another robot said, if it is newer.
+    pub(super) fn hear_relayed(
+        &mut self,
+        teller: RobotId,
+        said: &Relayed,
+        now: Instant,
+        listener: &ReceiveContext<'_, S>,
+        out: &mut Outputs<S>,
+    ) {
+        let Relayed { id, age_cs, position_mm, radius_mm, .. } = *said;
+        // A radius of 0 would clear the place.
+        let told = LostRobot { id, is_lost: false, age_cs, position_mm, radius_mm: radius_mm.max(1) };
+        self.hear_told(teller, &told, Some(said), now, listener, out);
+    }
+
+    /// Tells on what the robots said that the law needs: up to `count` of them, as far as frames fit.
+    /// The one with the lowest id, which all of a formation follow, comes each time, then one of
+    /// which another robot has told older words, then the others in turn; with a `count` of 1 all
+    /// come in turn. O(`count` N).
+    pub(in crate::agent) fn relay(
+        &mut self,
+        count: u8,
+        needs: impl Fn(RobotId) -> bool,
+        now: Instant,
+        out: &mut Outputs<S>,
+    ) {
+        let mut first = RobotId::NONE;
+        let mut urgent = core::mem::replace(&mut self.relay.urgent, RobotId::NONE);
+        for turn in 0..count {
+            let is_first = turn == 0 && count > 1;
+            let last = if is_first { RobotId::NONE } else { self.relay.relayed };
+            let is_other = |id: RobotId| id != first && needs(id);
+            let late = if is_first { None } else { self.said_after(last, |id| id == urgent && is_other(id), now) };
+            let is_late = late.is_some();
+            let Some(said) = late.or_else(|| self.said_after(last, is_other, now)) else { return };
+            if is_first {
+                first = said.id;
+            } else if is_late {
+                urgent = RobotId::NONE;
+            } else {
+                self.relay.relayed = said.id;
+            }
+            if self.say(&Message::Relayed(said), 0, out).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// What the robot with the next higher id said, or that with the lowest one.
+    fn said_after(&self, last: RobotId, needs: impl Fn(RobotId) -> bool, now: Instant) -> Option<Relayed> {
+        let is_recent = |age: Duration| age <= self.table.ages().expire_after;
+        let told = self.table.iter().filter(|known| needs(known.id) && known.age(now).is_some_and(is_recent));
+        let told = told.filter(|known| known.payload.is_some());
+        let known = told.min_by_key(|known| (known.id <= last, known.id))?;
+        let (protocol, payload) = known.payload.as_ref()?.encode::<MAX_PAYLOAD>(Q::ID)?;
+        let LostRobot { id, age_cs, position_mm, radius_mm, .. } = tell(known, now);
+        let Neighbor { mode, flock, .. } = *known;
+        Some(Relayed { id, age_cs, position_mm, radius_mm, mode, flock, protocol, payload })
     }
 
     /// Notes whether `teller` hears the own robot: a recent state of it, or of a robot that is

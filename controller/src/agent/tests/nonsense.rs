@@ -94,7 +94,7 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
             Message::Order(order) => order.to = if to == RobotId(1) { OWN } else { to },
             Message::Key(key) => key.to = to,
             Message::KeyHeld(held) => held.to = to,
-            Message::Beacon(_) | Message::Broadcast(_) | Message::Lost(_) => {}
+            Message::Beacon(_) | Message::Broadcast(_) | Message::Lost(_) | Message::Relayed(_) => {}
         }
         let header = Header { boot, sender, sequence };
         (header, message)

@@ -265,6 +265,8 @@ pub(crate) const fn is_over(until: Instant, now: Instant) -> bool {
 pub struct GridTask {
     goal: Option<Goal>,
     stops: Stops,
+    /// The robot to which messages for the leader go, as long as it is not heard itself.
+    pub(crate) next_hop: RobotId,
     /// The report, without the stops.
     pub shown: Report,
 }
@@ -278,7 +280,7 @@ enum Goal {
 
 impl GridTask {
     /// Without a goal.
-    pub const NEW: Self = Self { goal: None, stops: Stops::NONE, shown: Report::NONE };
+    pub const NEW: Self = Self { goal: None, stops: Stops::NONE, next_hop: RobotId::NONE, shown: Report::NONE };
 
     /// Takes in a goal; `offset` is the own place beside the top leader. False for other orders.
     pub fn order(&mut self, order: &GridOrder, offset: Cell) -> bool {
@@ -307,7 +309,8 @@ impl GridTask {
         let leader = self.shown.leader;
         if self.stops.receive(from, origin, valid_ms, radio.now()) && leader.is_some() && leader != origin {
             let valid = valid_ms.map_or(radio.valid, |millis| Duration::from_millis(millis.into()));
-            radio.send(leader, message, valid);
+            let to = if self.next_hop.is_some() { self.next_hop } else { leader };
+            radio.send(to, message, valid);
         }
     }
 

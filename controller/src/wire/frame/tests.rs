@@ -40,7 +40,7 @@ fn full<const N: usize>() -> Bytes<N> {
     Bytes::from_slice(&[0; N]).unwrap()
 }
 
-fn longest() -> [(Message, usize); 8] {
+fn longest() -> [(Message, usize); 9] {
     let addressed = || Addressed { to: LAST, number: 0, protocol: ProtocolId(0), content: full() };
     let broadcast = Broadcast { protocol: ProtocolId(0), content: full() };
     [
@@ -58,6 +58,7 @@ fn longest() -> [(Message, usize); 8] {
             KeyAssignment::MAX_FRAME_LEN,
         ),
         (Message::KeyHeld(KeyHeld { to: LAST, generation: 0, phase: KeyPhase::Hear }), KeyHeld::MAX_FRAME_LEN),
+        (Message::Relayed(Relayed { id: LAST, payload: full(), ..Relayed::default() }), Relayed::MAX_FRAME_LEN),
     ]
 }
 
@@ -70,6 +71,7 @@ fn bound(message: &Message) -> usize {
         Message::Lost(_) => LostRobot::MAX_FRAME_LEN,
         Message::Key(_) => KeyAssignment::MAX_FRAME_LEN,
         Message::KeyHeld(_) => KeyHeld::MAX_FRAME_LEN,
+        Message::Relayed(_) => Relayed::MAX_FRAME_LEN,
     }
 }
 

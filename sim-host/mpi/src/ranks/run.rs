@@ -209,7 +209,8 @@ impl<'a> Rank<'a> {
             elsewhere.extend(decode::<Vec<Sent>>(rank, "packets", &bytes)?);
         }
         let engine = &mut self.engine;
-        let carried = engine.radio.receive(tick, &engine.positions_m, &elsewhere, sent);
+        let land = engine.ground.view(tick).terrain;
+        let carried = engine.radio.receive(tick, &engine.positions_m, land, &elsewhere, sent);
         let packets = engine.count(refused, carried);
 
         let (ground, commands) = (part(&engine.ground), &engine.commands);

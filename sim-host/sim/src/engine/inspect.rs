@@ -103,6 +103,14 @@ pub struct Inspection {
 }
 
 impl Engine {
+    /// The robots that robot `index` knows and does not count as lost; none if it is down or
+    /// external. O(neighbours).
+    #[must_use]
+    pub fn known(&self, index: usize) -> Vec<RobotId> {
+        let agent = self.computers[index].agent.iter().filter(|_| self.is_up(index));
+        agent.flat_map(|agent| agent.neighbors()).map(|other| other.id).collect()
+    }
+
     /// Knowledge and next decision of robot `index`, by a step of a copy of its agent; empty if it
     /// is down or external.
     #[must_use]

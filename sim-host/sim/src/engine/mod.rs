@@ -286,7 +286,8 @@ impl Engine {
         let refused = self.decide();
         self.transmit();
         let sent = self.send();
-        let carried = self.radio.receive(self.tick, &self.positions_m, &[], sent);
+        let land = self.ground.view(self.tick).terrain;
+        let carried = self.radio.receive(self.tick, &self.positions_m, land, &[], sent);
         let packets = self.count(refused, carried);
 
         self.collisions += self.ground.advance(self.tick, &self.commands, &self.ages);

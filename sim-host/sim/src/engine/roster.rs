@@ -25,6 +25,7 @@ pub(super) struct Roster {
     key: Option<Key>,
     master: Option<Key>,
     plausibility: PlausibilityLimits<f32>,
+    relays: u8,
     torus: Option<Torus<f32>>,
     tracking: Option<TrackParams<f32>>,
     pub(super) tuned: Vec<Tuned>,
@@ -39,6 +40,7 @@ impl Roster {
             key: scenario.key().cloned(),
             master: scenario.key_rotation().map(|keeping| keeping.master.clone()),
             plausibility: scenario.trust.plausibility,
+            relays: scenario.radio.relays,
             torus: scenario.torus_m().map(|sides_m| Torus { size_m: sides_m.map(|side_m| side_m as f32) }),
             tracking: scenario.sensing().map(|sensing| sensing.tracking),
             tuned: Vec::new(),
@@ -47,7 +49,8 @@ impl Roster {
 
     /// Adds what all robots share to the configuration of one after `starts` restarts.
     pub(super) fn config(&self, config: AgentConfig<f32>, starts: u32) -> AgentConfig<f32> {
-        AgentConfig { boot: starts as u8, seed: self.seed, plausibility: self.plausibility, ..config }
+        let Self { seed, plausibility, relays, .. } = *self;
+        AgentConfig { boot: starts as u8, seed, plausibility, relays, ..config }
     }
 
     /// Creates the agent of robot `number` with a task after `starts` restarts; `previous` is its

@@ -17,13 +17,19 @@ use std::collections::HashMap;
 use std::fmt;
 use thiserror::Error;
 
-/// A run that can be saved.
+/// A run that can be saved, and that shows what its robots know.
 pub trait Saves {
     /// Appends the state of the run; see [`Engine::save`].
     ///
     /// # Errors
     /// See [`Engine::save`].
     fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError>;
+
+    /// The robots that robot `index` knows and does not count as lost. By default there are none.
+    fn known(&self, index: usize) -> Vec<RobotId> {
+        let _ = index;
+        Vec::new()
+    }
 }
 
 impl fmt::Debug for dyn Saves + '_ {
@@ -35,6 +41,10 @@ impl fmt::Debug for dyn Saves + '_ {
 impl Saves for Engine {
     fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError> {
         Self::save(self, bytes)
+    }
+
+    fn known(&self, index: usize) -> Vec<RobotId> {
+        Self::known(self, index)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Transmission of packets between MPI ranks.
 
 use super::{BLOCK, Counts, End, Inboxes, Radio, Receiver};
+use crate::terrain::Terrain;
 use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
 
@@ -38,12 +39,20 @@ impl Radio {
         })
     }
 
-    /// Second half of [`Radio::carry`]: delivers packets of this rank and from `elsewhere`.
-    pub fn receive(&mut self, tick: u32, positions_m: &[[f64; 3]], elsewhere: &[Sent], sent: Counts) -> Counts {
+    /// Second half of [`Radio::carry`]: delivers packets of this rank and from `elsewhere`; `land`
+    /// may stand in the way.
+    pub fn receive(
+        &mut self,
+        tick: u32,
+        positions_m: &[[f64; 3]],
+        land: Option<&Terrain>,
+        elsewhere: &[Sent],
+        sent: Counts,
+    ) -> Counts {
         if !self.receivers.is_empty() {
             self.medium.add(tick, elsewhere);
         }
-        self.deliver(tick, positions_m, sent)
+        self.deliver(tick, positions_m, land, sent)
     }
 
     /// Replaces the packet totals and returns the previous ones.

@@ -11,15 +11,17 @@ mod fault;
 mod late;
 mod medium;
 mod params;
+mod shadow;
 mod state;
 mod wire;
 
 #[doc(hidden)]
 pub use border::Sent;
-pub use params::{Burst, RadioFault, RadioParams};
+pub use params::{Burst, RadioFault, RadioParams, Shadow};
 pub(crate) use state::{End, Weather};
 pub use wire::{HostWire, LAST_START, PEERS, keep_up, operator, own_wire, ring_wire, wire};
 
+use crate::terrain::Terrain;
 use fate::{Fates, Verdict};
 use late::{Air, Late};
 use medium::Medium;
@@ -148,6 +150,7 @@ pub struct Radio {
     receivers: Vec<Receiver>,
     inboxes: Vec<Inboxes>,
     total: Counts,
+    shadow: Option<Shadow>,
 }
 
 /// Bytes of a packet, measured for beacons of both wire formats.
@@ -176,6 +179,7 @@ impl Radio {
             inboxes: vec![Inboxes::default(); receivers.len().div_ceil(BLOCK)],
             receivers,
             total: Counts::default(),
+            shadow: params.shadow,
         }
     }
 
@@ -235,7 +239,7 @@ impl Radio {
 
     /// Transmits the packets of `tick`: replaces all inboxes with the packets that arrive before
     /// the next tick, and returns this tick's statistics. `positions_m[i]` and `outbox(i)` belong
-    /// to robot `i`.
+    /// to robot `i`. Nothing stands in the way.
     ///
     /// O(n k) for k robots in range, in parallel; allocates 16 bytes per robot after warming up.
     ///
@@ -243,15 +247,16 @@ impl Radio {
     /// If there are fewer positions than robots.
     pub fn carry<'a>(&mut self, tick: u32, positions_m: &[[f64; 3]], outbox: impl Fn(usize) -> &'a [u8]) -> Counts {
         let sent = self.send(tick, positions_m, outbox);
-        self.deliver(tick, positions_m, sent)
+        self.deliver(tick, positions_m, None, sent)
     }
 
-    fn deliver(&mut self, tick: u32, positions_m: &[[f64; 3]], sent: Counts) -> Counts {
+    fn deliver(&mut self, tick: u32, positions_m: &[[f64; 3]], land: Option<&Terrain>, sent: Counts) -> Counts {
         let positions_m = &positions_m[..self.receivers.len()];
         if let Some(ticks) = self.fates.longest_ticks() {
             self.air.keep(tick, &self.medium, ticks);
         }
         let (medium, fates, air) = (&self.medium, &self.fates, &self.air);
+        let hills = self.shadow.and_then(|shadow| shadow.over(land));
         let blocks = (self.receivers.par_chunks_mut(BLOCK), positions_m.par_chunks(BLOCK), &mut self.inboxes);
         let received = blocks
             .into_par_iter()
@@ -260,6 +265,9 @@ impl Radio {
                 inboxes.bytes.clear();
                 let counts = receivers.iter_mut().zip(positions_m).map(|(receiver, &position_m)| {
                     medium.heard_at(position_m, receiver.id, heard);
+                    if let Some(hills) = hills {
+                        heard.retain(|&at| hills.are_below(medium.packet(at).from_m, position_m));
+                    }
                     receiver.receive(tick, medium, heard, (fates, air), inboxes)
                 });
                 counts.fold(Counts::default(), Add::add)

@@ -18,6 +18,20 @@ table! {
 }
 
 table! {
+    /// Land that stands in the way of the radio: a packet arrives if the straight line between the
+    /// two antennas passes above the land between the cells of the two robots.
+    #[derive(Copy, PartialEq)]
+    pub struct Shadow {
+        /// How much higher each class of the land is than the one below it, metres.
+        pub class_m: f64, 0.0..=1e6, "metres";
+        /// Height of the antennas above the land, metres.
+        pub antenna_m: f64, 0.0..=1e6, "metres";
+        /// Height of impassable cells, metres; `inf`: nothing passes. Default: inf.
+        pub wall_m: f64 = f64::INFINITY, 0.0..=f64::INFINITY, "metres";
+    }
+}
+
+table! {
     /// `[[radio.fault]]`: a fault of single radios or links, in addition to all other losses. A
     /// packet that several faults concern must pass each of them.
     #[derive(PartialEq)]
@@ -47,6 +61,8 @@ table! {
         pub format: Format = Format::Postcard;
         /// Farthest distance at which a packet can be received, metres; `inf` for unlimited range.
         pub range_m: f64 = 100.0, 0.0..=f64::INFINITY, "metres";
+        /// Land that stands in the way. Default: none does.
+        pub shadow: Option<Shadow>;
         /// Probability that a receiver loses a packet, 0 to 1.
         pub loss: f64 = 0.0, 0.0..=1.0, "probability";
         /// Bursts of loss, in addition to `loss`.
@@ -70,6 +86,9 @@ table! {
         pub bandwidth_bytes_per_s: Option<u32>;
         /// Spans `[from, to]` of seconds after the start during which every packet is lost.
         pub blackout_s: Vec<[f64; 2]> = Vec::new();
+        /// Packets behind each beacon in which the robots of a formation tell on what they hear of
+        /// each other, for those that distance or land hides. Default: 0.
+        pub relays: u8 = 0;
         /// Faults of single radios and links.
         pub fault: Vec<RadioFault> = Vec::new();
     }

@@ -60,6 +60,9 @@ pub(super) fn numbers(draft: &Draft<'_>, robots: &[Robot], intruders: usize) -> 
     Err(draft.error("radio.format", what, "give fewer robots or smaller numbers, or format = \"postcard\""))
 }
 
+/// As many as fit into an outbox behind a beacon.
+const MOST_RELAYS: f64 = 3.0;
+
 pub(super) fn radio(draft: &Draft<'_>) -> Checked {
     let radio = &draft.file.radio;
     if let Some(burst) = &radio.burst {
@@ -74,7 +77,15 @@ pub(super) fn radio(draft: &Draft<'_>) -> Checked {
         let is_span = *from >= 0.0 && from < to && to.is_finite();
         draft.require(is_span, &format!("radio.blackout_s[{index}]"), what, remedy)?;
     }
-    Ok(())
+    draft.within("radio.relays", radio.relays.into(), 0.0..=MOST_RELAYS, "packets")?;
+    let overtaken_ms = if radio.reorder > 0.0 { radio.reorder_ms } else { 0.0 };
+    let longest_ms = radio.delay_ms + radio.jitter_ms + overtaken_ms;
+    let is_quick = draft.file.plane.is_some() || longest_ms < draft.file.tick_s * 1000.0;
+    let what = format!("packets may take {} ms, longer than a tick, so old states would stay", short(longest_ms));
+    draft.require(radio.relays == 0 || is_quick, "radio.relays", what, "give shorter delays, or leave it out")?;
+    let has_land = draft.file.terrain.is_some() || draft.file.plane.is_none();
+    let what = "there is no land that could stand in the way";
+    draft.require(radio.shadow.is_none() || has_land, "radio.shadow", what, "give [terrain], or leave it out")
 }
 
 pub(super) fn radio_faults(draft: &Draft<'_>, robots: &[Robot]) -> Checked {

@@ -12,6 +12,7 @@ use crate::laws::cells::{
     TemplateAssembler, avoid_crossing,
 };
 use crate::list;
+use crate::neighbor::Trace;
 use crate::parameters::Parameters;
 use crate::robot::{Mode, RobotId};
 use crate::route::{RouteParams, Router};
@@ -264,6 +265,17 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.behind > self.formation.patience
     }
 
+    /// The robot that takes messages for the leader: the first of the formation that is heard, if
+    /// it comes before this one, passes them on. None if the leader is heard, or nobody is.
+    fn next_hop<S: Copy>(&self, input: &View<'_, S, Grid>) -> RobotId {
+        let is_heard = |id: RobotId| input.neighbor(id).is_some_and(|known| known.trace != Trace::Told);
+        if is_heard(self.leader) {
+            return RobotId::NONE;
+        }
+        let members = self.template.entries.iter().map(|entry| entry.id);
+        members.filter(|id| *id < input.id && is_heard(*id)).min().unwrap_or(RobotId::NONE)
+    }
+
     /// Returns a foreign robot in a neighbour's place, to be redirected (KUZ section 7).
     fn ask_surplus(&mut self, found: &Found<F>) -> Option<RobotId> {
         if found.more == 0 {
@@ -341,6 +353,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let found = find_neighbors(view, cell, self.formation.eps, seen.iter().copied());
         self.choose_leader(input, &found);
         let leader = self.leader;
+        self.task.next_hop = self.next_hop(input);
+        let upwards = if self.task.next_hop.is_some() { self.task.next_hop } else { leader };
         let guide = self.guide(input, view, cell, &seen);
         let goes_alone = guide.as_ref().is_some_and(|guide| self.has_lost_touch(guide));
         let guide = guide.filter(|_| !goes_alone);
@@ -350,7 +364,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let weights = if let Some(guide) = &guide {
             self.router.forget_route();
             if let Some(message) = self.ask_pace(input.id, guide.lag, valid) {
-                ask(leader, &message);
+                ask(upwards, &message);
             }
             if self.pace.waits() {
                 progress = Progress::Forming;
@@ -382,7 +396,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
                 progress = Progress::Waiting(Wait::Team);
             }
             if goes_alone && core::mem::take(&mut self.has_asked) {
-                ask(leader, &GridMessage::Resume { origin: input.id });
+                ask(upwards, &GridMessage::Resume { origin: input.id });
             }
             self.lead(input, &window, (cell, target), (&found, view), workspace)
         };
