@@ -13,6 +13,7 @@ mod counterexamples;
 mod duel;
 mod exhaustive;
 mod hypotheses;
+mod limits;
 mod passive;
 
 const STEP: Duration = Duration::from_millis(100);
