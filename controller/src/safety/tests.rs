@@ -1,6 +1,9 @@
 use super::*;
 use crate::geom::Vec2;
+use crate::grid::Norm;
+use crate::law::Around;
 use crate::orca::{AvoidParams, InSpace};
+use crate::parameters::Value;
 use crate::push_out::{Evasion, Model, PushOutParams};
 use crate::robot::{Mode, RobotId};
 use std::vec::Vec;
@@ -156,4 +159,66 @@ fn a_robot_waits_for_its_turn_at_a_door_in_the_plane_only() {
     let [none, plane, table, fly, push] = waits;
     assert_eq!([plane, table], [(false, true); 2]);
     assert_eq!([none, fly, push], [(false, false); 3]);
+}
+
+/// A body with a look-ahead of 0.74 s if each robot has a goal.
+fn around(brake_s: f32, has_goal: bool) -> Around {
+    Around {
+        radius_m: 0.2,
+        max_speed_mps: 1.0,
+        fastest_mps: 1.5,
+        brake_s,
+        has_goal,
+        cruise_mps: Some(1.0),
+        tolerance_m: 0.1,
+        delay_s: 0.1,
+        rate_hz: 10.0,
+        seed: 1,
+        radius: 5,
+        norm: Norm::default(),
+        corner_cutting: false,
+    }
+}
+
+#[test]
+fn values_that_are_not_given_follow_the_body() {
+    let longest = AvoidParams::<f32>::default().horizon_s;
+    let adapted = |name: &str, brake_s, has_goal| {
+        let mut layer = LayerSettings::by_name(name).unwrap();
+        layer.adapt(&|_| false, &around(brake_s, has_goal)).unwrap();
+        let OrcaSettings { params, inflation } = layer.orca().unwrap();
+        assert_eq!((inflation.growth_mps, inflation.max_m), (1.5, 0.2), "{name}");
+        params.horizon_s
+    };
+    for name in ["orca", "template_2k"] {
+        assert!((adapted(name, 0.7, true) - 0.74).abs() < 1e-6, "half a second and 1.2 radii");
+        assert_eq!([adapted(name, 0.9, true), adapted(name, 0.9, false)], [0.9, longest], "{name}");
+    }
+    assert_eq!([adapted("fly", 0.7, true), adapted("fly", 99.0, true)], [longest, 99.0]);
+    assert_eq!(AvoidParams::for_body(9.0_f32, 1.0).horizon_s, longest, "large bodies");
+}
+
+#[test]
+fn a_given_look_ahead_in_which_the_body_cannot_brake_is_a_contradiction() {
+    for name in ["orca", "template_2k", "fly"] {
+        let adapted = |horizon_s: f32| {
+            let mut layer = LayerSettings::by_name(name).unwrap();
+            let orca = layer.orca_mut().unwrap();
+            (orca.params.horizon_s, orca.inflation) = (horizon_s, INFLATION.cast());
+            let answer = layer.adapt(&|_| true, &around(0.9, true));
+            assert_eq!(
+                layer.orca().map(|orca| (orca.params.horizon_s, orca.inflation)),
+                Some((horizon_s, INFLATION.cast()))
+            );
+            answer.err().map(|wrong| (wrong.row, wrong.least))
+        };
+        let wanted = [Some(("horizon_s", Some(0.9))), None, None];
+        assert_eq!([0.89, 0.9, 0.91].map(adapted), wanted, "{name}");
+    }
+}
+
+#[test]
+fn a_switch_chooses_whether_only_the_nearest_robot_is_evaded() {
+    assert_eq!([1.0, 0.0].map(<Evasion as Value>::nearest), [Evasion::Single, Evasion::Multiple]);
+    assert_eq!([Evasion::Single, Evasion::Multiple].map(Value::number), [1.0, 0.0]);
 }

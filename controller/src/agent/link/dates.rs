@@ -201,6 +201,27 @@ mod tests {
         }
     }
 
+    #[test]
+    fn numbers_are_forgotten_before_they_wrap_after_half_an_hour_and_if_the_clock_has_wrapped() {
+        let config = AgentConfig::<f32>::new(RobotId(9), 0.2, Duration::from_millis(100));
+        let is_kept = |period_ms: i32, silence: Duration| {
+            let mut link = Link::<f32, 3, Postcard, ()>::new(&config, Postcard);
+            let now = at(2_000_000) + Duration::from_micros(1);
+            link.note_sender(Sender { sent: now - silence, ..heard() });
+            link.forget_numbers(now, Duration::from_millis(period_ms));
+            assert!(link.senders.iter().all(|sender| sender.id == RobotId(7)));
+            link.senders.iter().all(|sender| sender.window == heard().window)
+        };
+        let micro = Duration::from_micros;
+        let half_an_hour = 30 * 60 * 1_000_000;
+        // 8192 periods of 10 ms.
+        for (period_ms, longest_us) in [(10, 81_920_000), (1000, half_an_hour)] {
+            for (silence_us, wanted) in [(-1, false), (0, true), (longest_us, true), (longest_us + 1, false)] {
+                assert_eq!(is_kept(period_ms, micro(silence_us)), wanted, "{period_ms} ms, {silence_us} us");
+            }
+        }
+    }
+
     proptest! {
         #[test]
         fn frames_within_the_latency_are_not_delayed(early_ms in proptest::collection::vec(0_u32..=50, 1..60)) {

@@ -350,3 +350,6 @@ fn tell<S: Scalar, P>(known: &Neighbor<S, P>, now: Instant) -> LostRobot {
         radius_mm: u16::try_from(known.radius_m.to_milli().unwrap_or(0).max(0)).unwrap_or(u16::MAX),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -77,6 +77,8 @@ fn an_excessive_radius_or_speed_is_reduced_reported_once_and_always_counted() {
     let _ = robot.step(step_number(10), &frame(3, 10, &beacon(9000, |_| ())));
     let lie = beacon(9000, |beacon| beacon.radius_mm = 65_000);
     assert_eq!(claims(&robot.step(step_number(11), &frame(3, 11, &lie))), [(3, Claim::Radius)]);
+    let lie = beacon(9000, |beacon| beacon.velocity_mmps = [0, 3000, 0]);
+    assert_eq!(claims(&robot.step(step_number(12), &frame(3, 12, &lie))), [(3, Claim::Speed)]);
 }
 
 #[test]

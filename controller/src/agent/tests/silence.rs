@@ -106,3 +106,15 @@ fn acknowledgements_leave_room_for_the_beacon() {
         assert!(matches!(sent.last(), Some(Message::Beacon(_))), "{count}");
     }
 }
+
+#[test]
+fn a_nearer_robot_evicts_the_farthest_one_of_a_full_table() {
+    let mut robot = walker(&in_plane(1));
+    // It knows eight others at most.
+    for id in 2..10 {
+        let out = robot.step(step_number(id - 2), &said(id as u32, 0, 10_000 + 1000 * id));
+        assert_eq!(out.events.as_slice(), [Event::NeighborFound(RobotId(id as u32))]);
+    }
+    let out = robot.step(step_number(8), &said(10, 0, 5_000));
+    assert_eq!(out.events.as_slice(), [Event::NeighborEvicted(RobotId(9)), Event::NeighborFound(RobotId(10))]);
+}

@@ -8,6 +8,7 @@ fn three_of_four_lost() -> NeighborTable<f32, 4> {
     let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
     table.expire((&BODY, 0.1), at(5_000_001), (Duration::MAX, true), |_| {});
     assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
+    assert!(!table.is_empty() && table.len() == 1);
     table
 }
 

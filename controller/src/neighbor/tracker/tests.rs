@@ -362,3 +362,40 @@ fn an_anonymous_track_is_kept_for_the_closest_detection_with_an_id() {
     let _ = see(&mut tracker, &[named(9, 2.6, 0.0)], 1);
     assert_eq!(ids(&tracker), [RobotId(5), RobotId::local(1), RobotId(9)], "not another robot's track");
 }
+
+/// Robots 2 to 17, as many metres to the east, with and without beacons; then robot 18 at 1 m.
+fn displaced(has_beacons: bool) -> (Tracker<f64>, Table<f64>) {
+    let (mut tracker, mut table) = (Tracker::new(params()), NeighborTable::new(AGES));
+    let robots = 2..18_u32;
+    if has_beacons {
+        for id in robots.clone() {
+            let _ = table.put(heard(id, id.into(), 0.0, 0), Position::ORIGIN, at(0), |_| false);
+        }
+    }
+    let all: std::vec::Vec<_> = robots.map(|id| named(id, id.into(), 0.0)).collect();
+    assert_eq!(see(&mut tracker, &all, 0).new, 16);
+    assert_eq!(merge(&mut tracker, &mut table, 0), []);
+    assert_eq!(see(&mut tracker, &[named(18, 1.0, 0.0)], 1).new, 1);
+    assert!(!ids(&tracker).contains(&RobotId(17)));
+    (tracker, table)
+}
+
+#[test]
+fn a_robot_whose_track_was_replaced_is_gone_unless_its_beacons_are_recent() {
+    for has_beacons in [false, true] {
+        let (mut tracker, mut table) = displaced(has_beacons);
+        tracker.hear(&table, Position::ORIGIN);
+        let mut gone = std::vec::Vec::new();
+        tracker.forget(&mut table, at(1), |id| gone.push(id));
+        assert_eq!(gone.contains(&RobotId(17)), !has_beacons);
+        assert_eq!(table.get(RobotId(17), at(1)).known().is_some(), has_beacons);
+    }
+}
+
+#[test]
+fn a_beacon_of_a_robot_whose_track_was_replaced_begins_another_track() {
+    let (mut tracker, mut table) = displaced(false);
+    let _ = table.put(heard(17, 0.5, 0.0, 1), Position::ORIGIN, at(1), |_| false);
+    assert!(!merge(&mut tracker, &mut table, 1).contains(&RobotId(17)));
+    assert!(ids(&tracker).contains(&RobotId(17)) && table.get(RobotId(17), at(1)).known().is_some());
+}

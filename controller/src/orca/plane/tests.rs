@@ -345,3 +345,10 @@ fn shortest_vectors_still_give_half_planes() {
         assert!(reach == 0.0 || small.is_some_and(is_unit), "{reach} {off}");
     }
 }
+
+#[test]
+fn rounding_grows_with_the_speed_and_the_place() {
+    let at = |speed, x, y| rounding(speed, &HalfPlane { point: v(x, y), normal: v(1.0, 0.0) }) / (16.0 * f64::EPSILON);
+    assert_eq!([at(3.0, 4.0, 5.0), at(3.0, -4.0, 5.0), at(3.0, 4.0, -5.0)], [12.0; 3]);
+    assert_eq!(at(0.25, 0.25, 0.25), 1.0);
+}

@@ -304,3 +304,47 @@ proptest! {
         prop_assert!((fixed - exact).abs() < 4e-3, "{fixed} {exact}");
     }
 }
+
+#[test]
+fn half_planes_have_the_normals_of_the_table() {
+    let (own, other) = (v(0.9, 0.3), ball(v(3.1, 0.7), v(0.2, -0.1), 1.0));
+    let exact = half_plane(own, &other, &PARAMS).unwrap();
+    let found = looked_up(own, &other);
+    assert!(found.normal != exact.normal && (found.normal - exact.normal).norm() < 0.03, "{found:?} {exact:?}");
+}
+
+#[test]
+fn a_normal_does_not_turn_past_the_one_of_the_leg() {
+    let table = |normal: [i16; 2]| VelocityObstacleTable {
+        sines: &[0, ONE as u16],
+        directions: 2,
+        normals: match normal {
+            [0, _] => &[[0, ONE as i16]; 4],
+            _ => &[[ONE as i16, 0]; 4],
+        },
+    };
+    let one = ONE as i16;
+    // At a sine of 0.6, the leg's normal points back by as much.
+    assert!((table([0, one]).normal(0.6, v(1.0, 1.0)).unwrap() - v(-0.6, 0.8)).norm() < 1e-12);
+    assert_eq!(table([one, 0]).normal(0.6, v(1.0, 1.0)), Some(v(-1.0, 0.0)));
+}
+
+#[test]
+fn each_node_of_the_table_is_the_rounded_normal_of_the_disc_or_of_the_leg_beyond_it() {
+    let table = VoxelTable2k::TABLE;
+    assert_eq!((table.shape(), table.bytes(), ONE), ([20, 25], 20 * 2 + 20 * 25 * 4, 16_384));
+    let rounded = |x: f64| libm::floor(x * 16_384.0 + 0.5);
+    for level in 0..20_usize {
+        let (sin, cos) = Scalar::sin_cos(2.0 * libm::atan(level as f64 / 19.0));
+        let leg = [sin, cos].map(rounded);
+        let sine = libm::floor(leg[0] / libm::hypot(leg[0], leg[1]) * 16_384.0);
+        assert_eq!(f64::from(table.sines[level]), sine, "{level}");
+        for direction in 0..25_usize {
+            let x = direction as f64 / 24.0;
+            let disc = [x, 1.0 - x].map(|part| rounded(part / libm::hypot(x, 1.0 - x)));
+            let is_disc = disc[0] * leg[1] > disc[1] * leg[0];
+            let found = table.normals[level * 25 + direction].map(f64::from);
+            assert_eq!(found, if is_disc { disc } else { leg }, "{level} {direction}");
+        }
+    }
+}

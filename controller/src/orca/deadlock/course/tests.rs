@@ -154,6 +154,23 @@ fn string(bends: &[(f64, f64, f64)], x: f64, y: f64) -> (f64, V) {
 }
 
 #[test]
+fn the_outermost_bend_is_around_a_connected_obstacle_on_the_leg() {
+    let near = [point(V::ZERO), point(v(12.0, 0.0))];
+    let leg = Leg::between(&near[0], &near[1]).unwrap();
+    for (other, index) in [
+        (ball(5.0, 1.9, 1.0), 1),
+        // Off the leg, off the leg and not connected, and on it but not connected.
+        (ball(5.0, 2.5, 1.0), 0),
+        (ball(5.0, 8.0, 1.0), 0),
+        (ball(8.9, 1.95, 1.0), 0),
+    ] {
+        let obstacles = [ball(5.0, 0.0, 1.0), other];
+        let bend = field(&obstacles, v(12.0, 0.0)).outermost(0, false, &near, &leg).unwrap();
+        assert_eq!(bend.obstacle, Some(index), "{other:?}");
+    }
+}
+
+#[test]
 fn each_wall_of_a_row_is_passed_on_its_shorter_side() {
     for side in [1.0, -1.0] {
         let wall = |ax, ay: f64, bx, by: f64| wall(ax, ay * side, bx, by * side);

@@ -100,6 +100,9 @@ fn the_rest_of_a_way_is_its_length_around_the_next_corners() {
         let wanted = way + (v(x, 0.0) - [a, b, c][count - 1]).norm();
         assert!((rest(&walls, x, 0.0) - wanted).abs() < 1e-9, "{count} {x}: {}", rest(&walls, x, 0.0));
     }
+    // One end is near to the robot, but the way past the other one is shorter.
+    let slanted = [wall(1.406, 1.475, 4.094, -0.375)];
+    assert!((rest(&slanted, 10.0, 0.0) - 2.0 * v(5.0, 1.0).norm()).abs() < 0.01, "{}", rest(&slanted, 10.0, 0.0));
     // A corner that the robot is at does not count again.
     let at_corner = [wall(0.0, -0.1, 5.0, 9.0), wall(3.0, 0.5, 3.0, -0.5)];
     assert!(rest(&at_corner, 6.0, 0.0) > 6.0);

@@ -88,6 +88,16 @@ fn turns_are_measured_while_robots_pass() {
 }
 
 #[test]
+fn a_parked_robot_that_moves_back_through_the_door_is_waited_for() {
+    for (speed, idle) in [(-0.3, 0.0), (0.3, 0.0), (0.0, 3.0)] {
+        let mut memory = RightOfWay { idle: Some((3.0, 5.0)), ..RightOfWay::NEW };
+        let parked = Nearby { mode: Mode::Arrived, ..robot(9, [1.0, 0.0], [speed, 0.0]) };
+        let _ = wishes(&mut memory, &[parked], [4.0, 0.0], 1);
+        assert!(memory.idle.is_some_and(|(got, _)| (got - idle - 0.025 / 0.15).abs() < 1e-9), "{speed} {memory:?}");
+    }
+}
+
+#[test]
 fn patience_grows_with_the_rank() {
     let ahead = robot(9, [0.4, 0.0], [0.0; 2]);
     let opposite = robot(4, [1.7, 0.0], [0.0; 2]);
