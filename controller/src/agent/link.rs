@@ -484,3 +484,6 @@ pub(super) fn beacon<S: Scalar>(
         ..Beacon::default()
     }
 }
+
+#[cfg(test)]
+mod tests;

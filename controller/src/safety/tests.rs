@@ -132,6 +132,12 @@ fn the_settings_of_a_layer_name_its_parameters() {
 }
 
 #[test]
+fn push_out_keeps_a_wish_that_leads_near_no_robot() {
+    let wish = Vec3::new(0.5, -1.5, 2.5);
+    assert_eq!(push_out().keep_clear(&input(body(), wish, &[]), &mut Rng::new(1)), wish);
+}
+
+#[test]
 fn only_layers_that_predict_have_balls_that_grow() {
     let grows = all().map(|safety| safety.inflation());
     assert_eq!(grows, [None, Some(INFLATION), Some(INFLATION), Some(INFLATION), None]);

@@ -8,7 +8,7 @@ fn three_of_four_lost() -> NeighborTable<f32, 4> {
     let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
     table.expire((&BODY, 0.1), at(5_000_001), (Duration::MAX, true), |_| {});
     assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
-    assert!(!table.is_empty() && table.len() == 1);
+    assert!(!table.is_empty() && table.len() == 1 && (&table).into_iter().count() == 1);
     table
 }
 
@@ -23,6 +23,23 @@ fn lost_robots_that_fill_more_than_half_of_the_table_displace_only_each_other() 
     let mut known = full::<4>(now);
     assert_eq!(put(&mut known, gone(9, 0.5), now), Put::Evicted(RobotId(4)));
     assert_eq!((ids(&known), lost(&known)), ([1, 2, 3].into(), [9].into()));
+}
+
+#[test]
+fn a_known_robot_that_is_farther_than_too_many_lost_ones_stays() {
+    let now = at(5_100_000);
+    let mut table = three_of_four_lost();
+    assert_eq!(put(&mut table, standing(2, 50.0, now), now), Put::Updated);
+    let gone = Neighbor { trace: Trace::Lost, ..standing(9, 0.5, now) };
+    assert_eq!(put(&mut table, gone, now), Put::Inserted);
+    assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 9].into()));
+}
+
+#[test]
+fn four_fifths_of_the_reach_are_within_it() {
+    let table = NeighborTable::<f64, 4>::new(AGES).with_reach(10.0);
+    let is_within = |x: f64| table.is_within_reach(Vec3::new(0.6 * x, 0.8 * x, 0.0));
+    assert!(is_within(7.99) && !is_within(8.01));
 }
 
 #[test]

@@ -28,6 +28,8 @@ fn values_at_their_limit_are_plausible() {
     let any = PlausibilityLimits::<f64>::ANY;
     assert_eq!(cut(&any, 1e9, 1e9), ((false, false), 1e9, 1e9));
     assert_eq!(cut(&any, 0.1, f64::INFINITY).0, (false, false), "without a limit, no speed is too fast");
+    assert_eq!(any.cast::<f32>().max_speed_mps, f32::MAX);
+    assert_eq!(LIMITS.cast::<f32>().max_speed_mps, 2.0);
     let place = |mm: i32| Position::from_mm([0, mm, 0]);
     for (mm, millis, can_go) in [
         (2500, 1000, true),

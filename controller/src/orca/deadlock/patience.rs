@@ -110,6 +110,27 @@ mod tests {
     }
 
     #[test]
+    fn stuck_robots_back_off_by_two_to_four_radii_in_any_direction_but_ahead() {
+        let east = Vec2::new(0.5, 0.0);
+        let body = body::<f64, 2>(1, [0.0, 0.0]);
+        let situation = Situation { body: &body, wish: east, goal: Some(east), nearby: &[], obstacles: &[] };
+        let back = |seed: u32| {
+            // One step before its mean falls to 15 %.
+            let mut patience = Patience { course_mps: east * 0.15, left: 0.0 };
+            let way = patience.wish(&situation, east, 5.0, &mut Rng::keyed(1, 2, 3, seed));
+            (way, patience.left)
+        };
+        let all: Vec<_> = (0..200).map(back).collect();
+        let within = |values: &dyn Fn(&(Vec2<f64>, f64)) -> f64, low: f64, high: f64| {
+            let (least, most) = all.iter().map(values).fold((9.0, -9.0), |(a, b), x| (x.min(a), x.max(b)));
+            assert!((low..low + 0.1).contains(&least) && (high - 0.1..=high).contains(&most), "{least} {most}");
+        };
+        within(&|(way, _)| way.x, -0.5, 0.001);
+        within(&|(way, _)| way.y, -0.5, 0.5);
+        within(&|(_, left)| *left, 2.0, 4.0);
+    }
+
+    #[test]
     fn a_stuck_robot_backs_off_and_tries_again() {
         backs_off::<f64>();
         backs_off::<f32>();

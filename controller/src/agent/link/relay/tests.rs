@@ -1,5 +1,6 @@
 use super::*;
 use crate::agent::AgentConfig;
+use crate::geom::Vec3;
 use crate::neighbor::PlausibilityLimits;
 use crate::wire::Postcard;
 use std::vec::Vec;
@@ -85,19 +86,22 @@ fn told() -> LostRobot {
     LostRobot { id: RobotId(3), is_lost: false, age_cs: 0, position_mm: [4000, 0, 0], radius_mm: 300 }
 }
 
-fn hear(link: &mut Radio, told: &LostRobot, now: Instant) -> Outputs<f32> {
-    let mut out = Outputs::default();
-    let listener = ReceiveContext {
+fn listener<'a>(heard_at: Instant, latency: Duration) -> ReceiveContext<'a, f32> {
+    ReceiveContext {
         position: Position::ORIGIN,
-        velocity_mps: crate::geom::Vec3::ZERO,
-        heard_at: now,
+        velocity_mps: Vec3::ZERO,
+        heard_at,
         fastest_mps: Some(100.0),
         period: Duration::from_millis(100),
-        latency: Duration::from_millis(50),
+        latency,
         plausibility: &PlausibilityLimits::ANY,
         needs: &|_| false,
-    };
-    link.hear_told(RobotId(2), told, now, &listener, &mut out);
+    }
+}
+
+fn hear(link: &mut Radio, told: &LostRobot, now: Instant) -> Outputs<f32> {
+    let mut out = Outputs::default();
+    link.hear_told(RobotId(2), told, now, &listener(now, Duration::from_millis(50)), &mut out);
     out
 }
 
@@ -132,5 +136,20 @@ fn a_state_that_is_no_newer_changes_nothing_and_an_outdated_one_is_answered() {
         let mut link = knows(&[(3, 5, heard)], now);
         let _ = hear(&mut link, &told(), now);
         assert_eq!(link.relay.urgent == RobotId(3), is_urgent, "{more_us}");
+    }
+}
+
+#[test]
+fn only_states_that_arrive_in_time_say_that_the_own_robot_is_heard() {
+    let now = at(1000);
+    let stale = knows(&[], now).table.ages().stale_after;
+    for (late_us, hearing) in [(0, Hearing::Heard), (1, Hearing::Unclear)] {
+        let mut link = knows(&[], now);
+        link.relay.audience.tells_of_farther();
+        let latency = Duration::from_millis(50);
+        let heard_at = now - latency - stale - Duration::from_micros(late_us);
+        let listener = listener(heard_at, latency);
+        link.note_audience(RobotId(2), &LostRobot { id: RobotId(1), ..told() }, now, &listener);
+        assert_eq!(link.hearing(), hearing, "{late_us}");
     }
 }

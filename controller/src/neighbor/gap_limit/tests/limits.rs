@@ -208,6 +208,11 @@ fn a_silent_robot_is_in_a_ball_that_grows() {
         assert!(is_close(limit.growth_mps, growth_mps) && cone(&limit, ERROR_M + grown_m + 0.4, 1.95));
         assert!(is_close(lost.gap_m, 0.4), "its gap is not a bound any more");
     }
+    // Its age is four steps.
+    let growth_mps =
+        |parked_after| rule.limit_of(&mut comes(|other| other.trace = Trace::Lost), parked_after).0.growth_mps;
+    assert_eq!(growth_mps(STEP.saturating_mul(4)), 0.5);
+    assert_eq!(growth_mps(Duration::from_micros(4 * STEP.as_micros() - 1)), 0.0);
     let (limit, _) = rule.limit_of(&mut comes(|_| {}), STEP);
     assert!(is_close(limit.left_m, ball_m / 2.0), "one that is not lost never stands");
     // No velocity is known of one that another robot has told of.

@@ -129,6 +129,31 @@ fn the_first_wall_on_a_way_is_the_nearest() {
     assert_eq!(first(v(9.0, 0.5), 0.0, 0.5), Some(0), "backwards");
     assert_eq!(first(V::ZERO, 4.5, 0.0), None);
     assert_eq!(first(V::ZERO, 8.0, 5.0), Some(3));
+    // A slanted wall, 7 m ahead, and one across the way behind it.
+    let walls = [wall(8.0, 2.0, 8.0, 4.0), wall(8.0, 2.0, 6.0, 4.0)];
+    assert_eq!(first_wall(&walls, v(0.0, 3.0), v(10.0, 3.0)).map(|(index, _)| index), Some(1));
+}
+
+#[test]
+fn a_way_through_the_corner_of_two_walls_is_blocked_whatever_their_directions() {
+    let (low, corner, high) = (v(5.0, -1.0), v(5.0, 0.0), v(5.0, 1.0));
+    for one in [[low, corner], [corner, low]] {
+        for other in [[corner, high], [high, corner]] {
+            let crossed = [one, other].iter().filter(|ends| crosses(v(10.0, 0.0), **ends)).count();
+            assert_eq!(crossed, 1, "{one:?} {other:?}");
+        }
+    }
+}
+
+#[test]
+fn balls_are_round_and_walls_and_square_corners_are_not() {
+    let square = [wall(-3.0, 0.0, 0.0, 0.0), wall(0.0, 0.0, 0.0, 3.0)];
+    for radius_m in [0.2, 1.0] {
+        let is_round = |obstacles: &[Obstacle<f64>]| has_round(obstacles, radius_m);
+        assert!(!is_round(&[]) && !is_round(&square[..1]) && !is_round(&square));
+        assert!(is_round(&[ball(3.0, 0.0, 0.1)]));
+        assert!(!is_round(&[Obstacle::Plane { normal: Vec3::new(1.0, 0.0, 0.0), distance_m: 0.1 }]));
+    }
 }
 
 #[test]

@@ -121,3 +121,59 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn only_robots_that_move_back_neither_lead_nor_wait() {
+    // Beside the lane, towards the door: at a tenth of the top speed, 0.05 m/s, it moves back.
+    for (speed_ahead, leads) in [(0.0, true), (-0.049, true), (-0.05, false), (-0.06, false)] {
+        let nearby = [robot(9, [0.9, 0.4], [speed_ahead, -0.3])];
+        let traffic = with_approach(DOOR, &nearby, |approach| approach.traffic());
+        assert_eq!((traffic.leads, traffic.rank), (leads, i32::from(leads)), "{speed_ahead}");
+    }
+}
+
+#[test]
+fn the_first_waiting_robot_that_is_too_near_crowds() {
+    let crowds = |places: &[[f64; 2]]| {
+        let nearby: Vec<_> = places.iter().map(|at| robot(4, *at, [0.0; 2])).collect();
+        let traffic = with_approach(DOOR, &nearby, |approach| approach.traffic());
+        (traffic.is_behind, traffic.crowds)
+    };
+    assert_eq!(crowds(&[[0.53, 0.0]]), (false, None), "3.5 radii are 0.525 m");
+    assert_eq!(crowds(&[[0.52, 0.0]]), (true, None));
+    assert_eq!(crowds(&[[0.46, 0.0]]), (true, None), "three radii are 0.45 m");
+    let near = [Vec2::new(0.44, 0.0), Vec2::new(0.3, 0.1)];
+    assert_eq!(crowds(&[[0.44, 0.0], [0.3, 0.1]]), (true, Some(near[0])));
+    assert_eq!(crowds(&[[0.5, 0.0], [0.3, 0.1]]), (true, Some(near[1])));
+}
+
+#[test]
+fn inside_a_passage_the_way_leads_on_along_its_axis() {
+    let inside = Gap { middle: Vec2::new(0.2, -0.15), depth: 0.5, ..DOOR };
+    let way = |has_lanes| with_approach(inside, &[], |approach| approach.way_through(has_lanes));
+    assert!((way(false) - Vec2::new(0.3, 0.0)).norm() < 1e-9, "{:?}", way(false));
+    assert!((way(true) - Vec2::new(0.3, 0.1)).norm() < 1e-9, "{:?}", way(true));
+}
+
+#[test]
+fn one_that_stands_behind_the_gap_bars_a_robot_that_is_behind_it_too() {
+    let is_barred = |own_x: f64, at: [f64; 2], gives_way: bool| {
+        let gap = Gap { middle: Vec2::new(-own_x, 0.0), depth: 0.5, ..DOOR };
+        let nearby = [Nearby { gives_way, ..robot(9, at, [0.0; 2]) }];
+        with_approach(gap, &nearby, |approach| approach.is_barred_behind())
+    };
+    assert!(is_barred(0.7, [0.3, 0.0], false));
+    assert!(!is_barred(0.7, [0.3, 0.0], true) && !is_barred(0.7, [0.3, 0.4], false), "it gives way, or is aside");
+    assert!(!is_barred(0.7, [-0.5, 0.0], false), "that one is in the passage");
+    assert!(!is_barred(-0.2, [0.8, 0.0], false), "the own robot is in the passage");
+}
+
+#[test]
+fn the_nearer_one_of_two_that_come_from_both_sides_is_known() {
+    for (x, is_nearer) in [(1.3, true), (1.6, false)] {
+        let gap = Gap { middle: Vec2::new(0.5, 0.0), ..DOOR };
+        let nearby = [robot(9, [x - 0.5, 0.0], [-0.3, 0.0])];
+        let traffic = with_approach(gap, &nearby, |approach| approach.traffic());
+        assert_eq!((traffic.opposite_is_nearer, traffic.oncoming_is_nearer), (is_nearer, is_nearer), "{x}");
+    }
+}
