@@ -121,13 +121,13 @@ mod tests {
             (way, patience.left)
         };
         let all: Vec<_> = (0..200).map(back).collect();
-        let within = |values: &dyn Fn(&(Vec2<f64>, f64)) -> f64, low: f64, high: f64| {
-            let (least, most) = all.iter().map(values).fold((9.0, -9.0), |(a, b), x| (x.min(a), x.max(b)));
+        let within = |values: Vec<f64>, low: f64, high: f64| {
+            let (least, most) = values.into_iter().fold((9.0, -9.0), |(a, b), x| (x.min(a), x.max(b)));
             assert!((low..low + 0.1).contains(&least) && (high - 0.1..=high).contains(&most), "{least} {most}");
         };
-        within(&|(way, _)| way.x, -0.5, 0.001);
-        within(&|(way, _)| way.y, -0.5, 0.5);
-        within(&|(_, left)| *left, 2.0, 4.0);
+        within(all.iter().map(|(way, _)| way.x).collect(), -0.5, 0.001);
+        within(all.iter().map(|(way, _)| way.y).collect(), -0.5, 0.5);
+        within(all.iter().map(|(_, left)| *left).collect(), 2.0, 4.0);
     }
 
     #[test]
