@@ -189,18 +189,18 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         out: &mut Outputs<S>,
     ) {
         let mut first = RobotId::NONE;
-        let mut urgent = core::mem::replace(&mut self.relay.urgent, RobotId::NONE);
         for turn in 0..count {
             let is_first = turn == 0 && count > 1;
             let last = if is_first { RobotId::NONE } else { self.relay.relayed };
             let is_other = |id: RobotId| id != first && needs(id);
-            let late = if is_first { None } else { self.said_after(last, |id| id == urgent && is_other(id), now) };
+            let is_urgent = |id: RobotId| id == self.relay.urgent && is_other(id);
+            let late = if is_first { None } else { self.said_after(last, is_urgent, now) };
             let is_late = late.is_some();
             let Some(said) = late.or_else(|| self.said_after(last, is_other, now)) else { return };
             if is_first {
                 first = said.id;
             } else if is_late {
-                urgent = RobotId::NONE;
+                self.relay.urgent = RobotId::NONE;
             } else {
                 self.relay.relayed = said.id;
             }

@@ -94,17 +94,6 @@ pub(crate) fn detour<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, radi
     best.map(|(_, place)| place)
 }
 
-/// Whether there is a ball, or a corner so blunt that [`outside`] has no room. O(walls^2).
-pub(super) fn has_round<S: Scalar>(obstacles: &[Obstacle<S>], radius_m: S) -> bool {
-    let is_blunt =
-        |end: Vec2<S>| outside(obstacles, end, radius_m).is_some_and(|place| (place - end).norm() < radius_m);
-    obstacles.iter().any(|obstacle| match *obstacle {
-        Obstacle::Wall(ends) => ends.into_iter().any(is_blunt),
-        Obstacle::Ball { .. } => true,
-        Obstacle::Plane { .. } => false,
-    })
-}
-
 /// A place beyond the end of a wall, or of several that end there; `None` if they are in line.
 fn outside<S: Scalar>(obstacles: &[Obstacle<S>], end: Vec2<S>, radius_m: S) -> Option<Vec2<S>> {
     let near = radius_m * S::from_milli(50);

@@ -21,7 +21,6 @@ mod tests;
 
 pub(super) use course::Course;
 pub(crate) use detour::detour;
-use detour::has_round;
 pub(super) use patience::Patience;
 pub(super) use right_of_way::RightOfWay;
 pub(super) use spread::spread;
@@ -30,6 +29,7 @@ use super::AvoidParams;
 use super::dimension::Situation;
 use crate::geom::Vec2;
 use crate::neighbor::Nearby;
+use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
 
 /// A robot nearer than this is in the way, thousandths of the own radius.
@@ -46,7 +46,8 @@ pub(super) fn around<S: Scalar>(course: &mut Course<S>, situation: &Situation<'_
     if wish == Vec2::ZERO {
         return wish;
     }
-    let ahead = if nearby.is_empty() || has_round(obstacles, body.radius_m) {
+    let has_balls = obstacles.iter().any(|obstacle| matches!(obstacle, Obstacle::Ball { .. }));
+    let ahead = if nearby.is_empty() || has_balls {
         course.ahead(obstacles, goal, body.radius_m)
     } else {
         detour(obstacles, goal, body.radius_m).and_then(Vec2::normalized)

@@ -93,6 +93,7 @@ fn listener<'a>(heard_at: Instant, latency: Duration) -> ReceiveContext<'a, f32>
         heard_at,
         fastest_mps: Some(100.0),
         period: Duration::from_millis(100),
+        relays: 0,
         latency,
         plausibility: &PlausibilityLimits::ANY,
         needs: &|_| false,
@@ -101,7 +102,7 @@ fn listener<'a>(heard_at: Instant, latency: Duration) -> ReceiveContext<'a, f32>
 
 fn hear(link: &mut Radio, told: &LostRobot, now: Instant) -> Outputs<f32> {
     let mut out = Outputs::default();
-    link.hear_told(RobotId(2), told, now, &listener(now, Duration::from_millis(50)), &mut out);
+    link.hear_told(RobotId(2), told, None, now, &listener(now, Duration::from_millis(50)), &mut out);
     out
 }
 

@@ -146,17 +146,6 @@ fn a_way_through_the_corner_of_two_walls_is_blocked_whatever_their_directions() 
 }
 
 #[test]
-fn balls_are_round_and_walls_and_square_corners_are_not() {
-    let square = [wall(-3.0, 0.0, 0.0, 0.0), wall(0.0, 0.0, 0.0, 3.0)];
-    for radius_m in [0.2, 1.0] {
-        let is_round = |obstacles: &[Obstacle<f64>]| has_round(obstacles, radius_m);
-        assert!(!is_round(&[]) && !is_round(&square[..1]) && !is_round(&square));
-        assert!(is_round(&[ball(3.0, 0.0, 0.1)]));
-        assert!(!is_round(&[Obstacle::Plane { normal: Vec3::new(1.0, 0.0, 0.0), distance_m: 0.1 }]));
-    }
-}
-
-#[test]
 fn a_wall_hides_what_is_behind_it() {
     let walls = [wall(5.0, -1.0, 5.0, 2.0)];
     assert!(is_hidden(&walls, v(10.0, 0.0)) && is_hidden(&walls, v(5.1, 0.0)));
