@@ -249,7 +249,10 @@ impl<'a> Events<'a> {
         match self.parser.next_event() {
             Some(Ok((event, span))) => Ok((span.start.line(), event)),
             Some(Err(error)) => {
-                let what = format!("this is not YAML: {}", error.info());
+                // The parser's words for these are no user's.
+                let [list, keys] = [["flow sequence", "list in brackets"], ["block mapping", "list of keys"]];
+                let what = [list, keys].iter().fold(error.info().to_owned(), |what, [from, to]| what.replace(from, to));
+                let what = format!("this is not YAML: {what}");
                 let line = error.marker().line().min(self.last_line);
                 Err(format_error(self.path, Place::Line(line), what, SHAPE))
             }
@@ -373,7 +376,7 @@ mod tests {
             (FILE.replace("0.1\n", "[0.1]\n"), "m.yaml:3: resolution is a list; give one value"),
             (FILE.replace("[-1, 2.5, 0.0]", "-1 2.5 0"), "m.yaml:4: origin is \"-1 2.5 0\"; give origin: [x, y"),
             (FILE.replace("[-1, 2.5, 0.0]", "[[-1, 2.5, 0.0]]"), "m.yaml:4: origin is not a list of numbers"),
-            (FILE.replace("[-1, 2.5, 0.0]", "[-1, 2.5, 0.0"), "m.yaml:"),
+            (FILE.replace("[-1, 2.5, 0.0]", "[-1, 2.5, 0.0"), "m.yaml:5: this is not YAML: illegal placement"),
             (FILE.replace("2.5", "2,5"), "m.yaml:4: origin has 4 of three numbers"),
             (format!("a: &a 0.1\n{}", FILE.replace("0.1\n", "*a\n")), "m.yaml:4: resolution is an alias"),
             (format!("{FILE}<<: {{x: 1}}"), "m.yaml:8: a merge (<<) is not read"),
