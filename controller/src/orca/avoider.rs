@@ -87,6 +87,30 @@ impl<S: Scalar> Default for InSpace<S> {
     }
 }
 
+impl<S: Scalar> InSpace<S> {
+    /// The half-space of robots with this downwash, from that of balls by `find`. In a scaled space
+    /// the ellipsoid around a robot is a ball, and half-spaces remain half-spaces.
+    #[inline]
+    pub fn stretched(
+        &self,
+        own_velocity_mps: Vec3<S>,
+        ball: &MovingBall<Vec3<S>>,
+        find: impl FnOnce(Vec3<S>, &MovingBall<Vec3<S>>) -> Option<HalfSpace<Vec3<S>>>,
+    ) -> Option<HalfSpace<Vec3<S>>> {
+        let high = self.downwash;
+        let is_higher = high > S::ONE;
+        if !is_higher {
+            return find(own_velocity_mps, ball);
+        }
+        let lowered = |v: Vec3<S>| Some(Vec3::new(v.x, v.y, v.z.checked_div(high)?));
+        let ball = MovingBall { offset_m: lowered(ball.offset_m)?, velocity_mps: lowered(ball.velocity_mps)?, ..*ball };
+        let HalfSpace { point, normal } = find(lowered(own_velocity_mps)?, &ball)?;
+        let point = Vec3::new(point.x, point.y, point.z * high);
+        let normal = lowered(normal)?.normalized()?;
+        point.is_finite().then_some(HalfSpace { point, normal })
+    }
+}
+
 impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
     type Velocity = Vec3<S>;
 
@@ -96,18 +120,7 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
         ball: &MovingBall<Vec3<S>>,
         params: &Params<S>,
     ) -> Option<HalfSpace<Vec3<S>>> {
-        let high = self.downwash;
-        let is_higher = high > S::ONE;
-        if !is_higher {
-            return half_space(own_velocity_mps, ball, params);
-        }
-        // In a scaled space the ellipsoid is a ball, and half-spaces remain half-spaces.
-        let lowered = |v: Vec3<S>| Some(Vec3::new(v.x, v.y, v.z.checked_div(high)?));
-        let ball = MovingBall { offset_m: lowered(ball.offset_m)?, velocity_mps: lowered(ball.velocity_mps)?, ..*ball };
-        let HalfSpace { point, normal } = half_space(lowered(own_velocity_mps)?, &ball, params)?;
-        let point = Vec3::new(point.x, point.y, point.z * high);
-        let normal = lowered(normal)?.normalized()?;
-        point.is_finite().then_some(HalfSpace { point, normal })
+        self.stretched(own_velocity_mps, ball, |own, ball| half_space(own, ball, params))
     }
 
     fn downwash(&self) -> S {

@@ -28,5 +28,5 @@ mod orca;
 mod tests;
 
 pub use file::{FileError, HEADER_LEN, Header, VERSION, checksum};
-pub use model::{Local, Model};
-pub use orca::{PROBES, VoxelNeighbor, obstacles, velocity_half_plane};
+pub use model::{Local, Model, ModelIn};
+pub use orca::{PROBES, VoxelInSpace, VoxelNeighbor, VoxelNeighborIn, obstacles, velocity_half_plane};

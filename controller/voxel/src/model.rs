@@ -44,10 +44,13 @@ impl<S: Scalar> Local<S, 2> {
     }
 }
 
-/// A function of `V` variables, 2 or 3, in borrowed bytes. About 8 + 13 V bytes (`f32`).
+/// A function of `V` variables, 2 or 3, in borrowed bytes: `&'static [u8]` in flash.
+pub type Model<'a, S, const V: usize> = ModelIn<&'a [u8], S, V>;
+
+/// As [`Model`], in bytes `B`, which a host may own or share. About 8 + 13 V bytes (`f32`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Model<'a, S, const V: usize> {
-    nodes: &'a [u8],
+pub struct ModelIn<B, S, const V: usize> {
+    bytes: B,
     component_len: usize,
     node_len: usize,
     /// Fixed point could not hold sums of products of whole components.
@@ -72,19 +75,19 @@ struct Axis<S> {
 }
 
 /// Digests of agents contain the model's checksum.
-impl<S, const V: usize> Serialize for Model<'_, S, V> {
+impl<B, S, const V: usize> Serialize for ModelIn<B, S, V> {
     fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
         serializer.serialize_u32(self.checksum)
     }
 }
 
-impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
+impl<B: AsRef<[u8]>, S: Scalar, const V: usize> ModelIn<B, S, V> {
     /// Opens and checks the model in these bytes, written by `staya voxel build`: O(length).
     ///
     /// # Errors
     /// [`FileError`], for the first error found; `S` must represent all fields.
-    pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FileError> {
-        let header = Header::read(bytes)?;
+    pub fn from_bytes(bytes: B) -> Result<Self, FileError> {
+        let header = Header::read(bytes.as_ref())?;
         if usize::from(header.variables) != V {
             return Err(FileError::Variables { needed: V as u8, found: header.variables });
         }
@@ -118,13 +121,13 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
             stride = stride.saturating_mul(nodes.into());
         }
         Ok(Self {
-            nodes: bytes.get(HEADER_LEN..).unwrap_or(&[]),
             component_len: header.component_len(),
             node_len: header.components().saturating_mul(header.component_len()),
             one,
             unit,
             axes,
-            checksum: crate::checksum(bytes),
+            checksum: crate::checksum(bytes.as_ref()),
+            bytes,
         })
     }
 
@@ -136,8 +139,8 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
 
     /// Size in flash, bytes.
     #[must_use]
-    pub const fn bytes(&self) -> usize {
-        self.nodes.len().saturating_add(HEADER_LEN)
+    pub fn bytes(&self) -> usize {
+        self.bytes.as_ref().len()
     }
 
     /// The least and the greatest coordinate along each axis; the model is undefined outside.
@@ -218,8 +221,8 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
 
     #[inline]
     fn components(&self, node: usize) -> Option<([S; V], [S; 2])> {
-        let start = node.checked_mul(self.node_len)?;
-        let bytes = self.nodes.get(start..start.checked_add(self.node_len)?)?;
+        let start = node.checked_mul(self.node_len)?.checked_add(HEADER_LEN)?;
+        let bytes = self.bytes.as_ref().get(start..start.checked_add(self.node_len)?)?;
         if self.component_len == 1 {
             self.read(bytes.iter().map(|&byte| i32::from(byte.cast_signed())))
         } else {

@@ -1,13 +1,13 @@
 //! ORCA on functional voxel models: of a velocity obstacle ([`velocity_half_plane`]), of any pair
-//! of robots ([`VoxelNeighbor`]), and of land or a room ([`obstacles`]). Functions are positive
-//! inside the forbidden region (FVM, eq. 15).
+//! of robots ([`VoxelNeighbor`], in space [`VoxelInSpace`]), and of land or a room ([`obstacles`]).
+//! Functions are positive inside the forbidden region (FVM, eq. 15).
 
-use crate::model::{Local, Model};
+use crate::model::{Local, Model, ModelIn};
 use heapless::Vec;
 use serde::Serialize;
-use staya_controller::geom::Vec2;
+use staya_controller::geom::{Vec2, Vec3, Vector};
 use staya_controller::obstacle::Obstacle;
-use staya_controller::orca::{HalfPlane, HalfSpaces, MovingBall, Params, half_plane};
+use staya_controller::orca::{HalfPlane, HalfSpace, HalfSpaces, InSpace, MovingBall, Params, half_plane, half_space};
 use staya_controller::scalar::Scalar;
 
 /// ORCA's half-plane from the model of a velocity obstacle over relative velocities, m/s (FVM, eqs.
@@ -28,6 +28,9 @@ pub fn velocity_half_plane<S: Scalar>(
     point.is_finite().then_some(HalfPlane { point, normal })
 }
 
+/// Half-planes of moving neighbours from a model in borrowed bytes: `&'static [u8]` in flash.
+pub type VoxelNeighbor<'a, S> = VoxelNeighborIn<&'a [u8], S>;
+
 /// Half-planes of moving neighbours from a model of all velocity obstacles
 /// (`staya voxel build neighbor`), for an [`Avoider`](staya_controller::orca::Avoider).
 ///
@@ -40,21 +43,56 @@ pub fn velocity_half_plane<S: Scalar>(
 /// to lie between those of the two legs, and the border touches the disc. An error only makes the
 /// demanded change of velocity longer. The half-planes of a pair are opposite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct VoxelNeighbor<'a, S: Scalar> {
-    model: Model<'a, S, 3>,
+#[serde(bound = "")]
+pub struct VoxelNeighborIn<B, S> {
+    model: ModelIn<B, S, 3>,
 }
 
-impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
+impl<B, S> VoxelNeighborIn<B, S> {
     /// Creates a source of half-planes from this model.
     #[must_use]
-    pub const fn new(model: Model<'a, S, 3>) -> Self {
+    pub const fn new(model: ModelIn<B, S, 3>) -> Self {
         Self { model }
     }
 
     /// The model.
     #[must_use]
-    pub const fn model(&self) -> &Model<'a, S, 3> {
+    pub const fn model(&self) -> &ModelIn<B, S, 3> {
         &self.model
+    }
+}
+
+impl<B: AsRef<[u8]>, S: Scalar> VoxelNeighborIn<B, S> {
+    /// Whether the model is defined for all pairs of robots; for others the formula is used.
+    #[must_use]
+    pub fn covers_all_pairs(&self) -> bool {
+        let [[left, right], [bottom, top], [least, most]] = self.model.extent();
+        left <= -right && right > S::ZERO && bottom <= S::ZERO && top > S::ZERO && least <= S::ZERO && most >= S::ONE
+    }
+
+    /// The half-space of a ball: a velocity obstacle in space is that of the plane, turned about the
+    /// axis to the neighbour, so the normal lies in the plane of this axis and the relative
+    /// velocity. Otherwise as in the plane.
+    #[must_use]
+    pub fn of_ball(
+        &self,
+        own_velocity_mps: Vec3<S>,
+        ball: &MovingBall<Vec3<S>>,
+        params: &Params<S>,
+    ) -> Option<HalfSpace<Vec3<S>>> {
+        let look_up = || {
+            let Approach { ahead, w, radius, sine } = Approach::new(own_velocity_mps, ball, params)?;
+            let per_radius = S::ONE.checked_div(radius)?;
+            let along = w.dot(ahead);
+            let across = w - ahead * along;
+            // Straight towards the neighbour there is no such plane; the formula has a rule.
+            let side = across.normalized()?;
+            let normal = self.normal(Vec2::new(along, across.norm()) * per_radius, sine)?;
+            let normal = ahead * normal.x + side * normal.y;
+            let point = own_velocity_mps + normal * ((radius - w.dot(normal)) * params.share);
+            point.is_finite().then_some(HalfSpace { point, normal })
+        };
+        look_up().or_else(|| half_space(own_velocity_mps, ball, params))
     }
 
     /// The normal at the border nearest to `w`, in disc radii from the disc's centre, `w.y >= 0`.
@@ -76,7 +114,7 @@ impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
     }
 }
 
-impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
+impl<B: AsRef<[u8]>, S: Scalar> HalfSpaces<S> for VoxelNeighborIn<B, S> {
     type Velocity = Vec2<S>;
 
     /// Overlapping robots have no cone: use the formula.
@@ -88,23 +126,70 @@ impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
         params: &Params<S>,
     ) -> Option<HalfPlane<S>> {
         let look_up = || {
-            let (p, r) = (disc.offset_m, disc.radii_m);
-            let v = own_velocity_mps - disc.velocity_mps;
-            let distance = p.norm();
-            let is_sound = v.is_finite() && r > S::ZERO && distance > r && params.horizon_s > S::ZERO;
-            let ahead = if is_sound { p.normalized()? } else { return None };
-            let rate = S::ONE.checked_div(params.horizon_s)?;
-            let radius = r * rate;
+            let Approach { ahead, w, radius, sine } = Approach::new(own_velocity_mps, disc, params)?;
             let per_radius = S::ONE.checked_div(radius)?;
-            let w = v - p * rate;
             let across = ahead.det(w);
-            let normal = self.normal(Vec2::new(w.dot(ahead), across.abs()) * per_radius, r.checked_div(distance)?)?;
+            let normal = self.normal(Vec2::new(w.dot(ahead), across.abs()) * per_radius, sine)?;
             let side = if across > S::ZERO { normal.y } else { -normal.y };
             let normal = ahead.rotate(normal.x, side);
             let point = own_velocity_mps + normal * ((radius - w.dot(normal)) * params.share);
             point.is_finite().then_some(HalfPlane { point, normal })
         };
         look_up().or_else(|| half_plane(own_velocity_mps, disc, params))
+    }
+}
+
+/// A relative velocity as seen from the disc, or ball, of the velocities that collide just at the
+/// horizon.
+struct Approach<V: Vector> {
+    /// Unit vector to the neighbour.
+    ahead: V,
+    /// From the disc's centre, m/s.
+    w: V,
+    /// The disc's radius, m/s.
+    radius: V::Scalar,
+    /// Of half of the cone's angle.
+    sine: V::Scalar,
+}
+
+impl<S: Scalar, V: Vector<Scalar = S>> Approach<V> {
+    /// `None` if the robots overlap or an input is invalid.
+    fn new(own_velocity_mps: V, ball: &MovingBall<V>, params: &Params<S>) -> Option<Self> {
+        let (p, r) = (ball.offset_m, ball.radii_m);
+        let v = own_velocity_mps - ball.velocity_mps;
+        let distance = p.norm();
+        let is_sound = v.is_finite() && r > S::ZERO && distance > r && params.horizon_s > S::ZERO;
+        let ahead = if is_sound { p.normalized()? } else { return None };
+        let rate = S::ONE.checked_div(params.horizon_s)?;
+        Some(Self { ahead, w: v - p * rate, radius: r * rate, sine: r.checked_div(distance)? })
+    }
+}
+
+/// Half-spaces of flying neighbours from the same model ([`VoxelNeighborIn::of_ball`]): the method
+/// does not depend on the number of dimensions (FVM, conclusion).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(bound(serialize = "S: Serialize"))]
+pub struct VoxelInSpace<B, S> {
+    /// The model.
+    pub neighbor: VoxelNeighborIn<B, S>,
+    /// The space.
+    pub space: InSpace<S>,
+}
+
+impl<B: AsRef<[u8]>, S: Scalar> HalfSpaces<S> for VoxelInSpace<B, S> {
+    type Velocity = Vec3<S>;
+
+    fn half_space(
+        &self,
+        own_velocity_mps: Vec3<S>,
+        ball: &MovingBall<Vec3<S>>,
+        params: &Params<S>,
+    ) -> Option<HalfSpace<Vec3<S>>> {
+        self.space.stretched(own_velocity_mps, ball, |own, ball| self.neighbor.of_ball(own, ball, params))
+    }
+
+    fn downwash(&self) -> S {
+        HalfSpaces::<S>::downwash(&self.space)
     }
 }
 

@@ -2,11 +2,13 @@ use crate::draw::{m_images, sheet};
 use crate::swarm::{Crowd, Source, Swap};
 use crate::*;
 use proptest::prelude::*;
-use staya_controller::geom::Vec2;
-use staya_controller::orca::{HalfPlane, HalfSpaces as _, MovingBall, Params, VelocityObstacle, half_plane};
+use staya_controller::geom::{Vec2, Vec3};
+use staya_controller::orca::{
+    HalfPlane, HalfSpaces as _, InSpace, MovingBall, Params, VelocityObstacle, half_plane, half_space,
+};
 use staya_controller::rand::Rng;
 use staya_controller::scalar::Q16;
-use staya_voxel::{Header, Model, VoxelNeighbor, obstacles, velocity_half_plane};
+use staya_voxel::{Header, Model, VoxelInSpace, VoxelNeighbor, obstacles, velocity_half_plane};
 use std::path::Path;
 
 type V = Vec2<f64>;
@@ -90,6 +92,59 @@ proptest! {
             let theirs = MovingBall { offset_m: -other.offset_m, velocity_mps: own, ..other };
             let theirs = source.half_space(other.velocity_mps, &theirs, &params).unwrap();
             prop_assert!((plane.normal + theirs.normal).norm() < 1e-9);
+        }
+    }
+}
+
+proptest! {
+    /// In space as in the plane: safe, opposite for the two robots, equal to those of the plane if
+    /// nothing is above or below, and scaled with downwash.
+    #[test]
+    fn every_half_space_of_a_neighbor_model_forbids_the_whole_obstacle(seed: u64) {
+        let mut rng = Rng::new(seed);
+        let (own, other) = pair(&mut rng);
+        let mut rise = || f64::from(rng.next_u32()) / f64::from(u32::MAX) - 0.5;
+        let lifted = |v: V, z: f64| Vec3::new(v.x, v.y, z);
+        let ball = MovingBall {
+            offset_m: lifted(other.offset_m, 3.0 * rise()),
+            velocity_mps: lifted(other.velocity_mps, 3.0 * rise()),
+            radii_m: other.radii_m,
+            tie: Vec3::new(1.0, 0.0, 0.0),
+        };
+        let own_mps = lifted(own, 3.0 * rise());
+        let params = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
+        for (nodes, depth) in [([17, 9, 5], 16), ([5, 3, 2], 6)] {
+            let bytes = space(&Template::Neighbor(VelocityForm::Distance), nodes, depth);
+            let neighbor = VoxelNeighbor::new(Model::<f64, 3>::from_bytes(&bytes).unwrap());
+            let exact = half_space(own_mps, &ball, &params).unwrap();
+            let found = neighbor.of_ball(own_mps, &ball, &params).unwrap();
+            prop_assert!((found.normal.norm() - 1.0).abs() < 1e-9);
+            prop_assert!(found.penetration(own_mps) >= exact.penetration(own_mps) - 1e-9);
+            // Both legs of the cone in the plane of the axis and the normal, and the disc.
+            let (tip, radius) = (ball.offset_m * 0.5, ball.radii_m * 0.5);
+            let gap = (found.point - ball.velocity_mps - tip).dot(found.normal) - radius;
+            prop_assert!(gap.abs() < 1e-9, "{gap}");
+            let (ahead, sine) = (ball.offset_m.normalized().unwrap(), ball.radii_m / ball.offset_m.norm());
+            prop_assert!(found.normal.dot(ahead) < 1e-9 - sine.min(1.0), "{} {sine}", found.normal.dot(ahead));
+            let theirs = MovingBall { offset_m: -ball.offset_m, velocity_mps: own_mps, ..ball };
+            let theirs = neighbor.of_ball(ball.velocity_mps, &theirs, &params).unwrap();
+            prop_assert!((found.normal + theirs.normal).norm() < 1e-9);
+            let flat = MovingBall {
+                offset_m: lifted(other.offset_m, 0.0),
+                velocity_mps: lifted(other.velocity_mps, 0.0),
+                ..ball
+            };
+            let (level, plane) =
+                (neighbor.of_ball(lifted(own, 0.0), &flat, &params), neighbor.half_space(own, &other, &params));
+            let (level, plane) = (level.unwrap(), plane.unwrap());
+            prop_assert!((level.normal - lifted(plane.normal, 0.0)).norm() < 1e-9, "{level:?} {plane:?}");
+            let low = |v: Vec3<f64>| Vec3::new(v.x, v.y, v.z / 3.0);
+            let lowered =
+                MovingBall { offset_m: low(ball.offset_m), velocity_mps: low(ball.velocity_mps), ..ball };
+            let lowered = neighbor.of_ball(low(own_mps), &lowered, &params).unwrap();
+            let tall = VoxelInSpace { neighbor, space: InSpace { downwash: 3.0 } };
+            let tall = tall.half_space(own_mps, &ball, &params).unwrap();
+            prop_assert!((low(tall.point) - lowered.point).norm() < 1e-9, "{tall:?} {lowered:?}");
         }
     }
 }
@@ -291,4 +346,12 @@ fn models_work_in_fixed_point() {
     let number = |x: f64| <Q16 as staya_controller::scalar::Scalar>::from_f64(x).unwrap();
     let found = model.blend([number(0.6), number(0.0)]).unwrap();
     assert!((staya_controller::scalar::Scalar::to_f64(found.value) - 0.4).abs() < 2e-3);
+}
+
+/// `scenarios/swap-voxel.toml` and others use it.
+#[test]
+fn the_shipped_model_of_neighbors_is_that_of_17_nodes_and_8_bits() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/neighbor.fvm");
+    let shipped = std::fs::read(path).unwrap();
+    assert!(shipped == space(&Template::Neighbor(VelocityForm::Distance), [17, 9, 5], 8));
 }
