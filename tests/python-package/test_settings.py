@@ -176,7 +176,8 @@ ALONE = [
     ("plane", "safety", "orca", lambda **given: staya.orca(PLACES, PLACES, PLACES, **MOVES, **given)),
 ]
 # Of a run, not of a step.
-OF_RUNS = {"tolerance_m", "inflation_mps", "inflation_m", "stands_after_s", "listen_s", "expects_others", "alone_mps"}
+OF_RUNS = {"tolerance_m", "inflation_mps", "inflation_m", "model"}
+OF_RUNS |= {"stands_after_s", "listen_s", "expects_others", "alone_mps"}
 
 
 @pytest.mark.parametrize(("place", "choice", "name", "call"), ALONE, ids=[name for _, _, name, _ in ALONE])

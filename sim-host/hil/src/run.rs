@@ -110,6 +110,9 @@ pub(crate) fn drive(
     if scenario.land.known.is_some() {
         bail!("scouting.model_bytes is not available in firmware; leave it out, or run without devices");
     }
+    if scenario.plane().is_some_and(|plane| plane.kinds().any(|group| group.half_planes.is_some())) {
+        bail!("plane.orca.model is not available on devices; leave it out, or run without devices");
+    }
     if scenario.sensing().is_some() {
         bail!("plane.sensing is not available on devices; remove it, or run without devices");
     }

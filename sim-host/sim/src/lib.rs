@@ -10,6 +10,7 @@
 //! | [`record`], [`checkpoint`] | result files; saving and resuming a run |
 //! | [`expected`] | prediction of the remaining ticks |
 //! | [`nearby`], [`walk`] | neighbour search; simulation of a single robot |
+//! | [`voxel`] | models in files that replace ORCA's formula |
 //! | [`key`] | files with the secret key of a swarm |
 //! | [`shown`] | names and messages without control characters |
 
@@ -27,6 +28,7 @@ pub mod scenario;
 pub mod shown;
 pub mod summary;
 pub mod terrain;
+pub mod voxel;
 pub mod walk;
 pub mod words;
 pub mod world;

@@ -1,15 +1,14 @@
 //! The controller of one vehicle: telemetry and the scenario's map in, a velocity out.
 
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyLaw, AnySafety, Command, GridWorkspace, Guided, HALF_PLANES, LEARNED, NEIGHBORS, Outputs,
-    VISITS, Wait, Wish,
+    Agent, AgentConfig, AnyLaw, Command, GridWorkspace, Guided, LEARNED, NEIGHBORS, Outputs, VISITS, Wait, Wish,
 };
 use staya_controller::agent::{Goals, LayerSettings};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::parameters::RADIUS;
 use staya_controller::time::Instant;
 use staya_controller::wire::Wire;
-use staya_sim::engine::{self, Ground as _, Known, PlaneGround, Senses, WIDE};
+use staya_sim::engine::{self, Ground as _, Known, PlaneGround, ScenarioSafety, Senses, WIDE};
 use staya_sim::scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
@@ -26,8 +25,7 @@ pub struct Body {
 }
 
 /// The agent of a vehicle, with a law that an operator may switch off.
-type ControllerAgent<W> =
-    Agent<f32, Guided<f32, AnyLaw<f32, WIDE, VISITS, LEARNED>>, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
+type ControllerAgent<W> = Agent<f32, Guided<f32, AnyLaw<f32, WIDE, VISITS, LEARNED>>, NEIGHBORS, ScenarioSafety, W>;
 
 /// The agent of one vehicle with its map and senses.
 pub struct Controller<W> {
@@ -56,7 +54,9 @@ impl<W: Wire> Controller<W> {
         let config = AgentConfig { boot, seed, plausibility, is_synchronous, ..config };
         // No operator sends goals here, so speed and tolerance are unused.
         let law = Guided::new(scenario.law(index).on_device().law(()), 0.0, 0.0);
-        let mut agent = Box::new(Agent::new(&config, law, with_room(scenario.safety(index), error_m).layer(), wire));
+        let safety = with_room(scenario.safety(index), error_m);
+        let safety = ScenarioSafety::new(&safety, scenario.half_planes(index));
+        let mut agent = Box::new(Agent::new(&config, law, safety, wire));
         // A law that takes no task refuses it; the scenario was validated for that.
         let _ = agent.assign(&task);
         let plane = scenario.plane();

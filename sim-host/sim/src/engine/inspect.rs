@@ -1,12 +1,16 @@
 //! Read-only inspection of a robot's knowledge and its next decision. The run is not affected.
 
+use super::safety::ScenarioSafety;
 use super::witness::Asked;
 use super::{Engine, Senses, Tick, WIDE};
-use staya_controller::agent::{AnySafety, AnySurroundings, Command, GridWorkspace, Law as _, Outputs};
+use staya_controller::agent::{
+    AnySafety, AnySurroundings, Command, GridWorkspace, HALF_PLANES, Law as _, OrcaSafety, Outputs,
+};
 use staya_controller::cost::TICK;
-use staya_controller::geom::{Position, Vec3};
+use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Neighbor;
+use staya_controller::orca::HalfSpaces;
 use staya_controller::parameters::{Parameter, Parameters};
 use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
@@ -191,27 +195,36 @@ pub(super) fn listed(each: impl FnOnce(&mut dyn FnMut(&mut dyn Parameters))) -> 
     rows
 }
 
-fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Permitted> {
-    let Asked { body, nearby, obstacles, .. } = asked;
-    let space = |(index, hard): (usize, usize), point_mps: [f32; 3], normal: [f32; 3]| Permitted {
-        point_mps,
-        normal,
-        is_of_obstacle: index < hard,
-    };
+fn permitted(layer: &ScenarioSafety, asked: &Asked) -> Vec<Permitted> {
     match layer {
-        AnySafety::Orca(layer) | AnySafety::Template2k(layer) => {
-            let (hard, planes) = layer.avoider().half_spaces(body, nearby, obstacles);
-            let planes = planes.iter().enumerate();
-            planes
-                .map(|(at, p)| space((at, hard), [p.point.x, p.point.y, 0.0], [p.normal.x, p.normal.y, 0.0]))
-                .collect()
-        }
-        AnySafety::Fly(layer) => {
-            let (hard, spaces) = layer.avoider().half_spaces(body, nearby, obstacles);
-            let spaces = spaces.iter().enumerate();
-            let all = |v: &Vec3<f32>| [v.x, v.y, v.z];
-            spaces.map(|(at, s)| space((at, hard), all(&s.point), all(&s.normal))).collect()
-        }
-        AnySafety::None(_) | AnySafety::PushOut(_) => Vec::new(),
+        ScenarioSafety::BuiltIn(AnySafety::Orca(layer) | AnySafety::Template2k(layer)) => half_planes(layer, asked),
+        ScenarioSafety::Voxel(layer) => half_planes(layer, asked),
+        ScenarioSafety::BuiltIn(AnySafety::Fly(layer)) => half_spaces(layer, asked),
+        ScenarioSafety::VoxelInSpace(layer) => half_spaces(layer, asked),
+        ScenarioSafety::BuiltIn(AnySafety::None(_) | AnySafety::PushOut(_)) => Vec::new(),
     }
+}
+
+fn half_planes<P: HalfSpaces<f32, Velocity = Vec2<f32>>>(
+    layer: &OrcaSafety<f32, HALF_PLANES, P>,
+    Asked { body, nearby, obstacles, .. }: &Asked,
+) -> Vec<Permitted> {
+    let (hard, planes) = layer.avoider().half_spaces(body, nearby, obstacles);
+    let flat = |v: Vec2<f32>| [v.x, v.y, 0.0];
+    let planes = planes.iter().enumerate();
+    planes.map(|(at, plane)| permitting([plane.point, plane.normal].map(flat), at < hard)).collect()
+}
+
+fn half_spaces<P: HalfSpaces<f32, Velocity = Vec3<f32>>>(
+    layer: &OrcaSafety<f32, HALF_PLANES, P>,
+    Asked { body, nearby, obstacles, .. }: &Asked,
+) -> Vec<Permitted> {
+    let (hard, spaces) = layer.avoider().half_spaces(body, nearby, obstacles);
+    let all = |v: Vec3<f32>| [v.x, v.y, v.z];
+    let spaces = spaces.iter().enumerate();
+    spaces.map(|(at, space)| permitting([space.point, space.normal].map(all), at < hard)).collect()
+}
+
+const fn permitting([point_mps, normal]: [[f32; 3]; 2], is_of_obstacle: bool) -> Permitted {
+    Permitted { point_mps, normal, is_of_obstacle }
 }

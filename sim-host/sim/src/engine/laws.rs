@@ -1,14 +1,16 @@
 //! The laws of robots in a scenario: Staya's, those of papers, and one of the caller.
 
+use super::safety::ScenarioSafety;
 use super::witness::Witness;
 use crate::own_law::{Own, OwnLaw, Site};
 use crate::scenario::{KnownLand, LawSetup, Robot, Scenario};
 use crate::terrain::known::{cost_to_go, under};
+use crate::voxel::NeighborModel;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, AnySafety, FormationGuidance, GridWorkspace, Guided, HALF_PLANES, KnownMap, LEARNED, MAP_TILES, SharedMap,
-    TEMPLATE, VISITS,
+    AnyLaw, FormationGuidance, GridWorkspace, Guided, KnownMap, LEARNED, LayerSettings, MAP_TILES, SharedMap, TEMPLATE,
+    VISITS,
 };
 use staya_controller::land::CostToGo;
 use staya_controller::laws;
@@ -20,7 +22,7 @@ use thiserror::Error;
 /// Law of an agent: any law of scenario files or of a caller, which an operator may override.
 pub type HostLaw = Guided<f32, ScenarioLaw>;
 /// Safety layer of an agent: any layer of scenario files.
-pub type HostSafety = Witness<AnySafety<f32, HALF_PLANES>>;
+pub type HostSafety = Witness<ScenarioSafety>;
 /// Creates the law and the safety layer of a robot, at each of its starts.
 pub type Agents = Box<dyn Fn(usize) -> (HostLaw, HostSafety) + Send + Sync>;
 
@@ -55,7 +57,7 @@ fn law_of(setup: &LawSetup, map: Map) -> ScenarioLaw {
 /// Returns a function that creates the law and the safety layer of a robot.
 #[must_use]
 pub fn agents(scenario: &Scenario) -> Agents {
-    let kind = |index| (scenario.law(index), scenario.safety(index), limits(scenario, index));
+    let kind = |index| (scenario.law(index), layer(scenario, index), limits(scenario, index));
     // Members of formations differ individually, others only by group; each kind is created once.
     let groups = scenario.plane().map_or(0, |plane| plane.groups.len());
     let group_of = |index: usize| match (scenario.formation_of(index), scenario.plane()) {
@@ -74,12 +76,15 @@ pub fn agents(scenario: &Scenario) -> Agents {
     let maps = scenario.laws.maps;
     let tables = tables(scenario);
     Box::new(move |index| {
-        let (law, safety, [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
+        let (law, (safety, model), [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.
         let shared = maps.filter(|_| law.is_on_grid()).map(|params| Box::new(SharedMap::new(params)));
         let table = tables.get(index).cloned().flatten();
         let map = (table.map(|table| Box::new(KnownMap::new(table))), shared);
-        (Guided::new(law_of(law, map), *speed_mps, *tolerance_m), Witness::new(safety.layer()))
+        (
+            Guided::new(law_of(law, map), *speed_mps, *tolerance_m),
+            Witness::new(ScenarioSafety::new(safety, model.as_ref())),
+        )
     })
 }
 
@@ -103,6 +108,10 @@ fn tables(scenario: &Scenario) -> Vec<Option<Table>> {
     kinds.iter().map(|kind| made[kind].clone()).collect()
 }
 
+fn layer(scenario: &Scenario, index: usize) -> (LayerSettings, Option<NeighborModel>) {
+    (scenario.safety(index), scenario.half_planes(index).cloned())
+}
+
 /// Speed and arrival distance of a robot that an operator sends to a waypoint, m/s and metres.
 fn limits(scenario: &Scenario, index: usize) -> [f32; 2] {
     let group = scenario.plane().map(|setup| setup.group(index));
@@ -119,12 +128,12 @@ pub fn own_agents<L: OwnLaw>(
     law: impl Fn(usize) -> L + Send + Sync + 'static,
 ) -> Result<Agents, WrongWorld> {
     fits::<L>(scenario)?;
-    let robots = (0..scenario.robots.len()).map(|index| (scenario.safety(index), limits(scenario, index)));
+    let robots = (0..scenario.robots.len()).map(|index| (layer(scenario, index), limits(scenario, index)));
     let robots: Vec<_> = robots.collect();
     Ok(Box::new(move |index| {
-        let (safety, [speed_mps, tolerance_m]) = &robots[index];
+        let ((safety, model), [speed_mps, tolerance_m]) = &robots[index];
         let law = ScenarioLaw::Own(Own::new(law(index)));
-        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(safety.layer()))
+        (Guided::new(law, *speed_mps, *tolerance_m), Witness::new(ScenarioSafety::new(safety, model.as_ref())))
     }))
 }
 

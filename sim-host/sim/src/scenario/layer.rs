@@ -5,13 +5,19 @@ use super::read::{Line, Table, Usual, Wrong};
 use super::rows::{Word, contradicts, fill, heading, line, read, rows};
 use super::source::{Checked, Section};
 use super::table::Fields;
+use crate::shown::Shown as _;
+use crate::voxel::{ModelError, NeighborModel};
 use crate::{defaults, table};
 use staya_controller::agent::{Around, LayerSettings, OrcaSettings, Settings as _};
 use staya_controller::parameters::Parameter;
+use std::path::PathBuf;
 
 table! {
     /// Fields of `[plane.orca]` beside the values of the layer.
-    pub struct ContactTable {
+    pub struct OrcaTable {
+        /// File of a functional voxel model that replaces the formula (`staya voxel build neighbor`).
+        /// Default: none.
+        pub model: Option<PathBuf>;
         /// Silence until a lost robot stands even if most are lost. Default: 60.
         pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
         /// How long a robot stands and listens after its start. Default: six steps, delays.
@@ -23,7 +29,7 @@ table! {
     }
 }
 
-defaults!(ContactTable);
+defaults!(OrcaTable);
 
 /// `safety` and the tables of safety layers among the fields of a group.
 #[derive(Clone, Debug, Default)]
@@ -32,8 +38,8 @@ pub struct LayerPart {
     name: Option<String>,
     /// The tables that are given, with their values.
     tables: Vec<(&'static str, Vec<(String, f32)>)>,
-    /// The reaction to lost contact.
-    pub contact: ContactTable,
+    /// Fields of ORCA's table beside the values.
+    pub beside: OrcaTable,
 }
 
 fn all() -> impl Iterator<Item = LayerSettings> {
@@ -70,8 +76,8 @@ fn rows_in(section: &str) -> Vec<(&'static Parameter, Option<f32>)> {
 /// The names of all fields of a table of layers.
 pub(super) fn names_in(section: &str) -> Vec<&'static str> {
     let rows = rows_in(section).into_iter().map(|(row, _)| row.name);
-    let contact = if section == OrcaSettings::SECTION { ContactTable::names() } else { Vec::new() };
-    rows.chain(contact).collect()
+    let beside = if section == OrcaSettings::SECTION { OrcaTable::names() } else { Vec::new() };
+    rows.chain(beside).collect()
 }
 
 impl LayerPart {
@@ -115,6 +121,26 @@ impl LayerPart {
     }
 }
 
+impl LayerPart {
+    /// The model that replaces the formula of `layer`, if a file is given.
+    pub(super) fn half_planes(&self, at: &Section<'_>, layer: LayerSettings) -> Checked<Option<NeighborModel>> {
+        let Some(name) = &self.beside.model else { return Ok(None) };
+        let field = "orca.model";
+        let has_formula = matches!(layer, LayerSettings::Orca(_) | LayerSettings::Fly(_));
+        let what = format!("the layer \"{}\" has its own table", layer.name());
+        at.require(has_formula, field, what, "give safety = \"orca\" or \"fly\", or leave it out")?;
+        let path = at.source.file(name);
+        let read = NeighborModel::read(&path).map_err(|error| {
+            let remedy = match error {
+                ModelError::Read(_) => "file names are relative to the scenario file",
+                _ => "give a file of `staya voxel build neighbor`",
+            };
+            at.error(field, format!("{}: {error}", path.shown()), remedy)
+        });
+        read.map(Some)
+    }
+}
+
 impl Fields for LayerPart {
     fn names() -> Vec<&'static str> {
         ["safety"].into_iter().chain(sections()).collect()
@@ -128,19 +154,19 @@ impl Fields for LayerPart {
             let known: Vec<_> = LayerSettings::ALL.iter().map(|(name, _)| (*name, ())).collect();
             return table.of("safety", |node| super::word(node, &known)).map(|()| Self::default());
         }
-        let (mut tables, mut contact) = (Vec::new(), ContactTable::default());
+        let (mut tables, mut beside) = (Vec::new(), OrcaTable::default());
         for section in sections().into_iter().filter(|section| table.has(section)) {
             let rows: Vec<_> = rows_in(section).into_iter().map(|(row, _)| row).collect();
             let values = table.of(section, |node| {
                 let table = Table::new(node, &names_in(section))?;
                 if section == OrcaSettings::SECTION {
-                    contact = ContactTable::fields(&table)?;
+                    beside = OrcaTable::fields(&table)?;
                 }
                 read(&table, &rows)
             })?;
             tables.push((section, values));
         }
-        Ok(Self { name, tables, contact })
+        Ok(Self { name, tables, beside })
     }
 
     fn part_lines() -> Vec<Line> {
@@ -152,7 +178,7 @@ impl Fields for LayerPart {
             let rows = rows_in(section).into_iter();
             let mut inner: Vec<_> = rows.map(|(row, default)| line(row, default)).collect();
             if section == OrcaSettings::SECTION {
-                inner.extend(ContactTable::part_lines());
+                inner.extend(OrcaTable::part_lines());
             }
             let what = LayerSettings::ALL.iter().find(|(name, _)| *name == section).map_or("", |(_, what)| what);
             heading(section, what, inner)

@@ -37,7 +37,7 @@ pub use formation::{FormationEntry, FormationStarts};
 pub use grid::GridTable;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
 pub use law::{AddedLaw, LawPart, LawSetup, laws};
-pub use layer::{ContactTable, LayerPart};
+pub use layer::{LayerPart, OrcaTable};
 pub use maps::MapsTable;
 pub use parameters::parameters;
 pub use plane::{

@@ -3,6 +3,7 @@
 use super::law::LawSetup;
 use super::{Formation, Intervention, Movement, Scenario};
 use crate::terrain::change::ChangeKind;
+use crate::voxel::NeighborModel;
 use crate::world::scouts::Scouts;
 use staya_controller::agent::{LayerSettings, RouteSettings, UnguardedSettings};
 use staya_controller::grid::Cell;
@@ -83,6 +84,12 @@ impl Scenario {
 
     pub(crate) fn scouts(&self) -> Option<Scouts> {
         self.land.scouting.as_ref().map(|known| Scouts::new(known, self.laws.radius, self.robots.len()))
+    }
+
+    /// The model that replaces ORCA's formula on robot `index`, if it has one.
+    #[must_use]
+    pub fn half_planes(&self, index: usize) -> Option<&NeighborModel> {
+        self.plane()?.group(index).half_planes.as_ref()
     }
 
     /// Safety layer of robot `index`.

@@ -162,6 +162,33 @@ fn runs_with_sensors_resume() {
     resumes(&scenario, "eyes", 80, &[1, 2, 3, 4, 5, 21, 41, 50]);
 }
 
+/// A saved robot names its model only.
+#[test]
+fn runs_on_a_voxel_model_resume() {
+    for (safety, which) in [("orca", "plane"), ("fly", "space")] {
+        let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/neighbor.fvm");
+        let text = format!(
+            "tick_s = 0.05\nname = \"t\"\nticks = 200\n[plane]\nradius_m = 0.15\nmax_speed_mps = 0.5\n\
+             safety = \"{safety}\"\norca.model = \"{model}\"\n[plane.robots.circle]\ncount = 8\nradius_m = 1\n\
+             noise_m = 0.02\n[[fault]]\nrobot = 2\nat_s = 1\ndown_s = 1\n"
+        );
+        let run =
+            |text: &str| Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
+        let scenario = run(&text);
+        resumes(&scenario, which, 80, &[1, 5, 21, 41, 50]);
+        moves(&scenario, which, 30, 60);
+        // The model is in use: robots move otherwise than by the formula.
+        let end = |scenario: &Scenario| {
+            let mut engine = make(scenario);
+            let mut last = engine.first_row();
+            (0..80).for_each(|_| last = engine.step());
+            seen(&engine, &last)
+        };
+        let by_formula = run(&text.replace(&format!("orca.model = \"{model}\"\n"), ""));
+        assert_ne!(end(&scenario), end(&by_formula), "{which}");
+    }
+}
+
 #[test]
 fn runs_with_changing_terrain_and_memory_resume() {
     let changes = "[[terrain.change]]\nat_s = 2\nevery_s = 4\nfor_s = 2\nclass = 0\nrectangle = { x = 4, y = 3, width = 6, height = 1 }\n\

@@ -2,11 +2,12 @@
 
 use super::super::grid::around;
 use super::super::law::LawSetup;
-use super::super::layer::ContactTable;
+use super::super::layer::OrcaTable;
 use super::super::ranges::{duration, micros};
 use super::super::source::Checked;
 use super::body::Group;
 use super::checks;
+use crate::voxel::NeighborModel;
 use crate::world::plane::Abilities;
 use staya_controller::agent::{Around, ContactLossPolicy, Goals, LayerSettings};
 use staya_controller::parameters::TOLERANCE;
@@ -30,6 +31,8 @@ pub struct RobotGroup {
     pub law: LawSetup,
     /// The safety layer.
     pub safety: LayerSettings,
+    /// The model that replaces ORCA's formula; `None`: none.
+    pub half_planes: Option<NeighborModel>,
     /// Whether the ball around a silent robot grows as fast as the fastest robot moves.
     grows_as_the_fastest: bool,
     /// Reaction to loss of contact.
@@ -106,11 +109,12 @@ impl Group<'_> {
         let law = self.law(&around)?;
         checks::law(self, &law)?;
         let safety = body.layer.build(&self.at, &around)?;
+        let half_planes = body.layer.half_planes(&self.at, safety)?;
         let jams = self.kind.goals() == Goals::Waypoints
             && matches!(&safety, LayerSettings::PushOut(push_out) if push_out.params.model == Model::Tangential);
         let what = "robots that go straight to a place jam for ever in each other's way";
         self.at.require(!jams, "push_out.model", what, "give \"radial\", or safety \"orca\"")?;
-        let contact = &body.layer.contact;
+        let beside = &body.layer.beside;
         Ok(RobotGroup {
             abilities,
             radius_m: body.radius_m,
@@ -119,16 +123,17 @@ impl Group<'_> {
             sight_m: body.sight_m,
             law,
             safety,
+            half_planes,
             grows_as_the_fastest: body.layer.get("inflation_mps").is_none(),
-            contact_loss: contact_loss(contact),
-            listen: contact.listen_s.map(duration),
-            expects_others: contact.expects_others,
+            contact_loss: contact_loss(beside),
+            listen: beside.listen_s.map(duration),
+            expects_others: beside.expects_others,
             flock: self.flock,
         })
     }
 }
 
-fn contact_loss(table: &ContactTable) -> ContactLossPolicy<f32> {
+fn contact_loss(table: &OrcaTable) -> ContactLossPolicy<f32> {
     let usual = ContactLossPolicy::DEFAULT;
     ContactLossPolicy {
         stands_after: table.stands_after_s.map_or(usual.stands_after, duration),

@@ -1,6 +1,7 @@
 mod flocks;
 mod groups;
 mod mistakes;
+mod models;
 mod remarks;
 mod sensing;
 
@@ -108,8 +109,7 @@ fn the_reaction_to_silence_is_read() {
 #[test]
 fn the_documented_reaction_to_silence_is_the_usual_one() {
     let usual = |field: &str| {
-        let line =
-            <super::super::ContactTable as super::super::Read>::lines().into_iter().find(|line| line.name == field);
+        let line = <super::super::OrcaTable as super::super::Read>::lines().into_iter().find(|line| line.name == field);
         line.expect("a field").default.to_string().parse::<f64>().expect("a number")
     };
     let policy = ContactLossPolicy::<f32>::DEFAULT;
