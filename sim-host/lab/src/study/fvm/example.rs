@@ -6,6 +6,8 @@ use staya_controller::orca::{Analytic, HalfPlane, HalfSpaces, MovingBall, Params
 use staya_controller::rand::Rng;
 use staya_fvm::orca::pictures::Scene;
 use staya_fvm::{Grid, Pair, System, Template, Templated, VelocityForm, build};
+use staya_plot::canvas::{Anchor, Canvas, Stroke, Text};
+use staya_plot::colour::{INK, MUTED, PALETTE, WHITE};
 use staya_voxel::{Model, VoxelNeighbor, velocity_half_plane};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::{Path, PathBuf};
@@ -25,6 +27,8 @@ pub const MEASURES: &[(&str, &str)] = &[
     ("point_y", "its other coordinate"),
     ("off_mps", "distance of that point from the one of equation 14, m/s"),
     ("off_deg", "angle between the normal and that of equation 14, degrees"),
+    ("closest_m", "least distance of the centres within tau, metres; at 2 m the robots touch"),
+    ("closest_corrected_m", "that distance if A takes its part of the correction and B the rest"),
     ("agreement", "share of random pairs whose collision within the horizon equation 15 predicts"),
     ("agreement_printed", "the same of equations 1 to 4, 13 and 15 as printed"),
 ];
@@ -45,11 +49,16 @@ pub fn measure(parameters: &Parameters, seed: u64) -> Result<Values, String> {
     let normal = whole * (1.0 / whole.norm());
     let angle = libm::atan2(normal.det(plane.normal), normal.dot(plane.normal)).abs().to_degrees();
     Ok(vec![
-        ("change_mps", (share > 0.0).then(|| plane.penetration(OWN) / share)),
+        ("change_mps", (share > 0.0).then(|| whole_mps(&plane, share))),
         ("point_x", Some(plane.point.x)),
         ("point_y", Some(plane.point.y)),
         ("off_mps", Some((plane.point - expected).norm())),
         ("off_deg", Some(angle)),
+        ("closest_m", Some(closest_m(OWN - OTHER))),
+        (
+            "closest_corrected_m",
+            (share > 0.0).then(|| closest_m(OWN - OTHER + plane.normal * whole_mps(&plane, share))),
+        ),
         ("agreement", Some(agreement(parameters, seed, predicted))),
         ("agreement_printed", Some(agreement(parameters, seed, printed))),
     ])
@@ -108,6 +117,19 @@ pub fn neighbor_model(parameters: &Parameters) -> Result<Vec<u8>, String> {
     }
 }
 
+/// The whole correction, of which A makes `share`, m/s.
+fn whole_mps(plane: &HalfPlane<f64>, share: f64) -> f64 {
+    plane.penetration(OWN) / share
+}
+
+/// The least distance of the centres within the horizon, on straight ways.
+fn closest_m(relative: V) -> f64 {
+    let [[ax, ay], [bx, by]] = PAIR.places_m;
+    let offset = V::new(bx - ax, by - ay);
+    let time_s = (offset.dot(relative) / relative.norm_squared().max(1e-12)).clamp(0.0, PAIR.horizon_s);
+    (offset - relative * time_s).norm()
+}
+
 /// Pairs up to 5 m apart, with relative velocities up to 3 m/s along each axis. The least distance
 /// on their straight ways decides whether they collide.
 fn agreement(parameters: &Parameters, seed: u64, predicted: fn(V, f64, f64, V) -> bool) -> f64 {
@@ -164,5 +186,43 @@ pub fn draw(parameters: &Parameters, stem: &Path) -> Result<Vec<PathBuf>, String
     };
     let drawing = scene.drawing().map_err(|error| error.to_string())?;
     staya_sim::record::make_dir(stem).map_err(|error| error.to_string())?;
-    drawing.draw(stem).map_err(|error| error.to_string())
+    let mut files = drawing.draw(stem).map_err(|error| error.to_string())?;
+    files.extend(start(drawing.plane.point).write(&stem.join("start")).map_err(|error| error.to_string())?);
+    Ok(files)
+}
+
+/// Figure 2: the places of the robots. Each also has its way within tau, and A the way with the
+/// velocity that the half-plane gives it.
+fn start(corrected: V) -> Canvas {
+    const SCALE: f64 = 40.0;
+    const HALF_M: f64 = 7.0;
+    const TOP: f64 = 60.0;
+    let at = |V { x, y }: V| [(x + HALF_M) * SCALE, TOP + (HALF_M - y) * SCALE];
+    let title = "Initial places of the robots, and their ways within tau";
+    let mut canvas = Canvas::new(2.0 * HALF_M * SCALE, TOP + 2.0 * HALF_M * SCALE, title);
+    canvas.text(Text { bold: true, ..Text::new([16.0, 30.0], 15.0, Anchor::Start, title) });
+    let axes = [[V::new(-HALF_M, 0.0), V::new(HALF_M, 0.0)], [V::new(0.0, -HALF_M), V::new(0.0, HALF_M)]];
+    for ends in axes {
+        canvas.line(ends.map(at).to_vec(), Stroke::new(MUTED, 0.8));
+    }
+    let robots = [("A", OWN, PALETTE[0], Some(corrected)), ("B", OTHER, PALETTE[1], None)];
+    for ((name, velocity, colour, other), ([x, y], radius_m)) in
+        robots.into_iter().zip(PAIR.places_m.into_iter().zip(PAIR.radii_m))
+    {
+        let place = V::new(x, y);
+        let ways =
+            [Some((velocity, Stroke::new(colour, 2.0))), other.map(|v| (v, Stroke::new(INK, 1.4).dashed(5.0, 4.0)))];
+        for (velocity, stroke) in ways.into_iter().flatten() {
+            let end = place + velocity * PAIR.horizon_s;
+            canvas.line(vec![at(place), at(end)], stroke);
+            canvas.circle(at(end), radius_m * SCALE, None, Some(stroke));
+        }
+        canvas.circle(at(place), radius_m * SCALE, Some(WHITE.towards(colour, 0.3)), Some(Stroke::new(colour, 1.6)));
+        let text = format!("{name} ({x}, {y})");
+        canvas.text(Text { halo: Some(WHITE), ..Text::new(at(place), 12.5, Anchor::Middle, text).centred() });
+    }
+    let below = "solid: with the initial velocities the robots overlap; dashed: A corrects its own";
+    let foot = [HALF_M * SCALE, TOP + 2.0 * HALF_M * SCALE - 12.0];
+    canvas.text(Text { halo: Some(WHITE), ..Text::new(foot, 12.5, Anchor::Middle, below) });
+    canvas
 }

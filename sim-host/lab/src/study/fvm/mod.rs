@@ -6,6 +6,7 @@ mod example;
 mod half_planes;
 mod path;
 mod programme;
+mod ridges;
 #[cfg(test)]
 mod tests;
 
@@ -30,6 +31,8 @@ choice! {
         Path = "path",
         /// The velocity nearest to a wish within half-planes.
         Programme = "programme",
+        /// Routes by the ridges of a function (figure 1b).
+        Ridges = "ridges",
     }
 }
 
@@ -65,7 +68,7 @@ table! {
         pub depth: u8 = 16, 4.0..=16.0, "";
         /// Random pairs of robots, or wishes.
         pub pairs: u32 = 2000, 1.0..=1e7, "";
-        /// Obstacles of the natural land of 100 x 100 cells, as in KUZ.
+        /// Obstacles of the natural land of 100 x 100 cells, as in KUZ, or of the room of `ridges`.
         pub obstacles: u32 = 70, 1.0..=5000.0, "";
         /// Half-planes of a programme.
         pub half_planes: u32 = 10, 1.0..=16.0, "";
@@ -87,6 +90,7 @@ impl Parameters {
             Task::HalfPlanes => half_planes::measure(self, seed),
             Task::Path => path::Trip::new(self, seed).map(|trip| trip.measure()),
             Task::Programme => programme::measure(self, seed),
+            Task::Ridges => ridges::Room::new(self, seed).map(|room| room.measure()),
         };
         Ok(Measured::of(values?))
     }
@@ -98,7 +102,7 @@ impl Study for Fvm {
     }
 
     fn measures(&self) -> Vec<(String, &'static str)> {
-        [example::MEASURES, half_planes::MEASURES, path::MEASURES, programme::MEASURES]
+        [example::MEASURES, half_planes::MEASURES, path::MEASURES, programme::MEASURES, ridges::MEASURES]
             .concat()
             .into_iter()
             .map(|(name, meaning)| (name.to_owned(), meaning))
@@ -118,13 +122,14 @@ impl Study for Fvm {
         Ok(Box::new(move |watch| parameters.measure(seed, watch)))
     }
 
-    /// Figures 3 to 6 of the example, or a path on its land.
+    /// Figures 2 to 6 of the example, a path on its land, or the ridges of a room.
     fn draw(&self, given: &Given<'_>, title: &str, stem: &Path) -> Result<Vec<PathBuf>, SweepError> {
         let parameters: Parameters = given.parameters()?;
         let wrong = |what: String| given.error("task", what, "change the parameters of the task");
         match parameters.task {
             Task::Example => example::draw(&parameters, stem).map_err(wrong),
             Task::Path => Ok(path::Trip::new(&parameters, given.seed).map_err(wrong)?.draw(title).write(stem)?),
+            Task::Ridges => Ok(ridges::Room::new(&parameters, given.seed).map_err(wrong)?.draw(title).write(stem)?),
             Task::HalfPlanes | Task::Programme => Ok(Vec::new()),
         }
     }

@@ -35,3 +35,27 @@ fn half_planes_of_other_pairs_need_a_model_for_them() {
     let Err(error) = Fvm.read(&given) else { panic!("accepted") };
     assert!(error.to_string().contains("study.source"), "{error}");
 }
+
+/// Two discs in a room: ridges between them and the walls.
+#[test]
+fn ridges_separate_obstacles_and_lead_past_them() {
+    let parameters = Parameters { task: Task::Ridges, nodes: 65, obstacles: 6, ..Parameters::default() };
+    assert_eq!(value(&parameters, "route"), 1.0);
+    assert_eq!(value(&parameters, "separated"), 1.0);
+    let (width, clearance_m) = (value(&parameters, "width"), value(&parameters, "clearance_m"));
+    assert!(width > 0.9 && width <= 1.0 && clearance_m > 0.25, "{width} {clearance_m}");
+    // Lines, not areas.
+    let share = value(&parameters, "ridge_share");
+    assert!(share > 0.02 && share < 0.25, "{share}");
+}
+
+#[test]
+fn robots_of_the_example_collide_unless_they_correct_their_velocities() {
+    let whole = Parameters { pairs: 10, ..Parameters::default() };
+    let distance_m = 2.0_f64.sqrt();
+    assert!((value(&whole, "closest_m") - distance_m).abs() < 1e-9);
+    for share in [0.5, 1.0] {
+        let corrected = value(&Parameters { share, ..whole }, "closest_corrected_m");
+        assert!((corrected - 2.0).abs() < 1e-9, "{corrected}");
+    }
+}
