@@ -4,6 +4,7 @@ use anyhow::{Context as _, Result, anyhow};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, print, print_json};
+use staya_record::claims::claims;
 use staya_record::mind::{self, Events};
 use staya_record::page;
 use staya_record::recording::{Reader, RunRecorder};
@@ -57,6 +58,7 @@ impl PageArgs {
                 let scenario = self.source.load()?;
                 let scene = Scene {
                     minds: self.minds(&scenario)?,
+                    claims: claims(path).unwrap_or_default(),
                     description: description(&text_with(path, self.source.settings())?),
                     ..Scene::new(&scenario, Mode::Recording)
                 };

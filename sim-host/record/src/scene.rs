@@ -2,6 +2,7 @@
 
 mod bounds;
 
+use crate::claims::Claim;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use bounds::bounds;
@@ -68,6 +69,9 @@ pub struct Scene {
     /// The comment at the top of the scenario, its first paragraph; empty if there is none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
+    /// The claims of the paper's figure to which the scenario belongs; empty if there is none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub claims: Vec<Claim>,
 }
 
 /// Motion of bodies.
@@ -297,6 +301,7 @@ impl Scene {
             words,
             minds: Vec::new(),
             description: String::new(),
+            claims: Vec::new(),
         }
     }
 }

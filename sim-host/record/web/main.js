@@ -1,6 +1,7 @@
 // The page: receives data from the server or the recording, and draws them.
 
 import { Camera } from "staya/camera.js";
+import { Claims } from "staya/claims.js";
 import { Controls } from "staya/controls.js";
 import { fromBase64 } from "staya/frame.js";
 import { Ground } from "staya/ground.js";
@@ -52,6 +53,7 @@ class App {
     this.view = new View(this, element("overlay"));
     this.plots = new Plots(element("plots"), (tick) => this.seek(tick));
     this.panel = new Panel(this);
+    this.claims = new Claims(this);
     this.robotPlots = new Plots(element("robot-plots"), (tick) => this.seek(tick), ROBOT_PLOTS);
     this.orders = new Orders(this);
     this.picture = new Picture(this);
@@ -127,6 +129,7 @@ class App {
       if (scene.description && element("app").classList.contains("side-closed")) this.toast(scene.description);
     }
     this.controls.scene();
+    this.claims.scene();
     this.orders.scene();
     this.restyle();
   }
@@ -534,6 +537,7 @@ class App {
       this.plottedAt = now;
       this.plots.draw(motion.current?.tick ?? 0, this.figures, look.css);
       if (this.selected !== null) this.robotPlots.draw(motion.current?.tick ?? 0, this.robotFigures, look.css);
+      this.claims.update();
       this.controls.counts();
       this.controls.clock();
     } else {

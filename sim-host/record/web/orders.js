@@ -19,9 +19,17 @@ export class Orders {
         robots: number("new-robots"),
         goals: number("new-goals"),
         obstacles: number("new-obstacles"),
+        discs: element("new-places").value === "given" ? discs(element("new-discs").value) : null,
+        avoidance: element("new-avoidance").value,
+        tick_s: number("new-tick"),
         seed: number("new-seed"),
       }),
     );
+    element("new-places").addEventListener("change", () => {
+      const given = element("new-places").value === "given";
+      element("new-listed").hidden = !given;
+      element("new-obstacles").disabled = given;
+    });
     this.dialog("restart", "restart", () => app.send({ do: "restart", seed: number("restart-seed") }));
     element("only-selected").addEventListener("change", () => this.robot());
     element("radio-on").addEventListener("change", () => {
@@ -138,6 +146,12 @@ export class Orders {
       if (!label.contains(document.activeElement)) set(own?.[name] ?? value);
     }
   }
+}
+
+/** Rows of numbers; a word that is not a number becomes null, which the server refuses. */
+function discs(text) {
+  const rows = text.split("\n").filter((row) => row.trim());
+  return rows.map((row) => row.split(/[\s,;]+/).filter(Boolean).map(Number));
 }
 
 function number(id) {

@@ -123,6 +123,18 @@ export class Plots {
     known.fill(0, this.count);
   }
 
+  /** The least value up to `tick` of the first line of the plot with this name; null for none. */
+  least(name, tick) {
+    const column = this.columns.indexOf(this.rows.find(({ plot }) => plot.name === name)?.plot.lines[0]);
+    const end = Math.min(this.count, Math.floor(tick / this.spacing) + 1);
+    let least = Infinity;
+    for (let at = 0; column >= 0 && at < end; at++) {
+      const value = this.samples[at * this.columns.length + column];
+      if (this.known[at] && value < least) least = value;
+    }
+    return least < Infinity ? least : null;
+  }
+
   /** Drops samples after `tick`, from which the run continues differently. */
   forgetAfter(tick) {
     const keep = Math.floor(tick / this.spacing) + 1;

@@ -145,6 +145,7 @@ impl Session {
             parameters,
             radio: self.radio(),
             description: scene::description(&self.text),
+            claims: self.claims.clone(),
             ..Scene::new(&self.scenario, Mode::Live)
         };
         json!(scene).to_string()

@@ -18,6 +18,8 @@ use crate::pace::{Pace, SLICE};
 use crate::server::{Client, FromPage, Server, WORDS};
 use anyhow::{Result, anyhow};
 use branch::{Branch, Branches, changes_scene};
+use staya_console::say;
+use staya_record::claims::{Claim, claims};
 use staya_sim::engine::{Engine, operated};
 use staya_sim::scenario::{Overrides, Scenario};
 use std::collections::{BTreeMap, VecDeque};
@@ -57,6 +59,7 @@ pub struct Session {
     has_work: bool,
     is_over: bool,
     pages: BTreeMap<Client, Looks>,
+    claims: Vec<Claim>,
     is_new: bool,
     has_new_land: bool,
     logs_links: bool,
@@ -95,6 +98,7 @@ impl Session {
             has_work: false,
             is_over: false,
             pages: BTreeMap::new(),
+            claims: known_claims(path),
             is_new: true,
             has_new_land: false,
             logs_links: false,
@@ -449,6 +453,14 @@ impl Session {
             server.say(None, self.branch.series.unsent());
         }
     }
+}
+
+/// A damaged plan does not keep its scenario from being shown.
+fn known_claims(path: &Path) -> Vec<Claim> {
+    claims(path).unwrap_or_else(|error| {
+        say(&format!("the page shows no claims of the figure: {error}"));
+        Vec::new()
+    })
 }
 
 #[cfg(test)]

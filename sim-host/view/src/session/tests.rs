@@ -337,8 +337,35 @@ fn a_new_run_replaces_the_old_one() {
     assert_eq!((&scene["name"], scene["solids"].as_array().map(Vec::len)), (&json!("new-run"), Some(5)));
     let frame = run.until(|message| message.err().filter(|frame| frame.bodies() > 2));
     assert_eq!((frame.bodies(), frame.figures.goals.len()), (12, 3));
+    run.say(&json!({
+        "do": "new", "robots": 4, "goals": 1, "obstacles": 5, "seed": 4, "tick_s": 0.05, "avoidance": "tangential",
+        "discs": [[12, 1, 0.5]],
+    }));
+    let scene = run.text("scene");
+    assert_eq!((&scene["tick_s"], scene["solids"].as_array().map(Vec::len)), (&json!(0.05), Some(1)));
+    run.say(&json!({ "do": "new", "robots": 4, "goals": 1, "obstacles": 5, "seed": 4, "discs": [[12, null, 1]] }));
+    let error = run.text("error");
+    assert!(error["text"].as_str().is_some_and(|text| text.starts_with("obstacle 1 is not three numbers")), "{error}");
     run.say(&json!({ "do": "restart", "seed": 5 }));
     assert_eq!(run.text("scene")["seed"], 5);
+}
+
+#[test]
+fn a_scenario_of_a_figure_shows_its_claims_until_another_run_replaces_it() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../papers/pav/goals/scenario.toml");
+    let text = std::fs::read_to_string(&path).expect("a scenario");
+    let mut session = Session::new(text, &path, &Overrides::default(), true).expect("a good scenario");
+    let claims = |session: &mut Session| {
+        let scene: Value = serde_json::from_str(&session.scene()).expect("JSON");
+        scene.get("claims").and_then(Value::as_array).cloned().unwrap_or_default()
+    };
+    let shown = claims(&mut session);
+    assert!(shown.len() >= 8 && shown.iter().any(|claim| claim["paper"] == "about equal"), "{shown:?}");
+    assert!(shown.iter().all(|claim| claim["judgement"] == "holds" || claim["fails"] != ""), "{shown:?}");
+    let server = Server::start(SocketAddr::from(([127, 0, 0, 1], 0)), Vec::new()).expect("a port is free");
+    let replaced = session.replace(IN_PLANE.to_owned(), Path::new("new-run.toml"), &Overrides::default(), &server);
+    replaced.expect("a good scenario");
+    assert!(claims(&mut session).is_empty());
 }
 
 #[test]
