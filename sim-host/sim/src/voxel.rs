@@ -1,6 +1,6 @@
 //! Functional voxel models of velocity obstacles from files, which replace ORCA's formula (FVM).
 
-use crate::file::{self, MAP};
+use crate::file;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::orca::{self, HalfPlane, HalfSpace, HalfSpaces, InSpace, MovingBall, Params};
@@ -46,6 +46,8 @@ pub enum ModelError {
 
 /// The coarsest model, of 3 x 2 x 2 nodes of 4 bits, is off by 8 degrees on average.
 const MOST_DEGREES: f64 = 15.0;
+/// Largest size of a model that `staya voxel build` makes.
+const MOST_BYTES: u64 = 64 << 20;
 const SAMPLES: u32 = 1000;
 const PURPOSE: u32 = u32::from_be_bytes(*b"look");
 
@@ -55,7 +57,7 @@ impl NeighborModel {
     /// # Errors
     /// [`ModelError`].
     pub fn read(path: &Path) -> Result<Self, ModelError> {
-        Self::from_bytes(file::read(path, MAP)?.into())
+        Self::from_bytes(file::read(path, MOST_BYTES)?.into())
     }
 
     fn from_bytes(bytes: Arc<[u8]>) -> Result<Self, ModelError> {

@@ -15,8 +15,8 @@ use std::path::PathBuf;
 table! {
     /// Fields of `[plane.orca]` beside the values of the layer.
     pub struct OrcaTable {
-        /// File of a functional voxel model that replaces the formula (`staya voxel build neighbor`).
-        /// Default: none.
+        /// File of a functional voxel model that replaces the formula (`staya voxel build
+        /// neighbor`). Default: none.
         pub model: Option<PathBuf>;
         /// Silence until a lost robot stands even if most are lost. Default: 60.
         pub stands_after_s: Option<f64>, 0.0..=600.0, "seconds";
