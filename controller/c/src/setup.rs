@@ -69,6 +69,9 @@ pub struct StayaSetup {
     pub retry_interval_us: i32,
     /// Number of attempts of a message.
     pub retry_attempts: u8,
+    /// Frames behind each beacon that tell on what other robots of the formation said, 0 to 3, for
+    /// those that distance or land hides from each other.
+    pub relays: u8,
     /// Must change with each start (a stored counter or random), or others take it for a replay.
     pub boot: u8,
     /// The robot's flock; robots of other flocks are only obstacles.
@@ -134,7 +137,7 @@ pub struct StayaSetup {
 
 plain!(StayaSetup);
 
-const VERSION: u32 = u32::from_be_bytes(*b"sty3");
+const VERSION: u32 = u32::from_be_bytes(*b"sty4");
 
 /// Largest `sight_cells`.
 pub const STAYA_MAX_RADIUS: u8 = 5;
@@ -199,6 +202,7 @@ impl StayaSetup {
             ages: Ages { stale_after: us(self.stale_after_us), expire_after: us(self.lost_after_us) },
             retry: Retry { attempts: self.retry_attempts, interval: us(self.retry_interval_us) },
             message_valid: us(self.message_valid_us),
+            relays: self.relays,
             contact_loss: ContactLossPolicy {
                 stands_after: us(self.stands_after_us),
                 alone_mps,

@@ -78,12 +78,22 @@ fn built_in() -> impl Strategy<Value = (u8, AnyOrder)> {
     prop_oneof![goal, template, place]
 }
 
-fn any_message() -> impl Strategy<Value = Message> {
+fn beacon() -> impl Strategy<Value = Beacon> {
     let modes = (0..7_u8).prop_map(|number| Mode::from_number(number).unwrap());
     let beacon = (any::<([i32; 3], [i16; 3], u16, u8)>(), modes, protocol(), bytes());
-    let beacon = beacon.prop_map(|((position_mm, velocity_mmps, radius_mm, flock), mode, protocol, payload)| {
-        Message::Beacon(Beacon { position_mm, velocity_mmps, radius_mm, mode, flock, protocol, payload })
-    });
+    beacon.prop_map(|((position_mm, velocity_mmps, radius_mm, flock), mode, protocol, payload)| Beacon {
+        position_mm,
+        velocity_mmps,
+        radius_mm,
+        mode,
+        flock,
+        protocol,
+        payload,
+    })
+}
+
+fn any_message() -> impl Strategy<Value = Message> {
+    let sent = beacon().prop_map(Message::Beacon);
     let law = (id(), any::<u8>(), protocol(), bytes());
     let law = law.prop_map(|(to, number, protocol, content)| Message::Law(Addressed { to, number, protocol, content }));
     let broadcast = (protocol(), bytes());
@@ -101,13 +111,12 @@ fn any_message() -> impl Strategy<Value = Message> {
     let lost = lost.prop_map(|(id, is_lost, age_cs, position_mm, radius_mm)| {
         Message::Lost(LostRobot { id: robot(id), is_lost, age_cs, position_mm, radius_mm })
     });
-    let relayed = (any::<u8>(), any::<u16>(), beacon.clone()).prop_map(|(id, age_cs, beacon)| {
-        let Message::Beacon(beacon) = beacon else { unreachable!("it is a beacon") };
+    let relayed = (any::<u8>(), any::<u16>(), beacon()).prop_map(|(id, age_cs, beacon)| {
         let Beacon { position_mm, radius_mm, mode, flock, protocol, payload, .. } = beacon;
         let id = robot(id);
         Message::Relayed(Relayed { id, age_cs, position_mm, radius_mm, mode, flock, protocol, payload })
     });
-    prop_oneof![2 => beacon, 2 => law, 1 => broadcast, 1 => ack, 3 => built_in, 1 => other, 1 => lost, 1 => relayed]
+    prop_oneof![2 => sent, 2 => law, 1 => broadcast, 1 => ack, 3 => built_in, 1 => other, 1 => lost, 1 => relayed]
 }
 
 /// Orders of built-in protocols in bytes that clients fill in by name otherwise.
