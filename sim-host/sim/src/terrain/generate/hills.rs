@@ -1,10 +1,9 @@
 //! Interpretations of "natural" terrain. KUZ section 5 describes "several cells of the greatest
-//! impassability, surrounded by less impassable ones, ... and so on". Its references with the
-//! generators are public but were not used: 14 (CEUR Workshop Proceedings 1904), and 15
-//! ("Generation of a Random Landscape by given Configuration Entropy and Total Edge"), whose
-//! abstract names a random filling in ratios that follow from S, and a row-by-row automaton with a
-//! probability of an "extraordinary" class. Each variant here interprets "and so on" differently;
-//! `staya experiment land-entropy` compares their entropy with the paper's.
+//! impassability, surrounded by less impassable ones, ... and so on". Of its references with the
+//! generators, 14 (CEUR Workshop Proceedings 1904) was not used. 15 ("Generation of a Random
+//! Landscape by given Configuration Entropy and Total Edge") was used as far as its abstract tells,
+//! in `papers/kuz/generators`. Each variant here interprets "and so on" differently; `staya
+//! experiment land-entropy` compares their entropy with the paper's.
 
 use super::{LandPlan, check_obstacles, sample};
 use crate::terrain::Terrain;

@@ -5,6 +5,7 @@ use staya_controller::flock::action::{PhiAlpha, sigma_norm};
 use staya_controller::geom::Vec3;
 use staya_controller::lattice::{Algorithm, Gain, LatticeParams, Reference, acceleration};
 use staya_controller::neighbor::Nearby;
+use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::{Mode, RobotId};
 
 fn params(algorithm: Algorithm) -> LatticeParams<f64> {
@@ -140,4 +141,43 @@ fn largest_rise_or_blast(dt: f64) -> f64 {
         step(&params, dt, &mut places, &mut velocities);
     }
     rise / first.unwrap_or(1.0)
+}
+
+/// Acceleration of a robot at rest in the origin by an obstacle or a reference.
+fn alone(params: &LatticeParams<f64>, obstacles: &[Obstacle<f64>], reference: Option<&Reference<f64>>) -> Vec3<f64> {
+    let body = Body {
+        id: RobotId(1),
+        velocity_mps: Vec3::ZERO,
+        radius_m: 0.0,
+        max_speed_mps: f64::MAX,
+        max_acceleration_mps2: f64::MAX,
+        step_s: 0.01,
+    };
+    acceleration(params, &body, &[], obstacles, reference)
+}
+
+#[test]
+fn slopes_of_the_potentials_of_obstacle_and_reference_are_the_forces_of_algorithm_three() {
+    for spacing_m in [7.0, 0.7] {
+        let params = LatticeParams { spacing_m, ..params(Algorithm::Three) };
+        let (meter, unit_m) = (meter(&params), spacing_m / 7.0);
+        for distance in [0.1, 1.0, 3.0, 4.1] {
+            let ball =
+                Obstacle::Ball { center_m: Vec3::new(10.0 + distance, 0.0, 0.0) * unit_m, radius_m: 10.0 * unit_m };
+            let force = alone(&params, &[ball], None).x / unit_m;
+            let at = |off: f64| meter.obstacle((distance + off) * unit_m);
+            let slope = (at(0.01) - at(-0.01)) / 0.02;
+            assert!(force < 0.0 && (force - slope).abs() < 0.01 * force.abs() + 1e-3, "{distance}: {force} {slope}");
+        }
+        assert_eq!(meter.obstacle(4.3 * unit_m), 0.0);
+        assert_eq!(meter.obstacle(-unit_m), meter.obstacle(0.0));
+        for distance in [0.1, 1.0, 20.0] {
+            let offset_m = Vec3::new(distance * unit_m, 0.0, 0.0);
+            let reference = Reference { offset_m, velocity_mps: Vec3::ZERO };
+            let force = alone(&params, &[], Some(&reference)).x / unit_m;
+            let at = |off: f64| meter.pull([(distance + off) * unit_m, 0.0]);
+            let slope = (at(0.001) - at(-0.001)) / 0.002;
+            assert!((force - slope).abs() < 1e-4, "{distance}: {force} {slope}");
+        }
+    }
 }
