@@ -3,6 +3,7 @@
 mod alone;
 mod company;
 mod cost;
+mod energy;
 mod flock;
 mod flow;
 mod foresight;
@@ -10,7 +11,9 @@ mod free;
 mod joint;
 mod optimum;
 mod process;
+mod structure;
 mod touch;
+mod tracking;
 
 use staya_plot::Panels;
 use staya_sim::engine::{Moment, Outcome};
@@ -53,7 +56,7 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 10] = [
+pub const KINDS: [Kind; 13] = [
     free::KIND,
     flow::KIND,
     flock::KIND,
@@ -64,6 +67,9 @@ pub const KINDS: [Kind; 10] = [
     joint::KIND,
     foresight::KIND,
     touch::KIND,
+    tracking::KIND,
+    structure::KIND,
+    energy::KIND,
 ];
 
 /// Names and meanings of the measures of all probes.

@@ -5,6 +5,7 @@
 //! 2 and 3), in doubles. Differences from agents are effects of radio or bodies.
 
 mod crowd;
+mod vote;
 
 use super::{Given, Study, rings};
 use crate::error::SweepError;
@@ -153,6 +154,11 @@ table! {
         pub dying: u32 = 0;
         /// When they die, seconds.
         pub die_s: f64 = 0.0, 0.0..=1e9, "s";
+        /// Rule by which robots vote for one of the goals of a goal flock (with exact knowledge), to
+        /// which each then moves at once; the leaders' rule is without effect.
+        pub votes: vote::Rule = vote::Rule::None;
+        /// Probability of a first vote for the first goal; the others are equally likely.
+        pub first_goal: f64 = 0.5, 0.0..=1.0, "";
         /// Speed limit of alpha flocks with exact knowledge; the paper has none.
         pub fastest_mps: f64 = f64::MAX;
         /// Standard deviation of starts along each axis, instead of the scenario's starts.

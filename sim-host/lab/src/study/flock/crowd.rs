@@ -1,6 +1,7 @@
 //! Robots with exact knowledge, which move by the law alone.
 
 use super::Run;
+use super::vote::{self, Rule, Shares};
 use staya_controller::agent::{GOALS, GoalFlockSettings, LawSettings, LayerSettings};
 use staya_controller::body::Body;
 use staya_controller::digest::{chained, digest};
@@ -33,6 +34,8 @@ pub(super) struct Crowd<'a> {
     leaders: u32,
     dying: usize,
     die_s: f64,
+    rule: Rule,
+    votes: Vec<Shares>,
     fastest_mps: f64,
     step_s: f64,
     places: Vec<[f64; 3]>,
@@ -69,6 +72,12 @@ impl<'a> Crowd<'a> {
             fastest_mps: match law {
                 Law::Lattice { .. } => run.parameters.fastest_mps,
                 Law::Goals { .. } => group.abilities.max_speed_mps,
+            },
+            rule: run.parameters.votes,
+            votes: {
+                let goals = plane.starts.first().map_or(0, |start| start.places.len());
+                let first = |robot| vote::first(goals, run.parameters.first_goal, run.scenario.seed, robot);
+                (0..plane.starts.len() as u32).map(first).collect()
             },
             targets: plane.starts.first().map_or(Vec::new(), |start| start.places.clone()),
             most: run.parameters.nearest,
@@ -199,6 +208,7 @@ impl<'a> Crowd<'a> {
         let mut cells = Cells::new(Space::OPEN, self.range_m);
         cells.rebuild(&self.places);
         let (mut found, mut nearby, mut next) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut votes, weight) = (self.votes.clone(), 1.0 / self.places.len() as f64);
         for robot in 0..self.places.len() {
             if robot < dead {
                 next.push([0.0; 3]);
@@ -208,6 +218,8 @@ impl<'a> Crowd<'a> {
             cells.within(&Query { at, radius: self.range_m, most: self.most, except }, &mut found);
             nearby.clear();
             let alive = found.iter().filter(|other| other.index as usize >= dead);
+            let heard = alive.clone().filter_map(|other| self.votes.get(other.index as usize));
+            votes[robot] = vote::next(self.rule, &self.votes[robot], heard, weight);
             nearby.extend(alive.map(|other| Nearby {
                 id: RobotId(other.index + 1),
                 offset_m: vec(other.offset),
@@ -219,7 +231,7 @@ impl<'a> Crowd<'a> {
             }));
             next.push(self.next_velocity(robot, &nearby, targets)?);
         }
-        self.velocities = next;
+        (self.velocities, self.votes) = (next, votes);
         for (place, velocity) in self.places.iter_mut().zip(&self.velocities) {
             *place = std::array::from_fn(|axis| place[axis] + velocity[axis] * self.step_s);
         }
@@ -256,7 +268,9 @@ impl<'a> Crowd<'a> {
                 let own = Position::from_metres(self.places[robot]).ok_or("a robot is too far away")?;
                 let goals = &mut self.goals[robot];
                 let _ = goals.update(own, *arrival_m, *seed, body.id);
-                let goal = if robot < self.leaders as usize {
+                let goal = if self.rule != Rule::None {
+                    goals.as_slice().get(vote::choice(&self.votes[robot])).copied()
+                } else if robot < self.leaders as usize {
                     goals.current()
                 } else {
                     let leader = nearby.iter().find(|other| other.id.0 <= self.leaders);

@@ -212,3 +212,44 @@ fn groups_start_in_squares_that_face_each_other() {
     let error = read("staya/closing/alpha-nine.toml", &one, &ALL, 1).unwrap_err();
     assert!(error.contains("study.squares.from_m: there are more groups than squares"), "{error}");
 }
+
+#[test]
+fn a_flock_follows_its_orders_only_if_the_goal_pulls() {
+    let of = |k1: &str| {
+        let sets = [("plane.robots.cloud.count", "20".to_owned()), ("plane.goal_flock.k1", k1.to_owned())];
+        read("pav/path/sub-goals.toml", &sets, &["tracking.passed"], 3).unwrap()
+    };
+    let (led, free) = (of("50"), of("0"));
+    assert_eq!((value(&led, "tracking.passed"), value(&free, "tracking.passed")), (1.0, 0.0));
+    assert!(value(&led, "tracking.miss_m") < 20.0 && value(&free, "tracking.miss_m") > 300.0);
+    assert_eq!(value(&led, "tracking.at_first"), value(&led, "tracking.at_one"));
+}
+
+#[test]
+fn a_flock_that_votes_goes_to_one_goal_and_another_one_parts() {
+    let of = |rule: &str| {
+        let sets = [("study.votes", rule.to_owned()), ("study.first_goal", "0.6".to_owned())];
+        value(&read("pav/voting/scenario.toml", &sets, &["tracking.at_first"], 5).unwrap(), "tracking.at_first")
+    };
+    assert_eq!(of("majority"), 1.0);
+    assert!(of("shares") > 0.9 && of("none") < 0.6);
+}
+
+#[test]
+fn energy_falls_among_obstacles_but_without_their_potential_it_rises() {
+    let sets = [("tick_s", "0.01".to_owned()), ("ticks", "600".to_owned())];
+    let measured = read("olf/energy/rest.toml", &sets, &["energy.rise"], 2).unwrap();
+    assert!(value(&measured, "energy.rise") < 1e-5 && value(&measured, "energy.rise_without") > 1e-4, "{measured:?}");
+    assert!(value(&measured, "energy.damping") <= 0.0 && value(&measured, "energy.least_damping") < -10.0);
+    assert_eq!(value(&measured, "energy.held"), 1.0);
+}
+
+#[test]
+fn the_centroid_follows_the_reference_alone_and_stress_is_the_force() {
+    let sets =
+        |algorithm: &str| [sets(20, 200, "all"), vec![("plane.lattice.algorithm", algorithm.to_owned())]].concat();
+    let of = |algorithm| read("olf/flock/free.toml", &sets(algorithm), &["energy.center_off"], 1).unwrap();
+    let (linear, bounded) = (of("2"), of("3"));
+    assert!(value(&linear, "energy.center_off") < 1e-9 && value(&bounded, "energy.center_off") > 0.1);
+    assert!(value(&linear, "energy.stress_off") < 1e-12 && value(&linear, "energy.stress") > 0.0);
+}
