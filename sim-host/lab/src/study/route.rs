@@ -5,6 +5,8 @@
 //! The paper's robots learn no travel costs (`learned = 0`). With 256 cells of them, the path is
 //! that of the scenario's robot in the engine.
 
+mod automaton;
+
 use super::walk::{self, Maker, Walks, maker, percent, whole};
 use super::{Given, Study};
 use crate::error::SweepError;
@@ -43,6 +45,9 @@ table! {
         pub learned: u32 = walk::LEARNED;
         /// Stationary robots in random cells, avoided with weight a1.
         pub parked: u32 = 0;
+        /// Land by a cellular automaton instead of the scenario's, in the same ratio of classes:
+        /// probability of an "extraordinary" class of a cell; at 1 cells are independent.
+        pub extraordinary: Option<f64>, 0.0..=1.0, "";
     }
 }
 
@@ -95,9 +100,9 @@ impl Study for Route {
 
 impl Trip {
     fn read(given: &Given<'_>) -> Result<Self, SweepError> {
-        let Parameters { radius, visits, learned, parked } = given.parameters()?;
+        let Parameters { radius, visits, learned, parked, extraordinary } = given.parameters()?;
         let maker = maker(given, visits, learned)?;
-        let scenario = given.scenario()?;
+        let mut scenario = given.scenario()?;
         if scenario.plane().is_some() || scenario.robots.len() != 1 {
             let what = "the scenario is not about one robot on the grid";
             return Err(given.error("radius", what, "name one whose robots.list has one element"));
@@ -114,6 +119,13 @@ impl Trip {
             return Err(given.error("parked", what, "take at most half of the cells"));
         }
         let params = RouteParams { radius, ..route.params };
+        if let Some(probability) = extraordinary {
+            let land = automaton::fill(&scenario.land.terrain, probability, given.seed);
+            let land = land.map_err(|error| given.error("extraordinary", error.to_string(), "give other land"))?;
+            let cell_m = scenario.land.terrain.cell_m;
+            scenario.land.terrain = land;
+            scenario.land.terrain.cell_m = cell_m;
+        }
         let parked = park(&scenario, parked, given.seed);
         Ok(Self { scenario, params, parked, maker })
     }
