@@ -1,5 +1,4 @@
-//! Counts the phrases that break the project's language rules, lines that are too long, and the
-//! words of pages.
+//! Counts the phrases that break the project's language rules, and lines that are too long.
 
 use crate::documents::prose;
 use crate::prelude::*;
@@ -9,8 +8,6 @@ use regex::{Regex, RegexBuilder};
 const BROKEN: usize = 26;
 /// The most lines of comments and pages that exceed [`COLUMNS`].
 const LONG_LINES: usize = 0;
-/// The most words in all pages, without their code.
-const WORDS: usize = 32_240;
 const COLUMNS: usize = 100;
 
 const EXTENSIONS: [&str; 12] = ["rs", "md", "py", "pyi", "toml", "js", "html", "h", "c", "sh", "x", "ipynb"];
@@ -29,7 +26,7 @@ struct Rules {
 /// counts above their limit.
 pub fn check(root: &Path) -> Result<()> {
     let rules = Rules::new();
-    let (mut broken, mut long_lines, mut words, mut comments) = (0, 0, 0, 0);
+    let (mut broken, mut long_lines, mut comments) = (0, 0, 0);
     for file in files::sources(root, &EXTENSIONS)? {
         let text = files::read(&file)?;
         let shown = file.strip_prefix(root).unwrap_or(&file).display();
@@ -41,12 +38,7 @@ pub fn check(root: &Path) -> Result<()> {
         }
         let mut limited: Vec<(usize, &str)> = Vec::new();
         if files::has_extension(&file, &["md"]) {
-            // A table that a test reads is not a page.
-            let is_table = file.ends_with("tests/cases/README.md");
-            let count = |(_, line): &(usize, &str)| line.split_whitespace().count();
-            let lines: Vec<_> = by_hand(&text).collect();
-            words += if is_table { 0 } else { lines.iter().map(count).sum() };
-            limited.extend(lines);
+            limited.extend(by_hand(&text));
         } else if files::has_extension(&file, &["rs"]) {
             limited.extend((1..).zip(text.lines()).filter(|(_, line)| line.trim_start().starts_with("//")));
             comments += limited.len();
@@ -60,7 +52,6 @@ pub fn check(root: &Path) -> Result<()> {
     let counts = [
         (broken, BROKEN, "phrases against the rules"),
         (long_lines, LONG_LINES, "lines of comments and pages that are too long"),
-        (words, WORDS, "words in pages"),
     ];
     let shown = counts.map(|(count, limit, what)| (count > limit, format!("{count} {what}, at most {limit}")));
     shown.iter().for_each(|(_, line)| println!("{line}"));
