@@ -737,6 +737,11 @@ typedef struct StayaSetup {
      */
     uint8_t retry_attempts;
     /**
+     * Frames behind each beacon that tell on what other robots of the formation said, 0 to 3, for
+     * those that distance or land hides from each other.
+     */
+    uint8_t relays;
+    /**
      * Must change with each start (a stored counter or random), or others take it for a replay.
      */
     uint8_t boot;
