@@ -58,7 +58,7 @@ def test_a_new_run_has_the_given_tick_model_and_obstacles(view, look):
     assert page.locator("#claims-panel").is_hidden()
     names = page.evaluate("staya.scene.parameters.map((each) => each.name)")
     assert "min_distance_m" in names and "horizon_s" not in names
-    # A mistake is told, and the run stays.
+    # A mistake is shown, and the run stays.
     page.locator("#open-new").click()
     page.locator("#new-discs").fill("12, one, 0.5")
     page.locator("#new-run .primary").click()

@@ -737,7 +737,7 @@ typedef struct StayaSetup {
      */
     uint8_t retry_attempts;
     /**
-     * Frames behind each beacon that tell on what other robots of the formation said, 0 to 3, for
+     * Beacons of other robots of the formation that it relays behind each of its own, 0 to 3, for
      * those that distance or land hides from each other.
      */
     uint8_t relays;

@@ -69,7 +69,7 @@ pub struct StayaSetup {
     pub retry_interval_us: i32,
     /// Number of attempts of a message.
     pub retry_attempts: u8,
-    /// Frames behind each beacon that tell on what other robots of the formation said, 0 to 3, for
+    /// Beacons of other robots of the formation that it relays behind each of its own, 0 to 3, for
     /// those that distance or land hides from each other.
     pub relays: u8,
     /// Must change with each start (a stored counter or random), or others take it for a replay.

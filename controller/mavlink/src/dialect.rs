@@ -322,7 +322,8 @@ messages! {
         x_mm: i32, y_mm: i32, z_mm: i32, radius_mm: u16, age_cs: u16, sequence: u16, boot: u8,
         robot: u8, is_lost: u8,
     }
-    /// What a robot of a formation last said, told on to those that do not hear it; behind beacons.
+    /// The last beacon of a robot of a formation, relayed to those that do not hear it; sent behind
+    /// beacons.
     9_500_010 STAYA_RELAYED(STAYA_RELAYED_DATA) {
         x_mm: i32, y_mm: i32, z_mm: i32, radius_mm: u16, age_cs: u16, sequence: u16, boot: u8,
         robot: u8, mode: u8, flock: u8, protocol: u8, count: u8, bytes: [u8; 16],

@@ -52,9 +52,10 @@ pub struct AgentConfig<S> {
     pub contact_loss: ContactLossPolicy<S>,
     /// Limits on the values that other robots may report.
     pub plausibility: PlausibilityLimits<S>,
-    /// Frames behind each beacon that tell on what the robots said which the law needs, for members
-    /// of a formation that distance or land hides from each other. 0: none, and none are heard. A
-    /// frame must arrive within [`latency`](Self::latency) and a beacon period, or old states stay.
+    /// Frames behind each beacon that relay the last beacons of robots which the law needs, for
+    /// members of a formation that distance or land hides from each other. 0: none is relayed, and
+    /// none is received. A frame must arrive within [`latency`](Self::latency) and a beacon period,
+    /// or states get younger from robot to robot.
     pub relays: u8,
     /// The own flock. A robot that [flocks](crate::flock) treats members of other flocks as
     /// obstacles.

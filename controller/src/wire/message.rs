@@ -91,9 +91,8 @@ pub struct LostRobot {
     pub radius_mm: u16,
 }
 
-/// What a robot of the own formation last said, told on to those that do not hear it: its beacon
-/// without the velocity. Robots send those of the robots that their law needs in turn, behind their
-/// beacons.
+/// The last beacon of a robot of the own formation, without its velocity, for robots that do not
+/// hear it. Robots send those of the robots that their law needs in turn, behind their beacons.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Relayed {
@@ -180,7 +179,7 @@ pub enum Message {
     Key(KeyAssignment),
     /// A robot's progress with its keys.
     KeyHeld(KeyHeld),
-    /// What another robot last said.
+    /// The last beacon of another robot.
     Relayed(Relayed),
 }
 

@@ -70,8 +70,8 @@ impl<B: AsRef<[u8]>, S: Scalar> VoxelNeighborIn<B, S> {
         left <= -right && right > S::ZERO && bottom <= S::ZERO && top > S::ZERO && least <= S::ZERO && most >= S::ONE
     }
 
-    /// The half-space of a ball: a velocity obstacle in space is that of the plane, turned about the
-    /// axis to the neighbour, so the normal lies in the plane of this axis and the relative
+    /// The half-space of a ball: a velocity obstacle in space is that of the plane, turned about
+    /// the axis to the neighbour, so the normal lies in the plane of this axis and the relative
     /// velocity. Otherwise as in the plane.
     #[must_use]
     pub fn of_ball(

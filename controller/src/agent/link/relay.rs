@@ -7,7 +7,7 @@
 //! [`last`](crate::neighbor::PlausibilityLimits::last), of an unknown robot out of radio range, or
 //! at a place that the known robot cannot have reached.
 //!
-//! With [`relays`](crate::agent::AgentConfig::relays) it also tells on what the robots said that its
+//! With [`relays`](crate::agent::AgentConfig::relays) it also relays the beacons of robots that its
 //! law needs: so the members of a formation know each other's moves where hills or distance hide
 //! some of them.
 
@@ -50,7 +50,7 @@ pub(super) struct Relay {
     /// A robot of which another robot has told an old state, or that was just heard for the first
     /// time.
     urgent: RobotId,
-    /// The last robot in the turn of those whose words are told on.
+    /// The last robot in the turn of relayed ones.
     relayed: RobotId,
     audience: Audience,
 }
@@ -110,7 +110,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         if let Some(known) = known
             && heard.since(known.heard) <= UNIT
         {
-            // Of words that are told on one learns sooner who lacks them.
+            // A relayed beacon shows sooner that its teller does not hear the robot.
             let late = if said.is_some() { listener.period.saturating_mul(2) } else { self.table.ages().stale_after };
             if known.heard.since(heard) > late {
                 self.relay.urgent = id;
@@ -162,7 +162,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
     }
 
-    /// Stores what another robot said, if it is newer.
+    /// Stores a relayed beacon if it is newer.
     pub(super) fn hear_relayed(
         &mut self,
         teller: RobotId,
@@ -177,10 +177,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         self.hear_told(teller, &told, Some(said), now, listener, out);
     }
 
-    /// Tells on what the robots said that the law needs: up to `count` of them, as far as frames fit.
-    /// The one with the lowest id, which all of a formation follow, comes each time, then one of
-    /// which another robot has told older words, then the others in turn; with a `count` of 1 all
-    /// come in turn. O(`count` N).
+    /// Relays the last beacons of robots that the law needs: up to `count`, as far as frames fit.
+    /// The robot with the lowest id, which all of a formation follow, comes each time, then one of
+    /// which another robot has relayed an older beacon, then the others in turn; with a `count` of
+    /// 1 all come in turn. O(`count` N).
     pub(in crate::agent) fn relay(
         &mut self,
         count: u8,
@@ -210,7 +210,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
     }
 
-    /// What the robot with the next higher id said, or that with the lowest one.
+    /// The beacon of the robot with the next higher id, or the lowest one.
     fn said_after(&self, last: RobotId, needs: impl Fn(RobotId) -> bool, now: Instant) -> Option<Relayed> {
         let is_recent = |age: Duration| age <= self.table.ages().expire_after;
         let told = self.table.iter().filter(|known| needs(known.id) && known.age(now).is_some_and(is_recent));

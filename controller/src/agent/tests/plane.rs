@@ -97,7 +97,7 @@ where
     }
 }
 
-/// Remembers whom it sees, and decides what it is told to.
+/// Remembers the robots that it sees, and decides as the test sets it.
 #[derive(Default)]
 pub(super) struct Onlooker {
     pub(super) seen: Vec<Nearby<f32>>,

@@ -49,7 +49,7 @@ impl<const ID: u8> Protocol for Calls<ID> {
     }
 }
 
-/// Sends what it is told to at its next decision, and remembers what it receives.
+/// Sends the messages of the test at its next decision, and remembers those that it receives.
 #[derive(Clone, Debug, Default)]
 struct Caller<const ID: u8> {
     to_send: Vec<(RobotId, Call)>,

@@ -1,4 +1,4 @@
-//! Tests of robots of a formation that tell on what they hear of each other.
+//! Tests of robots of a formation that relay the beacons of each other.
 
 use super::*;
 use crate::wire::Relayed;
@@ -53,17 +53,17 @@ fn members_that_do_not_hear_each_other_know_each_others_cells_and_leaders() {
     for _ in 0..6 {
         row.step([true; 3]);
     }
-    let told = row.agents[2].neighbors().iter().find(|known| known.id == RobotId(1)).expect("told on");
+    let told = row.agents[2].neighbors().iter().find(|known| known.id == RobotId(1)).expect("relayed");
     assert_eq!(told.payload.map(|said| said.cell), Some(CELLS_OF_ROW[0]));
     assert_eq!(told.mode, Mode::Cruise);
-    let told = row.agents[0].neighbors().iter().find(|known| known.id == RobotId(3)).expect("told on");
+    let told = row.agents[0].neighbors().iter().find(|known| known.id == RobotId(3)).expect("relayed");
     assert_eq!(told.payload.map(|said| said.leader), Some(RobotId(2)));
     // The robot between them heard it a tick before; ages are rounded up.
     assert_eq!(tick(row.tick - 1).since(told.heard), Duration::from_micros(TICK + 10_000));
 }
 
 #[test]
-fn without_relays_nothing_is_told_on_and_nothing_is_heard() {
+fn without_relays_no_beacon_is_relayed_and_none_is_received() {
     let mut row = Row::new(0);
     row.agents[1] = Row::new(2).agents.swap_remove(1);
     for _ in 0..6 {
@@ -82,7 +82,7 @@ fn the_first_comes_each_time_and_the_others_in_turn() {
         row.step([true; 3]);
         told.extend(row.relayed_by(1).iter().map(|said| said.id.0));
     }
-    // In the first step it has heard nobody.
+    // In the first step it has heard no robot.
     let count = |id: u32| told.iter().filter(|told| **told == id).count();
     assert_eq!(count(1) + count(3), 8, "{told:?}");
     assert!(count(1) >= 3 && count(3) >= 3, "{told:?}");
@@ -92,7 +92,7 @@ fn the_first_comes_each_time_and_the_others_in_turn() {
     assert_eq!(row.relayed_by(1).iter().map(|said| said.id.0).collect::<Vec<_>>(), [1, 3]);
 }
 
-/// States that got younger from robot to robot would be told round and round for ever.
+/// States that got younger from robot to robot would be relayed for ever.
 #[test]
 fn a_robot_that_falls_silent_is_forgotten_by_all() {
     for relays in 1..=3 {
@@ -109,7 +109,7 @@ fn a_robot_that_falls_silent_is_forgotten_by_all() {
 }
 
 #[test]
-fn only_robots_that_the_law_needs_are_told_on_and_only_newer_words_count() {
+fn only_robots_that_the_law_needs_are_relayed_and_only_newer_beacons_count() {
     let (mut agent, mut ws) = (Row::new(3).agents.swap_remove(0), workspace());
     let stranger = bytes(9, 0, 0, &[Message::Beacon(beacon_at(12, 5))]);
     let out = agent.step(&inputs(&FLAT, CELLS_OF_ROW[0], &stranger), tick(0), &mut ws);
@@ -122,7 +122,7 @@ fn only_robots_that_the_law_needs_are_told_on_and_only_newer_words_count() {
     for (n, age_cs, expected) in [(1, 100, 1), (2, 300, 1), (3, 100, 3), (4, 250, 3)] {
         let inbox = bytes(3, 0, n, &[Message::Relayed(said(age_cs))]);
         let _ = agent.step(&inputs(&FLAT, CELLS_OF_ROW[0], &inbox), tick(n.into()), &mut ws);
-        // A tick old when it was told on, and a tick under way.
+        // A tick old when it was relayed, and a tick under way.
         assert_eq!(heard(&agent), Some(tick(expected) - Duration::from_micros(2 * TICK)), "step {n}");
     }
     // A robot does not believe what others say of itself.

@@ -15,7 +15,7 @@ struct World {
     map: Vec<&'static [u8]>,
     robots: Vec<Negotiator<16, 4>>,
     cells: Vec<Cell>,
-    /// The first so many robots are dead.
+    /// Number of dead robots, the first ones.
     dead: usize,
     refused: usize,
 }

@@ -179,7 +179,7 @@ impl State {
                 let z = sigma_norm(offset.norm_squared()).sigma;
                 // The slope of the sigma norm is 1 / (1 + e ||z||_sigma), as in equation 43.
                 let element = self.phi.at(z, self.phi.adjacency(z)) / (1.0 + z / 10.0);
-                sum = sum + offset * element;
+                sum += offset * element;
                 total += element;
                 squares += element * element;
                 links += 1;

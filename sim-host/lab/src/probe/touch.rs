@@ -42,7 +42,7 @@ impl Touch {
 
 impl Probe for Touch {
     fn tick(&mut self, moment: &Moment<'_>, _: &[RobotRow]) -> ControlFlow<()> {
-        // At the start nobody has said anything.
+        // At the start no robot has sent anything.
         if moment.row.tick == 0 || moment.arrived > 0 {
             return ControlFlow::Continue(());
         }

@@ -154,8 +154,8 @@ table! {
         pub dying: u32 = 0;
         /// When they die, seconds.
         pub die_s: f64 = 0.0, 0.0..=1e9, "s";
-        /// Rule by which robots vote for one of the goals of a goal flock (with exact knowledge), to
-        /// which each then moves at once; the leaders' rule is without effect.
+        /// Rule by which robots vote for one of the goals of a goal flock (with exact knowledge);
+        /// each then moves there at once. The leaders' rule is without effect.
         pub votes: vote::Rule = vote::Rule::None;
         /// Probability of a first vote for the first goal; the others are equally likely.
         pub first_goal: f64 = 0.5, 0.0..=1.0, "";

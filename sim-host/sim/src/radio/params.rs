@@ -86,8 +86,8 @@ table! {
         pub bandwidth_bytes_per_s: Option<u32>;
         /// Spans `[from, to]` of seconds after the start during which every packet is lost.
         pub blackout_s: Vec<[f64; 2]> = Vec::new();
-        /// Packets behind each beacon in which the robots of a formation tell on what they hear of
-        /// each other, for those that distance or land hides. Default: 0.
+        /// Beacons of the robots of a formation that each of them relays behind its own, for those
+        /// that distance or land hides. Default: 0.
         pub relays: u8 = 0;
         /// Faults of single radios and links.
         pub fault: Vec<RadioFault> = Vec::new();

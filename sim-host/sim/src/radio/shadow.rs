@@ -163,7 +163,7 @@ mod tests {
                 !cells.contains(&cell) && hills.top_m(cell) > z + 1e-9
             });
             prop_assert!(!(hidden && is_below), "a hidden robot is heard");
-            // What small steps miss is at most a corner.
+            // Small steps miss at most a corner.
             prop_assert!(is_below || hidden || hills.grazes(start, end), "a visible robot is not heard");
             prop_assert_eq!(is_below, hills.are_below(to_m, from_m));
         }

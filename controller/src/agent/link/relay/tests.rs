@@ -81,7 +81,7 @@ fn the_age_of_a_told_state_is_rounded_up() {
     assert_eq!([-1.0, 99.0].map(radius), [0, u16::MAX]);
 }
 
-/// What robot 2 tells of robot 3, at 4 m to the east.
+/// The state of robot 3, 4 m to the east, that robot 2 tells.
 fn told() -> LostRobot {
     LostRobot { id: RobotId(3), is_lost: false, age_cs: 0, position_mm: [4000, 0, 0], radius_mm: 300 }
 }

@@ -265,8 +265,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.behind > self.formation.patience
     }
 
-    /// The robot that takes messages for the leader: the first of the formation that is heard, if
-    /// it comes before this one, passes them on. None if the leader is heard, or nobody is.
+    /// The robot that passes messages on to the leader: the first one of the formation that is
+    /// received, if it comes before this one. None if the leader is received, or no other one.
     fn next_hop<S: Copy>(&self, input: &View<'_, S, Grid>) -> RobotId {
         let is_heard = |id: RobotId| input.neighbor(id).is_some_and(|known| known.trace != Trace::Told);
         if is_heard(self.leader) {

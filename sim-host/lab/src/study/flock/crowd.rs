@@ -209,7 +209,7 @@ impl<'a> Crowd<'a> {
         cells.rebuild(&self.places);
         let (mut found, mut nearby, mut next) = (Vec::new(), Vec::new(), Vec::new());
         let (mut votes, weight) = (self.votes.clone(), 1.0 / self.places.len() as f64);
-        for robot in 0..self.places.len() {
+        for (robot, vote) in votes.iter_mut().enumerate() {
             if robot < dead {
                 next.push([0.0; 3]);
                 continue;
@@ -219,7 +219,7 @@ impl<'a> Crowd<'a> {
             nearby.clear();
             let alive = found.iter().filter(|other| other.index as usize >= dead);
             let heard = alive.clone().filter_map(|other| self.votes.get(other.index as usize));
-            votes[robot] = vote::next(self.rule, &self.votes[robot], heard, weight);
+            *vote = vote::next(self.rule, &self.votes[robot], heard, weight);
             nearby.extend(alive.map(|other| Nearby {
                 id: RobotId(other.index + 1),
                 offset_m: vec(other.offset),

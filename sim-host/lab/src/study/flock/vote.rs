@@ -1,5 +1,4 @@
-//! Votes of robots that choose one of several goals together, by what they know from the robots in
-//! range.
+//! Votes of robots that choose one of several goals together, by the votes of the robots in range.
 
 use staya_controller::agent::GOALS;
 use staya_controller::rand::Rng;

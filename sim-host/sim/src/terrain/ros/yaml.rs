@@ -249,9 +249,9 @@ impl<'a> Events<'a> {
         match self.parser.next_event() {
             Some(Ok((event, span))) => Ok((span.start.line(), event)),
             Some(Err(error)) => {
-                // The parser's words for these are no user's.
-                let [list, keys] = [["flow sequence", "list in brackets"], ["block mapping", "list of keys"]];
-                let what = [list, keys].iter().fold(error.info().to_owned(), |what, [from, to]| what.replace(from, to));
+                // Users do not know the parser's terms.
+                let terms = [["flow sequence", "list in brackets"], ["block mapping", "list of keys"]];
+                let what = terms.iter().fold(error.info().to_owned(), |what, [from, to]| what.replace(from, to));
                 let what = format!("this is not YAML: {what}");
                 let line = error.marker().line().min(self.last_line);
                 Err(format_error(self.path, Place::Line(line), what, SHAPE))
