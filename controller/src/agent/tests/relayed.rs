@@ -125,9 +125,17 @@ fn only_robots_that_the_law_needs_are_relayed_and_only_newer_beacons_count() {
         // A tick old when it was relayed, and a tick under way.
         assert_eq!(heard(&agent), Some(tick(expected) - Duration::from_micros(2 * TICK)), "step {n}");
     }
+    // Also its activity and its flock are relayed, for a robot that was known before and for a new one.
+    for (id, n) in [(2, 5), (3, 6)] {
+        let other = Relayed { id: RobotId(id), mode: Mode::Hold, flock: 7, ..said(0) };
+        let inbox = bytes(20, 0, n, &[Message::Relayed(other)]);
+        let _ = agent.step(&inputs(&FLAT, CELLS_OF_ROW[0], &inbox), tick(n.into()), &mut ws);
+        let known = agent.neighbors().iter().find(|known| known.id == RobotId(id)).expect("relayed");
+        assert_eq!((known.mode, known.flock), (Mode::Hold, 7));
+    }
     // A robot does not believe what others say of itself.
     let own = Relayed { id: RobotId(1), ..said(0) };
-    let _ = agent.step(&inputs(&FLAT, CELLS_OF_ROW[0], &bytes(3, 0, 9, &[Message::Relayed(own)])), tick(5), &mut ws);
+    let _ = agent.step(&inputs(&FLAT, CELLS_OF_ROW[0], &bytes(20, 0, 9, &[Message::Relayed(own)])), tick(7), &mut ws);
     assert!(agent.neighbors().iter().all(|known| known.id != RobotId(1)));
 }
 

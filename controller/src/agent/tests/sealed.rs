@@ -74,3 +74,22 @@ fn a_robot_with_an_exhausted_counter_reports_it_and_still_receives() {
     assert!(out.outbox.is_empty() && out.events.contains(&Event::Muted), "{:?}", out.events);
     assert_eq!((out.received, agent.target()), (1, Some(Cell::new(20, 5))));
 }
+
+#[test]
+fn the_numbers_of_beacons_count_periods_also_while_the_robot_pauses() {
+    let guidance = RouteGuidance::new(RouteParams::default());
+    let mut agent = SealedAgent::new(&config(1), guidance, Unguarded, wire(b"swarm"));
+    let (mut listener, mut ws) = (wire(b"swarm"), workspace());
+    let mut numbers = Vec::new();
+    // Steps that are late, early, and after a pause of 40 periods.
+    for ms in [0, 1000, 2400, 3000, 43_000, 44_000] {
+        let now = Instant::from_micros(1000 * ms);
+        let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &[]), now, &mut ws);
+        let mut outbox = out.outbox.as_slice();
+        while let Some(frame) = listener.next_frame(&mut outbox) {
+            numbers.push((ms, listener.decode(frame).unwrap().header.sequence));
+        }
+    }
+    // The even ones are those of beacons. The one after 600 ms waits for its period.
+    assert_eq!(numbers, [(0, 0), (1000, 2), (2400, 4), (43_000, 86), (44_000, 88)]);
+}
