@@ -93,3 +93,22 @@ fn the_numbers_of_beacons_count_periods_also_while_the_robot_pauses() {
     // The even ones are those of beacons. The one after 600 ms waits for its period.
     assert_eq!(numbers, [(0, 0), (1000, 2), (2400, 4), (43_000, 86), (44_000, 88)]);
 }
+
+/// By its numbers, two for each period, a robot whose frames arrive at once was ten periods apart.
+#[test]
+fn a_robot_whose_frames_were_delayed_may_be_as_far_as_its_numbers_tell() {
+    use crate::neighbor::PlausibilityLimits;
+    for (x_mm, is_believed) in [(9_000, true), (25_000, false)] {
+        let settle = Duration::from_millis(60_000);
+        let plausibility = PlausibilityLimits { max_speed_mps: 1.0, slack_m: 0.5, settle, ..PlausibilityLimits::ANY };
+        let guidance = RouteGuidance::new(RouteParams::default());
+        let mut agent =
+            SealedAgent::new(&AgentConfig { plausibility, ..config(1) }, guidance, Unguarded, wire(b"swarm"));
+        let (mut friend, mut ws) = (wire(b"swarm"), workspace());
+        let at = |x_mm: i32| Message::Beacon(Beacon { position_mm: [x_mm, 0, 0], ..beacon_at(9, 5) });
+        let inbox = [said(&mut friend, 0, &at(0)), said(&mut friend, 20, &at(x_mm))].concat();
+        let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
+        let known = agent.neighbors().first().map(|known| known.position.mm[0]);
+        assert_eq!(known, Some(if is_believed { x_mm } else { 0 }), "{x_mm} mm");
+    }
+}
