@@ -128,10 +128,10 @@ mod tests {
 
     #[test]
     fn claims_of_other_scenarios_and_conditions_without_a_claim_are_left_out() {
-        let (one, other) = (shipped("papers/orca/crossing/tee.toml"), shipped("papers/orca/crossing/mixed.toml"));
+        let (one, other) = (shipped("papers/orca/crossing/four_ways.toml"), shipped("papers/orca/crossing/mixed.toml"));
         let has = |all: &[Claim], text: &str| all.iter().any(|claim| claim.claim.starts_with(text));
-        assert!(has(&one, "`tee`") && !has(&one, "`mixed`") && has(&one, "Robots do not overlap"));
-        assert!(!has(&other, "`tee`") && has(&other, "`mixed`"));
+        assert!(has(&one, "`four_ways`") && !has(&one, "`mixed`") && has(&one, "Robots do not overlap"));
+        assert!(!has(&other, "`four_ways`") && has(&other, "`mixed`"));
         assert!(one.iter().chain(&other).all(|claim| !claim.claim.is_empty()));
         assert_eq!(shipped("scenarios/swap-circle.toml"), []);
         // The figure does not name it.
