@@ -125,7 +125,7 @@ fn only_robots_that_the_law_needs_are_relayed_and_only_newer_beacons_count() {
         // A tick old when it was relayed, and a tick under way.
         assert_eq!(heard(&agent), Some(tick(expected) - Duration::from_micros(2 * TICK)), "step {n}");
     }
-    // Also its activity and its flock are relayed, for a robot that was known before and for a new one.
+    // Activity and flock are relayed, too, of a robot that was known before and of a new one.
     for (id, n) in [(2, 5), (3, 6)] {
         let other = Relayed { id: RobotId(id), mode: Mode::Hold, flock: 7, ..said(0) };
         let inbox = bytes(20, 0, n, &[Message::Relayed(other)]);

@@ -154,3 +154,29 @@ fn only_states_that_arrive_in_time_say_that_the_own_robot_is_heard() {
         assert_eq!(link.hearing(), hearing, "{late_us}");
     }
 }
+
+/// A robot near the eastern border of a torus tells of one beyond it.
+#[cfg(feature = "host")]
+#[test]
+fn on_a_torus_a_told_place_is_the_nearest_of_its_images() {
+    for (width_m, expected_mm) in [(None, 9_000), (Some(10.0), -1_000)] {
+        let now = at(1000);
+        let mut link = knows(&[], now);
+        if let Some(width_m) = width_m {
+            link.set_torus(crate::geom::Torus { size_m: [width_m; 2] });
+        }
+        link.table.note_reception(
+            &mut Neighbor::from_beacon(
+                RobotId(2),
+                &Beacon { position_mm: [9_000, 0, 0], ..Beacon::default() },
+                <()>::ID,
+                now,
+            ),
+            Position::ORIGIN,
+            Vec3::ZERO,
+        );
+        let _ = hear(&mut link, &LostRobot { position_mm: [9_000, 0, 0], is_lost: true, ..told() }, now);
+        let place = link.table.lost().first().map(|known| known.position.mm[0]);
+        assert_eq!(place, Some(expected_mm));
+    }
+}
