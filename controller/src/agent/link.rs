@@ -30,6 +30,7 @@ mod relay;
 mod sight;
 
 pub(super) use audience::Hearing;
+pub use relay::RELAYS;
 
 const PENDING: usize = 4;
 const INCOMING: usize = 4;

@@ -141,6 +141,7 @@ pub use crate::safety::{
 pub use config::AgentConfig;
 pub use contact_loss::ContactLossPolicy;
 pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, OUTBOX, Outputs, Refused};
+pub use link::RELAYS;
 pub use perception::{Perception, RadioOnly};
 pub use setup::{AnyAgent, Setup, Task};
 

@@ -16,13 +16,14 @@ use super::dates::Sender;
 use super::{Link, Outputs, Protocol, ReceiveContext, report};
 use crate::agent::contact_loss::Listening;
 use crate::agent::duplicate_id::is_within;
-use crate::agent::io::Event;
+use crate::agent::io::{Event, OUTBOX};
 use crate::geom::Position;
 use crate::neighbor::{Neighbor, Put, Trace};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{Beacon, Content as _, LostRobot, MAX_PAYLOAD, Message, Relayed, Wire};
+use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Beacons for each told state: after the start, while a robot is silent, and while none is.
@@ -32,6 +33,12 @@ const TELL_EVERY: [u8; 3] = [1, 2, 4];
 const UNIT: Duration = Duration::from_millis(10);
 /// Age of a told state that shows whom its teller hears, in units of the age of a stale neighbour.
 const RECENT: i32 = 2;
+
+/// The most beacons that a robot relays behind one of its own
+/// ([`relays`](crate::agent::AgentConfig::relays)).
+pub const RELAYS: usize = 3;
+
+const _: () = assert!(Beacon::MAX_FRAME_LEN + RELAYS * Relayed::MAX_FRAME_LEN <= OUTBOX);
 
 /// Spreads the turns of near robots.
 const MIXED: u8 = 157;
@@ -188,22 +195,21 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         now: Instant,
         out: &mut Outputs<S>,
     ) {
-        let mut first = RobotId::NONE;
-        for turn in 0..count {
+        let mut told = Vec::<RobotId, RELAYS>::new();
+        for turn in 0..count.min(RELAYS as u8) {
             let is_first = turn == 0 && count > 1;
             let last = if is_first { RobotId::NONE } else { self.relay.relayed };
-            let is_other = |id: RobotId| id != first && needs(id);
-            let is_urgent = |id: RobotId| id == self.relay.urgent && is_other(id);
+            let is_next = |id: RobotId| !told.contains(&id) && needs(id);
+            let is_urgent = |id: RobotId| id == self.relay.urgent && is_next(id);
             let late = if is_first { None } else { self.said_after(last, is_urgent, now) };
             let is_late = late.is_some();
-            let Some(said) = late.or_else(|| self.said_after(last, is_other, now)) else { return };
-            if is_first {
-                first = said.id;
-            } else if is_late {
+            let Some(said) = late.or_else(|| self.said_after(last, is_next, now)) else { return };
+            if is_late {
                 self.relay.urgent = RobotId::NONE;
-            } else {
+            } else if !is_first {
                 self.relay.relayed = said.id;
             }
+            let _ = told.push(said.id);
             if self.say(&Message::Relayed(said), 0, out).is_err() {
                 return;
             }

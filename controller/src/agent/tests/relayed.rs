@@ -92,6 +92,22 @@ fn the_first_comes_each_time_and_the_others_in_turn() {
     assert_eq!(row.relayed_by(1).iter().map(|said| said.id.0).collect::<Vec<_>>(), [1, 3]);
 }
 
+#[test]
+fn no_robot_is_relayed_twice_behind_one_beacon() {
+    for relays in [2, 3, u8::MAX] {
+        let mut row = Row::new(relays);
+        for _ in 0..9 {
+            row.step([true; 3]);
+            let mut ids: Vec<u32> = row.relayed_by(1).iter().map(|said| said.id.0).collect();
+            let count = ids.len();
+            ids.sort_unstable();
+            ids.dedup();
+            assert_eq!(ids.len(), count);
+        }
+        assert_eq!(row.relayed_by(1).len(), 2, "all that it hears");
+    }
+}
+
 /// States that got younger from robot to robot would be relayed for ever.
 #[test]
 fn a_robot_that_falls_silent_is_forgotten_by_all() {

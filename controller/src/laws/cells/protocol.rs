@@ -309,9 +309,13 @@ impl GridTask {
         let leader = self.shown.leader;
         if self.stops.receive(from, origin, valid_ms, radio.now()) && leader.is_some() && leader != origin {
             let valid = valid_ms.map_or(radio.valid, |millis| Duration::from_millis(millis.into()));
-            let to = if self.next_hop.is_some() { self.next_hop } else { leader };
-            radio.send(to, message, valid);
+            radio.send(self.towards(leader), message, valid);
         }
+    }
+
+    /// The robot to which a message for the leader goes.
+    pub(crate) const fn towards(&self, leader: RobotId) -> RobotId {
+        if self.next_hop.is_some() { self.next_hop } else { leader }
     }
 
     /// Until when another robot asked this one to stop.

@@ -7,7 +7,7 @@ use crate::file::has_memory;
 use crate::radio::{self, LAST_START};
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
-use staya_controller::agent::LawSettings;
+use staya_controller::agent::{LawSettings, RELAYS};
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Format;
 use staya_mavlink::any::max_robot;
@@ -60,9 +60,6 @@ pub(super) fn numbers(draft: &Draft<'_>, robots: &[Robot], intruders: usize) -> 
     Err(draft.error("radio.format", what, "give fewer robots or smaller numbers, or format = \"postcard\""))
 }
 
-/// As many as fit into an outbox behind a beacon.
-const MOST_RELAYS: f64 = 3.0;
-
 pub(super) fn radio(draft: &Draft<'_>) -> Checked {
     let radio = &draft.file.radio;
     if let Some(burst) = &radio.burst {
@@ -77,7 +74,10 @@ pub(super) fn radio(draft: &Draft<'_>) -> Checked {
         let is_span = *from >= 0.0 && from < to && to.is_finite();
         draft.require(is_span, &format!("radio.blackout_s[{index}]"), what, remedy)?;
     }
-    draft.within("radio.relays", radio.relays.into(), 0.0..=MOST_RELAYS, "packets")?;
+    draft.within("radio.relays", radio.relays.into(), 0.0..=RELAYS as f64, "packets")?;
+    let is_of_use = radio.relays == 0 || draft.file.in_formation();
+    let what = "no robots are in a formation, whose beacons could be relayed";
+    draft.require(is_of_use, "radio.relays", what, "give [robots.formation], or leave it out")?;
     let overtaken_ms = if radio.reorder > 0.0 { radio.reorder_ms } else { 0.0 };
     let longest_ms = radio.delay_ms + radio.jitter_ms + overtaken_ms;
     let is_quick = draft.file.plane.is_some() || longest_ms < draft.file.tick_s * 1000.0;

@@ -354,7 +354,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.choose_leader(input, &found);
         let leader = self.leader;
         self.task.next_hop = self.next_hop(input);
-        let upwards = if self.task.next_hop.is_some() { self.task.next_hop } else { leader };
+        let upwards = self.task.towards(leader);
         let guide = self.guide(input, view, cell, &seen);
         let goes_alone = guide.as_ref().is_some_and(|guide| self.has_lost_touch(guide));
         let guide = guide.filter(|_| !goes_alone);
