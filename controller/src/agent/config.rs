@@ -54,7 +54,8 @@ pub struct AgentConfig<S> {
     pub plausibility: PlausibilityLimits<S>,
     /// Frames behind each beacon that relay the last beacons of robots which the law needs, for
     /// members of a formation that distance or land hides from each other, at most
-    /// [`RELAYS`](super::RELAYS). 0: none is relayed, and none is received. A frame must arrive within [`latency`](Self::latency) and a beacon period,
+    /// [`RELAYS`](super::RELAYS). 0: none is relayed, and none is received. A frame must arrive
+    /// within [`latency`](Self::latency) and a beacon period,
     /// or states get younger from robot to robot.
     pub relays: u8,
     /// The own flock. A robot that [flocks](crate::flock) treats members of other flocks as
