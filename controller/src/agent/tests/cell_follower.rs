@@ -183,6 +183,27 @@ fn the_law_does_not_decide_again_while_the_robot_advances_in_its_cell() {
     assert_eq!(count([-0.9, 0.1], 50), 3);
 }
 
+/// The slowest robot of a formation on rough land sets the pace of its leader.
+#[test]
+fn a_robot_that_goes_at_a_slower_pace_advances_too() {
+    let decisions = |pace_mps: f32| {
+        let mut guidance = counting();
+        let counts = [0, 25, 50].map(|n| {
+            let mut told = told(Cell::new(5, 5), [0.0; 2], 1.0, n);
+            told.0.scene.body.velocity_mps = Vec3::new(0.2, 0.2, 0.0);
+            let mut outgoing = Outgoing::default();
+            let radio = Radio::new(told.0.now, VALID, &mut outgoing);
+            let tools = Tools { rng: &mut Rng::new(1), radio, workspace: &mut () };
+            let _ = guidance.decide_at(pace_mps, &told.0, &told.1, tools).expect("a decision");
+            guidance.inside().decisions
+        });
+        counts
+    };
+    assert_eq!(decisions(1.0), [1, 2, 3]);
+    assert_eq!(decisions(0.3), [1, 1, 1]);
+    assert_eq!(decisions(0.6), [1, 2, 3], "less than half");
+}
+
 #[test]
 fn the_robot_heads_for_the_centre_of_the_next_cell() {
     let mut guidance = counting();

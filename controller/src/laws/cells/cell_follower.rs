@@ -60,6 +60,27 @@ impl<S: Scalar, G> CellFollower<S, G> {
     pub const fn inside(&self) -> &G {
         &self.law
     }
+
+    /// [`Law::decide`] for a robot that goes at `pace_mps` though it could be faster.
+    pub(crate) fn decide_at(
+        &mut self,
+        pace_mps: S,
+        view: &View<'_, S, G::Protocol>,
+        here: &InCells<'_, S>,
+        tools: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput>
+    where
+        G: for<'a> Law<S, Surroundings<'a> = OnGrid<'a>>,
+    {
+        let Self { law, speed_mps, last } = self;
+        let Tools { rng, mut radio, workspace } = tools;
+        let has_goal = law.report().goal.or(view.sent_to).is_some();
+        follow((speed_mps.max(S::from_milli(1)), pace_mps, has_goal), last, view, here, &mut |grid| {
+            let tools = Tools { rng, radio: radio.of(), workspace };
+            let decision = law.decide(view, &grid, tools)?;
+            Ok((decision, law.report().target))
+        })
+    }
 }
 
 impl<S: Scalar, G> Law<S> for CellFollower<S, G>
@@ -76,14 +97,7 @@ where
         here: &InCells<'_, S>,
         tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
-        let Self { law, speed_mps, last } = self;
-        let Tools { rng, mut radio, workspace } = tools;
-        let has_goal = law.report().goal.or(view.sent_to).is_some();
-        follow((speed_mps.max(S::from_milli(1)), has_goal), last, view, here, &mut |grid| {
-            let tools = Tools { rng, radio: radio.of(), workspace };
-            let decision = law.decide(view, &grid, tools)?;
-            Ok((decision, law.report().target))
-        })
+        self.decide_at(view.body.max_speed_mps, view, here, tools)
     }
 
     fn payload(
@@ -133,7 +147,7 @@ type Targeted<S> = (Decision<S>, Option<Cell>);
 /// One step of a law that decides by `decide`. Not generic over the law, so it is compiled once.
 #[inline(never)]
 fn follow<S: Scalar>(
-    (speed_mps, has_goal): (S, bool),
+    (speed_mps, pace_mps, has_goal): (S, S, bool),
     last: &mut Option<Last<S>>,
     input: &Scene<'_, S>,
     here: &InCells<'_, S>,
@@ -162,7 +176,7 @@ fn follow<S: Scalar>(
     let is_due = |last: &Last<S>| {
         let age_s = S::from_micro(input.now.since(last.at).as_micros());
         let ahead = way(&last.decision).normalized().unwrap_or_default();
-        let gets_on = input.body.velocity_mps.xy().dot(ahead) > speed * S::HALF;
+        let gets_on = input.body.velocity_mps.xy().dot(ahead) > speed.min(pace_mps) * S::HALF;
         last.cell != cell || age_s < S::ZERO || age_s >= crossing_s && !gets_on
     };
     let (mut decision, target) = match &*last {

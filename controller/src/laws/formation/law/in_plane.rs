@@ -272,7 +272,11 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_some() {
             self.cells.discard_decision();
         }
-        let mut decision = self.cells.decide(input, here, Tools { rng, radio: radio.of(), workspace })?;
+        // A formation on rough land goes at the pace of its slowest robot: its leader would decide
+        // again in mid-cell, for ever between two ways that seem equally good.
+        let pace_mps = if self.inside().leader.is_some() { input.body.max_speed_mps } else { self.wish_mps.norm() };
+        let tools = Tools { rng, radio: radio.of(), workspace };
+        let mut decision = self.cells.decide_at(pace_mps, input, here, tools)?;
         if decision.progress != Progress::Idle {
             self.refine(input, here, &mut radio, &mut decision)?;
         }
