@@ -11,6 +11,7 @@ const HSE_HZ: u32 = 8_000_000;
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rustc-check-cfg=cfg(part, values(\"stm32f405\", \"nrf51\", \"riscv32\"))");
+    println!("cargo:rustc-check-cfg=cfg(numbers, values(\"f32\", \"fast32\", \"q16\"))");
     number("STAYA_BAUD", BAUD, 1200..=2_000_000);
     // The PLL divides the crystal down to 1 MHz.
     let hse_hz = number("STAYA_HSE_HZ", HSE_HZ, 4_000_000..=26_000_000);
@@ -25,6 +26,7 @@ fn main() {
         _ => return,
     };
     println!("cargo:rustc-cfg=part=\"{part}\"");
+    println!("cargo:rustc-cfg=numbers=\"{}\"", numbers(part));
     let here = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
     let here = Path::new(&here);
     for watched in [here.to_path_buf(), here.join("../../memory.x")] {
@@ -78,6 +80,16 @@ fn offer_script(here: &Path, part: &str, scripts: &[&str], is_optimised: bool) {
 fn bins(here: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(here.join("src/bin")).into_iter().flatten();
     entries.filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string())).collect()
+}
+
+/// The number format of `lockstep`: the variable `STAYA_NUMBERS`, or the part's usual one.
+fn numbers(part: &str) -> String {
+    println!("cargo:rerun-if-env-changed=STAYA_NUMBERS");
+    // Software floats and their functions do not fit beside all behaviours in 256 KiB.
+    let choice: &[&str] = if part == "nrf51" { &["q16"] } else { &["f32", "fast32", "q16"] };
+    let numbers = env::var("STAYA_NUMBERS").unwrap_or_else(|_| choice[0].into());
+    assert!(choice.contains(&numbers.as_str()), "STAYA_NUMBERS={numbers}: {part} computes in {}", choice.join(", "));
+    numbers
 }
 
 fn number(name: &str, default: u32, range: std::ops::RangeInclusive<u32>) -> u32 {

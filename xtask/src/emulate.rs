@@ -3,7 +3,7 @@
 
 use crate::apt::Tools;
 use crate::device::{Part, STM32F405};
-use crate::firmware::{self, FIRMWARE, Profile, build_own};
+use crate::firmware::{self, FIRMWARE, Numbers, Profile, build_own};
 use crate::install;
 use crate::prelude::*;
 use crate::repo::shown;
@@ -70,7 +70,7 @@ const OWN: &str = "examples/own_part";
 
 /// Runs the tests on these parts with the firmware that was built before, or says why not.
 pub fn run_fleets(s: &mut Session, parts: &[Part]) {
-    let is_own_built = build_own(s, STM32F405, &s.repo.root.join(OWN));
+    let is_own_built = build_own(s, STM32F405, FIRMWARE, &s.repo.root.join(OWN));
     // The installed program finds its firmware beside itself, from a folder that knows of no
     // repository: it neither asks for cargo, which is not there, nor for this folder's.
     let prefix = s.repo.target.join("tmp/installed");
@@ -106,6 +106,22 @@ pub fn run_ten(repo: &Repo) -> Result<()> {
     let mut staya = repo.command(repo.program("debug", MAIN));
     staya.words("hil scenarios/ten-robots.toml --ticks 1000 --device qemu:stm32f405 --devices 10 --firmware");
     is_identical(staya.arg(repo.target.join("firmware")))
+}
+
+/// A swarm in each other number format, two of its robots on an emulated part.
+pub fn run_numbers(s: &mut Session) {
+    for numbers in [Numbers::Fast32, Numbers::Q16] {
+        let profile = FIRMWARE.in_numbers(Some(numbers));
+        let is_built = firmware::build(s, STM32F405, &profile, &["lockstep"]);
+        let name = numbers.name();
+        s.report.step(&format!("robots on an emulated part in {name}"), || {
+            ensure!(is_built, skipped(format!("no firmware in {name}")));
+            QEMU.prepare(&s.repo)?;
+            let mut staya = s.repo.command(s.repo.program("debug", MAIN));
+            staya.words("hil scenarios/swap-circle.toml --device qemu:stm32f405 --devices 2 --ticks 100 --set");
+            is_identical(staya.arg(format!("numbers={name}")).arg("--firmware").arg(s.repo.target.join("firmware")))
+        });
+    }
 }
 
 /// Runs `staya hil`, which fails by itself when a device and its shadow differ; the whole run must

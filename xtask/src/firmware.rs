@@ -14,18 +14,61 @@ pub struct Profile {
     pub suffix: &'static str,
     /// The folder of the ELF files in that of the part.
     folder: &'static str,
+    /// The number format of `lockstep`; `None`: the part's.
+    numbers: Option<Numbers>,
 }
 
 /// As robots have them.
-pub const FIRMWARE: &Profile = &Profile { name: "firmware", built: "firmware", suffix: "", folder: "" };
+pub const FIRMWARE: &Profile = &Profile { name: "firmware", built: "firmware", suffix: "", folder: "", numbers: None };
 /// To debug them.
-pub const DEBUG: &Profile = &Profile { name: "dev", built: "debug", suffix: ", debug", folder: "debug" };
+pub const DEBUG: &Profile = &Profile { name: "dev", built: "debug", suffix: ", debug", folder: "debug", numbers: None };
+
+/// A number format of firmware.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Numbers {
+    /// Single precision
+    F32,
+    /// Single precision with approximate functions
+    Fast32,
+    /// Fixed point, for parts without an FPU
+    Q16,
+}
+
+impl Numbers {
+    /// Its name in options and folders.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::Fast32 => "fast32",
+            Self::Q16 => "q16",
+        }
+    }
+}
 
 impl Profile {
-    /// Where the ELF file of a program is put: `target/firmware/PART/BIN`, or
-    /// `target/firmware/PART/debug/BIN`.
+    /// The same profile with `lockstep` in another number format.
+    pub const fn in_numbers(&self, numbers: Option<Numbers>) -> Self {
+        Self { numbers, ..*self }
+    }
+
+    /// Where the ELF file of a program is put: `target/firmware/PART/BIN`, with `-NUMBERS` behind
+    /// the part if they were chosen, or `target/firmware/PART/debug/BIN`.
     pub fn elf(&self, repo: &Repo, part: &Part, bin: &str) -> PathBuf {
-        repo.target.join("firmware").join(part.name).join(self.folder).join(bin)
+        repo.target.join("firmware").join(self.folder_of(part)).join(self.folder).join(bin)
+    }
+
+    fn folder_of(&self, part: &Part) -> String {
+        let usual = if part.name == "nrf51" { Numbers::Q16 } else { Numbers::F32 };
+        let other = self.numbers.filter(|&numbers| numbers != usual);
+        other.map_or_else(|| part.name.into(), |numbers| format!("{}-{}", part.name, numbers.name()))
+    }
+
+    /// The build's numbers, whatever the caller's environment says.
+    fn choose<'a>(&self, cargo: &'a mut Command) -> &'a mut Command {
+        match self.numbers {
+            Some(numbers) => cargo.env("STAYA_NUMBERS", numbers.name()),
+            None => cargo.env_remove("STAYA_NUMBERS"),
+        }
     }
 
     /// The ELF file of a program that was built before. A part that needs it is skipped without it.
@@ -50,6 +93,10 @@ pub struct Options {
     /// The program of a crate with a law of its own
     #[arg(long = "crate", value_name = "DIR", conflicts_with = "debug")]
     folder: Option<PathBuf>,
+    /// The number format of `lockstep` or of the crate's program, without this option the part's;
+    /// put into target/firmware/PART-NUMBERS
+    #[arg(long, conflicts_with = "debug")]
+    numbers: Option<Numbers>,
     #[arg(value_name = "PART", value_parser = part, default_values = NAMES)]
     parts: Vec<&'static Part>,
 }
@@ -57,10 +104,11 @@ pub struct Options {
 /// The command: one step per part.
 pub fn run_command(s: &mut Session, options: &Options) {
     let profile = if options.debug { DEBUG } else { FIRMWARE };
+    let profile = &profile.in_numbers(options.numbers);
     let bins: Vec<&str> = options.bins.iter().map(String::as_str).collect();
     for part in &options.parts {
         match &options.folder {
-            Some(folder) => build_own(s, part, folder),
+            Some(folder) => build_own(s, part, profile, folder),
             None => build(s, part, profile, &bins),
         };
     }
@@ -83,7 +131,7 @@ pub fn begin(s: &mut Session) -> Option<Child> {
 /// Builds the programs of these names for a part as one step, or all of them if none is named.
 /// Returns whether the ELF files are there.
 pub fn build(s: &mut Session, part: &Part, profile: &Profile, bins: &[&str]) -> bool {
-    let name = format!("firmware for {}{}", part.name, profile.suffix);
+    let name = format!("firmware for {}{}", profile.folder_of(part), profile.suffix);
     s.with_toolchain(&name, part.target, |repo, toolchain| make(repo, toolchain, part, profile, bins))
 }
 
@@ -102,7 +150,7 @@ pub fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: &Profile, 
         bail!("no program {unknown} in hil/firmware");
     }
     bins.retain(|bin| only.is_empty() || only.contains(&bin.as_str()));
-    execute(cargo.args(bins.iter().flat_map(|bin| ["--bin", bin])))?;
+    execute(profile.choose(&mut cargo).args(bins.iter().flat_map(|bin| ["--bin", bin])))?;
     let built = toolchain.target_folder(repo).join(part.target).join(profile.built);
     println!("{:>8} {:>8}  file", "flash", "RAM");
     bins.iter().try_for_each(|bin| put(&built.join(bin), &profile.elf(repo, part, bin)))
@@ -111,25 +159,25 @@ pub fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: &Profile, 
 /// Builds the program `firmware` of the crate in `folder` for a part as one step, and puts it where
 /// the crate's program on the host looks: `FOLDER/target/firmware/PART/lockstep`. Returns whether
 /// it is there.
-pub fn build_own(s: &mut Session, part: &Part, folder: &Path) -> bool {
-    let name = format!("firmware of {} for {}", folder.display(), part.name);
+pub fn build_own(s: &mut Session, part: &Part, profile: &Profile, folder: &Path) -> bool {
+    let name = format!("firmware of {} for {}", folder.display(), profile.folder_of(part));
     s.with_toolchain(&name, part.target, |repo, toolchain| {
         let folder = std::path::absolute(folder).with_context(|| folder.display().to_string())?;
         let manifest = folder.join("Cargo.toml");
         let shown = manifest.display();
         ensure!(manifest.is_file(), "{shown} is not there; docs/project.md says what such a crate has");
-        let Profile { name: profile, built, .. } = FIRMWARE;
+        let Profile { name, built, .. } = profile;
         let mut cargo = toolchain.cargo(repo, part.target, "build --bin firmware --profile");
-        cargo.arg(profile).arg("--manifest-path").arg(&manifest);
+        cargo.arg(name).arg("--manifest-path").arg(&manifest);
         // The repository's profile, which the crate need not have.
         for line in ["inherits=\"release\"", "opt-level=\"s\"", "lto=\"fat\"", "codegen-units=1", "panic=\"abort\""] {
-            cargo.args(["--config", &format!("profile.{profile}.{line}")]);
+            cargo.args(["--config", &format!("profile.{name}.{line}")]);
         }
         let target = toolchain.target_folder(repo);
-        execute(cargo.env("CARGO_TARGET_DIR", &target))?;
+        execute(profile.choose(cargo.env("CARGO_TARGET_DIR", &target)))?;
         println!("{:>8} {:>8}  file", "flash", "RAM");
         let from = target.join(part.target).join(built).join("firmware");
-        put(&from, &folder.join("target/firmware").join(part.name).join("lockstep"))
+        put(&from, &folder.join("target/firmware").join(profile.folder_of(part)).join("lockstep"))
     })
 }
 

@@ -5,7 +5,7 @@ use crate::apt::Tools;
 use crate::c;
 use crate::device::STM32F405;
 use crate::emulate::QEMU;
-use crate::firmware::build_own;
+use crate::firmware::{FIRMWARE, build_own};
 use crate::prelude::*;
 use crate::python;
 
@@ -102,7 +102,7 @@ fn firmware(s: &mut Session, name: &str, target: &str) {
 /// `staya hil` with the project's law.
 fn on_emulated_part(s: &mut Session) {
     let folder = s.repo.target.join("new").join(format!("pack-{}", STM32F405.name)).join("hil");
-    let is_built = build_own(s, STM32F405, &folder);
+    let is_built = build_own(s, STM32F405, FIRMWARE, &folder);
     s.report.step("a new law on the emulated stm32f405", || {
         ensure!(is_built, skipped("there is no firmware of it"));
         QEMU.prepare(&s.repo)?;

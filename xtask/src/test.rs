@@ -51,6 +51,7 @@ pub fn run(s: &mut Session, is_all: bool) {
     swarms::faults(s, &PARTS);
     emulate::run_fleets(s, &PARTS);
     s.report.step("ten robots of a formation as firmware, 1000 steps", || emulate::run_ten(&s.repo));
+    emulate::run_numbers(s);
     // Cargo takes a copy of the firmware for the same packages, and builds those again afterwards.
     plants::run(s, false);
     proof::run(s);

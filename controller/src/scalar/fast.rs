@@ -1,7 +1,7 @@
 //! Approximate `f32` through micromath, for parts with an FPU and little time: the alpha flock
 //! takes a third fewer instructions on a Cortex-M4F than with `f32` (`docs/firmware.md`).
 
-use super::{Scalar, sealed};
+use super::{NumberFormat, Scalar, sealed};
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use micromath::F32Ext;
 use serde::{Deserialize, Serialize};
@@ -79,7 +79,7 @@ impl Scalar for Fast32 {
     const PI: Self = Self(core::f32::consts::PI);
     const EPSILON: Self = Self(f32::EPSILON);
     const MAX: Self = Self(f32::MAX);
-    const IS_FLOATING: bool = true;
+    const FORMAT: NumberFormat = NumberFormat::Fast32;
 
     fn from_i32(value: i32) -> Self {
         Self(Scalar::from_i32(value))

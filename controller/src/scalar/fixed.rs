@@ -1,7 +1,7 @@
 //! Q16.16: fixed point for parts without an FPU. Integers only, without overflow.
 
 use super::integer::{bow_q32, log2_q32, polynomial_q30};
-use super::{Scalar, sealed};
+use super::{NumberFormat, Scalar, sealed};
 use core::num::NonZeroU64;
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -127,7 +127,7 @@ impl Scalar for Q16 {
     const PI: Self = Self::from_bits(205_887);
     const EPSILON: Self = Self::from_bits(1);
     const MAX: Self = Self::from_bits(i32::MAX);
-    const IS_FLOATING: bool = false;
+    const FORMAT: NumberFormat = NumberFormat::Q16;
 
     fn from_i32(value: i32) -> Self {
         Self::saturating(i64::from(value) << 16)

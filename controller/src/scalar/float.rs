@@ -1,6 +1,6 @@
 //! `f32` and `f64` through libm: software routines, hence the same bits on every target.
 
-use super::{Scalar, sealed};
+use super::{NumberFormat, Scalar, sealed};
 use libm::sqrt;
 
 #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
@@ -9,7 +9,7 @@ use super::root::sqrtf;
 use libm::sqrtf;
 
 macro_rules! impl_scalar {
-    ($float:ident, $nan_bits:expr, $floor:ident, $round:ident, $sqrt:ident, $sincos:ident, $atan2:ident, $exp:ident, $log:ident) => {
+    ($float:ident, $format:ident, $nan_bits:expr, $floor:ident, $round:ident, $sqrt:ident, $sincos:ident, $atan2:ident, $exp:ident, $log:ident) => {
         impl sealed::Sealed for $float {}
 
         impl Scalar for $float {
@@ -20,7 +20,7 @@ macro_rules! impl_scalar {
             const PI: Self = core::$float::consts::PI;
             const EPSILON: Self = $float::EPSILON;
             const MAX: Self = $float::MAX;
-            const IS_FLOATING: bool = true;
+            const FORMAT: NumberFormat = NumberFormat::$format;
 
             fn from_i32(value: i32) -> Self {
                 value as $float
@@ -142,5 +142,5 @@ macro_rules! impl_scalar {
     };
 }
 
-impl_scalar!(f32, 0x7FC0_0000, floorf, roundf, sqrtf, sincosf, atan2f, expf, logf);
-impl_scalar!(f64, 0x7FF8_0000_0000_0000, floor, round, sqrt, sincos, atan2, exp, log);
+impl_scalar!(f32, F32, 0x7FC0_0000, floorf, roundf, sqrtf, sincosf, atan2f, expf, logf);
+impl_scalar!(f64, F64, 0x7FF8_0000_0000_0000, floor, round, sqrt, sincos, atan2, exp, log);

@@ -21,11 +21,28 @@ mod tests;
 pub use fast::Fast32;
 pub use fixed::Q16;
 
+use crate::names::named;
 use core::cmp::Ordering;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+
+named! {
+    /// The implementations of [`Scalar`] by name, for scenario files, options and devices.
+    #[derive(Default)]
+    pub enum NumberFormat {
+        /// `f32`.
+        #[default]
+        F32 = "f32",
+        /// [`Q16`], fixed point.
+        Q16 = "q16",
+        /// `Fast32`, `f32` with approximate functions (feature `micromath`).
+        Fast32 = "fast32",
+        /// `f64`, the reference.
+        F64 = "f64",
+    }
+}
 
 mod sealed {
     pub trait Sealed {}
@@ -67,8 +84,10 @@ pub trait Scalar:
     const EPSILON: Self;
     /// The largest finite number; its negative is in range too.
     const MAX: Self;
+    /// The format's name.
+    const FORMAT: NumberFormat;
     /// Whether precision is relative, so that squares are as precise as lengths.
-    const IS_FLOATING: bool;
+    const IS_FLOATING: bool = !matches!(Self::FORMAT, NumberFormat::Q16);
 
     /// An integer, rounded to nearest; saturates.
     #[must_use]

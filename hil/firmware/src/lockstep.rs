@@ -9,9 +9,18 @@ use staya_link::message::Cost;
 use staya_link::robot::{self, Controller};
 use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
 
+/// The number format that the firmware was built for; see `STAYA_NUMBERS` in docs/firmware.md.
+#[cfg(numbers = "f32")]
+pub type Number = f32;
+/// The number format that the firmware was built for; see `STAYA_NUMBERS` in docs/firmware.md.
+#[cfg(numbers = "fast32")]
+pub type Number = staya_controller::scalar::Fast32;
+/// The number format that the firmware was built for; see `STAYA_NUMBERS` in docs/firmware.md.
+#[cfg(numbers = "q16")]
+pub type Number = staya_controller::scalar::Q16;
 /// The robot with law `G` that fits this part.
 #[cfg(not(part = "nrf51"))]
-pub type Own<G> = staya_link::own::OwnLarge<G>;
+pub type Own<G> = staya_link::own::OwnLarge<G, Number>;
 #[cfg(not(part = "nrf51"))]
 /// Content of its longest frame, bytes; see [`content_bytes`].
 pub const OWN_CONTENT: usize = content_bytes(0, 32, robot::LARGE_INBOX);

@@ -1,7 +1,7 @@
 //! Memory for one agent, and the conversion of a step from link inputs to a link result.
 
 use crate::capacities::Capacities;
-use crate::message::{NumberFormat, StepInputs, StepResult};
+use crate::message::{StepInputs, StepResult};
 use crate::refusal::Refusal;
 use heapless::Vec;
 use serde::Serialize;
@@ -14,10 +14,6 @@ use staya_controller::robot::RobotId;
 use staya_controller::scalar::{Scalar, cast};
 use staya_controller::time::Instant;
 use staya_controller::wire::Wire;
-
-pub(crate) const fn number<S: Scalar>() -> NumberFormat {
-    if S::IS_FLOATING { NumberFormat::F32 } else { NumberFormat::Q16 }
-}
 
 pub(crate) fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)

@@ -19,7 +19,7 @@ use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 
 /// Version of the link protocol.
-pub const VERSION: u8 = 11;
+pub const VERSION: u8 = 12;
 
 /// Bytes of version, kind and CRC.
 pub const OVERHEAD: usize = 1 + 1 + CRC_LEN;

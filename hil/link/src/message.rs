@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::{CellState, KinematicState, Outputs, Setup, Task};
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
+use staya_controller::scalar::NumberFormat;
 use staya_controller::time::Instant;
 
 /// Largest frame from the device, bytes, delimiters included. A test fills one.
@@ -101,15 +102,6 @@ pub struct StepInputs<'a> {
     pub surroundings: Option<PackedSurroundings<'a>>,
     /// Packets that the radio delivered.
     pub inbox: &'a [u8],
-}
-
-/// Number format of a device's arithmetic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum NumberFormat {
-    /// `f32`.
-    F32,
-    /// Q16.16 fixed point.
-    Q16,
 }
 
 /// Device: introduces itself, in answer to a greeting and, without a token, once after each start.

@@ -1,19 +1,19 @@
 //! Robots with a user-defined guidance law: the host sends its initial state in postcard format.
 
-use crate::body::{Body, capacities, check, number};
+use crate::body::{Body, capacities, check};
 use crate::capacities::Capacities;
-use crate::message::{NumberFormat, StepInputs, StepResult};
+use crate::message::{StepInputs, StepResult};
 use crate::refusal::Refusal;
 use crate::robot::Controller;
 use postcard::take_from_bytes;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Agent, AnySafety, HALF_PLANES, InAny, InPlane, Law, NEIGHBORS, Setup, Task};
-use staya_controller::scalar::{Q16, Scalar};
+use staya_controller::scalar::{NumberFormat, Q16, Scalar};
 use staya_controller::wire::FromFormat;
 use staya_mavlink::any::AnyWire;
 
-/// A robot with law `G` on an STM32F405 or larger: 16 neighbours, 32 obstacles, `f32`.
-pub type OwnLarge<G> = Own<f32, G, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
+/// A robot with law `G` on an STM32F405 or larger: 16 neighbours, 32 obstacles.
+pub type OwnLarge<G, S = f32> = Own<S, G, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
 /// A robot with law `G` on the micro:bit's nRF51: 8 neighbours, 16 obstacles, fixed point.
 pub type OwnSmall<G> = Own<Q16, G, 8, 16, 16, AnyWire>;
 
@@ -58,7 +58,7 @@ impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize,
     for Own<S, G, N, K, O, W>
 {
     fn number(&self) -> NumberFormat {
-        number::<S>()
+        S::FORMAT
     }
 
     fn capacities(&self) -> Capacities {

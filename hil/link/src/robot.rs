@@ -1,18 +1,20 @@
 //! The controller interface of a session, and the controller for all built-in guidance laws.
 
-use crate::body::{Body, capacities, check, count, number};
+use crate::body::{Body, capacities, check, count};
 use crate::capacities::Capacities;
-use crate::message::{NumberFormat, StepInputs, StepResult};
+use crate::message::{StepInputs, StepResult};
 use crate::refusal::Refusal;
 use staya_controller::agent::{
     AnyAgent, AnyLaw, AnySafety, CELLS, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS, Setup, Task, VISITS,
 };
-use staya_controller::scalar::{Q16, Scalar};
+use staya_controller::scalar::{NumberFormat, Q16, Scalar};
 use staya_controller::wire::{FromFormat, Postcard};
 use staya_mavlink::any::AnyWire;
 
 /// The robot of an STM32F405. Its packet format is configurable.
-pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire, LEARNED>;
+pub type Large = LargeIn<f32>;
+/// [`Large`] in another number format.
+pub type LargeIn<S> = Robot<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire, LEARNED>;
 /// The robot of the micro:bit's nRF51. Its packet format is configurable.
 pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16, AnyWire>;
 /// Inbox of a [`Large`], bytes.
@@ -116,7 +118,7 @@ impl<
 > Controller for Robot<S, CELLS, M, N, K, O, W, L>
 {
     fn number(&self) -> NumberFormat {
-        number::<S>()
+        S::FORMAT
     }
 
     fn capacities(&self) -> Capacities {

@@ -63,6 +63,8 @@ pub enum Cause {
     Gone(String),
     #[error("the firmware is for `{}`, not for `{expected}`", printable(.said))]
     OtherPart { expected: &'static str, said: String },
+    #[error("the firmware computes in `{said}`, not in `{expected}`; name the device with `numbers={said}`")]
+    OtherNumbers { expected: &'static str, said: &'static str },
     #[error(
         "it runs `{}`, this program steps `{expected}`: build firmware and program from the same source, and flash the firmware again",
         printable(.said)

@@ -1,6 +1,6 @@
 use crate::device::Device;
 use crate::emulator::{self, Emulator, EmulatorError};
-use crate::part::Part;
+use crate::part::Machine;
 use std::fmt;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -29,7 +29,7 @@ pub struct Channel {
     /// Transmission time per byte; zero for a line that does not limit its ends.
     pub per_byte: Duration,
     pub(crate) emulator: Option<Emulator>,
-    pub(crate) part: Option<Part>,
+    pub(crate) machine: Option<Machine>,
 }
 
 impl fmt::Debug for Channel {
@@ -42,7 +42,7 @@ impl Channel {
     /// Creates a channel over any reader and writer, for instance a socket.
     #[must_use]
     pub fn new(read: impl Read + Send + 'static, write: impl Write + Send + 'static) -> Self {
-        Self { read: Box::new(read), write: Box::new(write), per_byte: Duration::ZERO, emulator: None, part: None }
+        Self { read: Box::new(read), write: Box::new(write), per_byte: Duration::ZERO, emulator: None, machine: None }
     }
 
     /// Starts the emulator or opens the port. `firmware` is the output folder of
@@ -52,14 +52,14 @@ impl Channel {
     /// See [`OpenError`].
     pub fn open(device: &Device, firmware: &Path, log: Option<&Path>) -> Result<Self, OpenError> {
         match device {
-            Device::Emulated(part) => {
-                let (emulator, socket) = emulator::start(*part, &part.elf(firmware), log)?;
+            Device::Emulated(machine) => {
+                let (emulator, socket) = emulator::start(*machine, &machine.elf(firmware), log)?;
                 let failed = |source| EmulatorError::Start { program: "the emulator", source };
                 socket.set_write_timeout(Some(PATIENCE)).map_err(failed)?;
                 let read = socket.try_clone().map_err(failed)?;
                 let mut channel = Self::new(read, socket);
                 channel.emulator = Some(emulator);
-                channel.part = Some(*part);
+                channel.machine = Some(*machine);
                 Ok(channel)
             }
             Device::Serial(port) => {

@@ -1,6 +1,7 @@
 use crate::line::LineFaults;
 use staya_controller::agent::{Setup, Task};
-use staya_link::robot::{Controller, Large, Small};
+use staya_controller::scalar::{Fast32, Q16};
+use staya_link::robot::{Controller, Large, LargeIn, Small};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -32,8 +33,8 @@ pub struct Reset {
     pub down_ticks: u32,
 }
 
-/// Creates the candidate shadows: robots in this process, one of which computes like the device.
-pub type Shadows = fn() -> Vec<Box<dyn Controller + Send>>;
+/// Creates a robot in this process.
+pub type Shadow = fn() -> Box<dyn Controller + Send>;
 
 /// Options of a fleet.
 #[derive(Clone, Debug)]
@@ -43,7 +44,7 @@ pub struct Options {
     /// Name that the firmware of all devices must have, such as `lockstep 0.1.0`; `None`: any.
     pub program: Option<String>,
     /// Candidate shadows, chosen by number format and capacities; by default all built-in laws.
-    pub shadows: Shadows,
+    pub shadows: Vec<Shadow>,
     /// Folder for the logs of emulated devices, one file per robot; `None`: no logs.
     pub logs: Option<PathBuf>,
     /// Longest time before a request is resent, plus its transmission time
@@ -67,7 +68,12 @@ impl Options {
         Self {
             firmware,
             program: None,
-            shadows: || vec![Box::new(Large::new()), Box::new(Small::new())],
+            shadows: vec![
+                || Box::new(Large::new()),
+                || Box::new(LargeIn::<Fast32>::new()),
+                || Box::new(LargeIn::<Q16>::new()),
+                || Box::new(Small::new()),
+            ],
             logs: None,
             resend_after: Duration::from_millis(500),
             step_limit: Duration::from_secs(10),

@@ -3,7 +3,7 @@
 //! the firmware's logs, uses the standard output.
 
 use crate::note::{Note, NoteError};
-use crate::part::Part;
+use crate::part::{Machine, Part};
 use crate::printable::printable;
 use std::fs::File;
 use std::io::{self, Read};
@@ -26,8 +26,8 @@ pub enum EmulatorError {
         "{program} is missing: on Debian run, as root, `apt-get install {package}`, or `cargo xtask qemu` in Staya's repository"
     )]
     NoEmulator { program: &'static str, package: &'static str },
-    #[error("no firmware in {}: `cargo xtask firmware {part}` makes it", .elf.display())]
-    NoFirmware { elf: PathBuf, part: &'static str },
+    #[error("no firmware in {}: `cargo xtask firmware {build}` makes it", .elf.display())]
+    NoFirmware { elf: PathBuf, build: String },
     #[error(transparent)]
     Firmware(#[from] NoteError),
     #[error("cannot start {program}: {source}")]
@@ -65,11 +65,11 @@ pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
 }
 
 /// Logs go to the file `log`, if given.
-pub fn start(part: Part, elf: &Path, log: Option<&Path>) -> Result<(Emulator, UnixStream), EmulatorError> {
+pub fn start(machine: Machine, elf: &Path, log: Option<&Path>) -> Result<(Emulator, UnixStream), EmulatorError> {
+    let part = machine.part;
     let (program, _, package) = part.machine();
     if !elf.is_file() {
-        let (elf, part) = (elf.to_owned(), part.firmware_name());
-        return Err(EmulatorError::NoFirmware { elf, part });
+        return Err(EmulatorError::NoFirmware { elf: elf.to_owned(), build: machine.build() });
     }
     Note::check(elf, part, None)?;
     let Some(path) = find_emulator(program) else {
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn missing_firmware_error_names_the_build_command() {
-        let error = start(Part::Microbit, Path::new("no/nrf51/lockstep"), None).expect_err("none");
+        let error = start(Part::Microbit.into(), Path::new("no/nrf51/lockstep"), None).expect_err("none");
         let text = error.to_string();
         assert!(text.contains("no/nrf51/lockstep"), "{text}");
         assert!(text.contains("cargo xtask firmware nrf51"), "{text}");

@@ -49,12 +49,12 @@ mod unit;
 
 pub use answer::{Answer, Cause, FleetError};
 pub use channel::{Channel, OpenError};
-pub use config::{DeviceConfig, Options, Reset, Shadows};
+pub use config::{DeviceConfig, Options, Reset, Shadow};
 pub use device::{Device, DeviceError};
 pub use emulator::{EmulatorError, find_emulator};
 pub use fleet::Fleet;
 pub use line::LineFaults;
 pub use mismatch::Mismatch;
 pub use note::{Note, NoteError};
-pub use part::Part;
+pub use part::{Machine, Part};
 pub use statistics::{Load, Spread, Statistics};

@@ -1,8 +1,9 @@
 use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
-use crate::config::{DeviceConfig, Options, Shadows};
+use crate::config::{DeviceConfig, Options, Shadow};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
+use crate::part::Machine;
 use crate::printable::printable;
 use crate::start::Start;
 use crate::statistics::{Collector, Load, Spread, Statistics};
@@ -44,7 +45,7 @@ pub struct Unit {
     channel: Channel,
     port: Box<Port<REQUEST>>,
     program: Option<String>,
-    shadows: Shadows,
+    shadows: Vec<Shadow>,
     shadow: Option<Box<dyn Controller + Send>>,
     hello: Option<Hello>,
     there: Line,
@@ -72,7 +73,7 @@ impl Unit {
         let mut unit = Self {
             port: Box::new(Port::new(options.run, limits(Duration::ZERO, Duration::ZERO))),
             program: options.program.clone(),
-            shadows: options.shadows,
+            shadows: options.shadows.clone(),
             shadow: None,
             hello: None,
             there: Line::new(faults, 0, robot),
@@ -312,11 +313,14 @@ impl Unit {
     }
 
     fn meet(&mut self, hello: Hello, now_us: u64) -> Result<(), Cause> {
-        if let Some(part) = self.channel.part
-            && hello.part != part.firmware_name()
-        {
-            let (expected, said) = (part.firmware_name(), hello.part.to_string());
-            return Err(Cause::OtherPart { expected, said });
+        if let Some(machine @ Machine { part, .. }) = self.channel.machine {
+            let numbers = machine.computes_in();
+            if hello.part != part.firmware_name() {
+                return Err(Cause::OtherPart { expected: part.firmware_name(), said: hello.part.to_string() });
+            }
+            if hello.number != numbers {
+                return Err(Cause::OtherNumbers { expected: numbers.name(), said: hello.number.name() });
+            }
         }
         if let Some(expected) = &self.program
             && hello.firmware != expected.as_str()
@@ -324,7 +328,7 @@ impl Unit {
             return Err(Cause::OtherProgram { expected: expected.clone(), said: hello.firmware.to_string() });
         }
         if self.shadow.is_none() {
-            let shadow = shadow(self.shadows, &hello).ok_or_else(|| Cause::NoShadow(Box::new(hello.clone())))?;
+            let shadow = shadow(&self.shadows, &hello).ok_or_else(|| Cause::NoShadow(Box::new(hello.clone())))?;
             self.shadow = Some(shadow);
         }
         self.packed = vec![0; usize::from(hello.capacities.obstacles) * OBSTACLE_BYTES];
@@ -393,7 +397,7 @@ impl Unit {
     }
 
     pub fn load(&self) -> Load {
-        let is_emulated = self.channel.part.is_some();
+        let is_emulated = self.channel.machine.is_some();
         let clock = self.hello.as_ref().map(|hello| hello.ticks_per_second);
         self.tally.load(clock.filter(|_| is_emulated))
     }
@@ -403,7 +407,7 @@ impl Unit {
         let counts = self.port.counts();
         let text = |of: fn(&Hello) -> &str| printable(self.hello.as_ref().map_or("", of));
         let ticks_per_second = self.hello.as_ref().map_or(0, |hello| hello.ticks_per_second);
-        let is_emulated = self.channel.part.is_some();
+        let is_emulated = self.channel.machine.is_some();
         Statistics {
             robot: self.robot(),
             device: self.config.device.clone(),
@@ -432,11 +436,11 @@ fn limits(resend_after: Duration, limit: Duration) -> Limits {
 }
 
 /// Finds the shadow with equal number format and capacities.
-fn shadow(shadows: Shadows, hello: &Hello) -> Option<Box<dyn Controller + Send>> {
+fn shadow(shadows: &[Shadow], hello: &Hello) -> Option<Box<dyn Controller + Send>> {
     let is_same = |controller: &dyn Controller| {
         let inbox_bytes = hello.capacities.inbox_bytes;
         let capacities = Capacities { inbox_bytes, ..controller.capacities() };
         controller.number() == hello.number && capacities == hello.capacities
     };
-    shadows().into_iter().find(|controller| is_same(controller.as_ref()))
+    shadows.iter().map(|shadow| shadow()).find(|controller| is_same(controller.as_ref()))
 }

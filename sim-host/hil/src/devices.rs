@@ -2,8 +2,9 @@
 
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
+use staya_numbers::decision;
 use staya_runner::{Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Load, Options, Reset, Statistics};
-use staya_sim::engine::{Decision, ExternalController, Status};
+use staya_sim::engine::{Decision, ExternalController};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 #[derive(Clone, Debug)]
@@ -117,17 +118,7 @@ impl OnDevices {
         for (at, answer) in std::mem::take(&mut self.asked).into_iter().zip(answers) {
             match answer {
                 Answer::Decided(result) => {
-                    self.decisions[at] = Some(Decision {
-                        status: Status {
-                            mode: result.mode,
-                            leader: result.leader,
-                            target: result.target.unwrap_or_default(),
-                            wait: result.outputs.wait,
-                        },
-                        command: result.outputs.command,
-                        outbox: result.outputs.outbox,
-                        rejected: result.outputs.rejected,
-                    });
+                    self.decisions[at] = Some(decision(*result));
                 }
                 Answer::Down => self.lost[at] = true,
                 Answer::Mismatch(mismatch) => self.fail(mismatch.to_string()),

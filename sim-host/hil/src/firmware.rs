@@ -1,6 +1,7 @@
 use anyhow::{Context as _, Result, bail};
 use staya_console::say;
-use staya_runner::{Note, Part, find_emulator};
+use staya_controller::scalar::NumberFormat;
+use staya_runner::{Machine, Note, find_emulator};
 use staya_sim::shown::Shown as _;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -23,11 +24,11 @@ pub(crate) enum Made {
     InPackage(PathBuf),
 }
 
-/// Finds the folder with firmware for `parts`, or one ELF file: the given path, the environment
+/// Finds the folder with firmware for these machines, or one ELF file: the given path, the environment
 /// variable, firmware installed beside this program or in the user's data folder, the sources of
 /// this program. The last one builds outdated firmware and downloads the emulators.
-pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> Result<PathBuf> {
-    if parts.is_empty() {
+pub(crate) fn find(machines: &[Machine], given: Option<&Path>, program: &Program) -> Result<PathBuf> {
+    if machines.is_empty() {
         return Ok(PathBuf::new());
     }
     let named = std::env::var_os(VARIABLE).map(PathBuf::from);
@@ -38,17 +39,17 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
         (None, None) => None,
     };
     if let Some((by, folder)) = chosen {
-        return match lacking(parts, &folder) {
-            None => checked(parts, folder, program),
+        return match lacking(machines, &folder) {
+            None => checked(machines, folder, program),
             Some(elf) => {
                 write!(looked, "\n  {} is missing ({by})", elf.shown())?;
-                bail!("{looked}\n{}", remedy(parts, program))
+                bail!("{looked}\n{}", remedy(machines, program))
             }
         };
     }
     for folder in installed(program.name) {
-        match lacking(parts, &folder) {
-            None => return checked(parts, folder, program),
+        match lacking(machines, &folder) {
+            None => return checked(machines, folder, program),
             Some(elf) => write!(looked, "\n  {} is missing", elf.shown())?,
         }
     }
@@ -59,48 +60,68 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
     };
     match (&root, sources.filter(|sources| sources.is_dir())) {
         (Some(root), Some(_)) => {
-            let folder = prepare(root, parts, &program.made)?;
-            match lacking(parts, &folder) {
-                None => checked(parts, folder, program),
+            let folder = prepare(root, machines, &program.made)?;
+            match lacking(machines, &folder) {
+                None => checked(machines, folder, program),
                 Some(elf) => {
                     write!(looked, "\n  {} is missing, and no installed toolchain can build it", elf.shown())?;
-                    bail!("{looked}\n{}", remedy(parts, program))
+                    bail!("{looked}\n{}", remedy(machines, program))
                 }
             }
         }
         _ => {
             write!(looked, "\n  the sources of this program are no longer at {}", home().shown())?;
-            bail!("{looked}\n{}", remedy(parts, program))
+            bail!("{looked}\n{}", remedy(machines, program))
         }
     }
 }
 
-fn lacking(parts: &[Part], folder: &Path) -> Option<PathBuf> {
-    parts.iter().map(|part| part.elf(folder)).find(|elf| !elf.is_file())
+fn lacking(machines: &[Machine], folder: &Path) -> Option<PathBuf> {
+    machines.iter().map(|machine| machine.elf(folder)).find(|elf| !elf.is_file())
 }
 
-fn checked(parts: &[Part], folder: PathBuf, program: &Program) -> Result<PathBuf> {
-    for part in parts {
-        Note::check(&part.elf(&folder), *part, Some(&program.says))?;
+fn checked(machines: &[Machine], folder: PathBuf, program: &Program) -> Result<PathBuf> {
+    for machine in machines {
+        Note::check(&machine.elf(&folder), machine.part, Some(&program.says))?;
     }
     Ok(folder)
 }
 
-fn remedy(parts: &[Part], program: &Program) -> String {
-    let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
-    let names = names.join(" ");
+fn remedy(machines: &[Machine], program: &Program) -> String {
+    let commands = |what: &str| {
+        let builds =
+            builds(machines).into_iter().map(|build| format!("`cargo xtask firmware {what} {}`", build.join(" ")));
+        builds.collect::<Vec<_>>().join(" and ")
+    };
     match &program.made {
         Made::InRepository => format!(
-            "In a clone of Staya's repository, `cargo xtask firmware --bin lockstep {names}` builds it in CLONE/target/firmware; then add \
+            "In a clone of Staya's repository, {} builds it in CLONE/target/firmware; then add \
             `--firmware CLONE/target/firmware` here, or set {VARIABLE} to that folder. `cargo xtask install --prefix DIR` installs it \
-            beside the program"
+            beside the program",
+            commands("--bin lockstep")
         ),
         Made::InPackage(folder) => format!(
-            "In a clone of Staya's repository, `cargo xtask firmware --crate {folder} {names}` builds it in {folder}/target/firmware; \
+            "In a clone of Staya's repository, {} builds it in {folder}/target/firmware; \
             then add `--firmware {folder}/target/firmware` here, or set {VARIABLE} to that folder or to one ELF file",
+            commands(&format!("--crate {}", folder.shown())),
             folder = folder.shown()
         ),
     }
+}
+
+/// Arguments of the builds, one for all usual number formats and one for each other one.
+fn builds(machines: &[Machine]) -> Vec<Vec<&'static str>> {
+    let mut builds: Vec<(Option<NumberFormat>, Vec<&str>)> = Vec::new();
+    for machine in machines {
+        let other = machine.other_numbers();
+        let name = machine.part.firmware_name();
+        match builds.iter_mut().find(|(numbers, _)| *numbers == other) {
+            Some((_, names)) => names.push(name),
+            None => builds.push((other, vec![name])),
+        }
+    }
+    let numbers = |other: Option<NumberFormat>| other.map(|numbers| ["--numbers", numbers.name()]);
+    builds.into_iter().map(|(other, names)| numbers(other).into_iter().flatten().chain(names).collect()).collect()
 }
 
 fn installed(name: &str) -> Vec<PathBuf> {
@@ -139,8 +160,7 @@ fn target(root: &Path) -> PathBuf {
 const TARGETS: &str = "thumbv7em-none-eabihf thumbv6m-none-eabi riscv32imac-unknown-none-elf";
 
 /// Builds outdated firmware, downloads the emulators, and returns the firmware's folder.
-fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
-    let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
+fn prepare(root: &Path, machines: &[Machine], made: &Made) -> Result<PathBuf> {
     let (folder, what) = match made {
         Made::InRepository => (target(root).join("firmware"), vec!["--bin", "lockstep"]),
         Made::InPackage(package) => {
@@ -150,21 +170,24 @@ fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
             (package.join("target/firmware"), vec!["--crate", text])
         }
     };
-    if lacking(parts, &folder).is_some() {
+    if lacking(machines, &folder).is_some() {
+        let names: Vec<String> = machines.iter().map(ToString::to_string).collect();
         say(&format!(
             "staya: building the firmware for {}; the first build takes some minutes, fewer after `rustup target add {TARGETS}`",
             names.join(", ")
         ));
     }
     let began = Instant::now();
-    xtask(root, &[&["firmware"], what.as_slice(), names.as_slice()].concat())?;
-    for part in parts {
-        let elf = part.elf(&folder);
+    for build in builds(machines) {
+        xtask(root, &[&["firmware"], what.as_slice(), build.as_slice()].concat())?;
+    }
+    for machine in machines {
+        let elf = machine.elf(&folder);
         if elf.is_file() {
             say(&format!("staya: {} is up to date, after {:.0} s", elf.shown(), began.elapsed().as_secs_f64()));
         }
     }
-    if !parts.iter().all(|part| find_emulator(part.emulator()).is_some()) {
+    if !machines.iter().all(|machine| find_emulator(machine.part.emulator()).is_some()) {
         say("staya: downloading the emulators; this takes a minute");
         xtask(root, &["qemu"])?;
     }
@@ -207,13 +230,15 @@ fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use staya_runner::Part;
 
-    const PARTS: [Part; 2] = [Part::Stm32f405, Part::Microbit];
+    const MACHINES: [Machine; 2] =
+        [Machine { part: Part::Stm32f405, numbers: None }, Machine { part: Part::Microbit, numbers: None }];
 
-    fn folder(parts: &[Part]) -> tempfile::TempDir {
+    fn folder(machines: &[Machine]) -> tempfile::TempDir {
         let top = tempfile::tempdir().expect("a folder");
-        for part in parts {
-            let elf = part.elf(top.path());
+        for machine in machines {
+            let elf = machine.elf(top.path());
             std::fs::create_dir_all(elf.parent().expect("a parent")).expect("a folder");
             std::fs::write(elf, "").expect("a file");
         }
@@ -227,11 +252,11 @@ mod tests {
     #[test]
     fn a_given_path_must_exist_and_be_firmware() {
         let refusal =
-            |given: &Path, made| find(&PARTS, Some(given), &program(made)).expect_err("no firmware").to_string();
-        let one = folder(&PARTS[..1]);
+            |given: &Path, made| find(&MACHINES, Some(given), &program(made)).expect_err("no firmware").to_string();
+        let one = folder(&MACHINES[..1]);
         let text = refusal(one.path(), Made::InRepository);
         for piece in [
-            PARTS[1].elf(one.path()).display().to_string(),
+            MACHINES[1].elf(one.path()).display().to_string(),
             String::from("(--firmware)"),
             String::from("cargo xtask firmware --bin lockstep stm32f405 nrf51"),
             String::from("cargo xtask install"),
@@ -241,11 +266,20 @@ mod tests {
         }
         let text = refusal(one.path(), Made::InPackage(PathBuf::from("/my/law")));
         assert!(text.contains("cargo xtask firmware --crate /my/law stm32f405 nrf51"), "{text}");
-        let both = folder(&PARTS);
+        let both = folder(&MACHINES);
         let text = refusal(both.path(), Made::InRepository);
         assert!(text.contains("ELF file"), "{text}");
-        let text = refusal(&PARTS[0].elf(one.path()), Made::InRepository);
+        let text = refusal(&MACHINES[0].elf(one.path()), Made::InRepository);
         assert!(text.contains("stm32f405/lockstep"), "{text}");
+    }
+
+    #[test]
+    fn machines_of_one_number_format_are_built_together() {
+        let machines =
+            ["stm32f405", "stm32f405,numbers=q16", "microbit", "riscv32,numbers=q16", "riscv32,numbers=fast32"];
+        let machines = machines.map(|text| text.parse::<Machine>().expect(text));
+        let lines: Vec<String> = builds(&machines).into_iter().map(|build| build.join(" ")).collect();
+        assert_eq!(lines, ["stm32f405 nrf51", "--numbers q16 stm32f405 riscv32", "--numbers fast32 riscv32"]);
     }
 
     #[test]

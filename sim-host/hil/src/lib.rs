@@ -20,6 +20,7 @@ pub mod cli;
 mod command;
 mod devices;
 mod firmware;
+mod mixed;
 mod options;
 mod own;
 mod pace;

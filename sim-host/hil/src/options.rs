@@ -1,7 +1,8 @@
 use crate::devices::DevicePlan;
 use anyhow::{Result, bail};
 use clap::Args;
-use staya_runner::{Device, LineFaults, Part, Reset};
+use staya_controller::scalar::NumberFormat;
+use staya_runner::{Device, LineFaults, Machine, Reset};
 use staya_sim::scenario::Scenario;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,9 +10,9 @@ use std::time::Duration;
 /// Devices, their robots and faults.
 #[derive(Args, Clone, Debug)]
 pub struct DeviceArgs {
-    /// Device of a robot: qemu:stm32f405, qemu:microbit, qemu:riscv32 or serial:PORT[,baud=N]; may
-    /// be repeated for a mix.
-    #[arg(long = "device", value_name = "DEVICE", required = true)]
+    /// Device of a robot: qemu:stm32f405, qemu:microbit, qemu:riscv32 (with ,numbers=f32, fast32 or
+    /// q16) or serial:PORT[,baud=N]; may be repeated for a mix.
+    #[arg(long = "device", value_name = "DEVICE")]
     kinds: Vec<Device>,
     /// Number of robots on devices: the first ones of the scenario, with device kinds in turn
     /// [default: one per --device].
@@ -53,7 +54,10 @@ fn probability(text: &str) -> Result<f64, String> {
 impl DeviceArgs {
     pub(crate) fn plan(&self, scenario: &Scenario) -> Result<DevicePlan> {
         let count = self.devices.map_or(self.kinds.len(), |n| n as usize);
-        let robots = scenario.robots.len();
+        let (robots, numbers) = (scenario.robots.len(), scenario.laws.numbers);
+        if self.kinds.is_empty() && (count > 0 || numbers == NumberFormat::F32) {
+            bail!("no device; give --device qemu:stm32f405, or another one of --help");
+        }
         if count > robots {
             bail!("--devices {count}: {} has {robots} robots; give at most this number", scenario.name);
         }
@@ -80,7 +84,7 @@ impl DeviceArgs {
             if !is_emulated(device) && devices.iter().any(|(_, other)| other == device) {
                 bail!("--device {device} is given twice; give each port once, since it has one board");
             }
-            devices.push((index, device.clone()));
+            devices.push((index, in_numbers(device, numbers)?));
         }
         Ok(DevicePlan {
             devices,
@@ -95,16 +99,32 @@ impl DeviceArgs {
     }
 }
 
-pub(crate) fn emulated_parts(plan: &DevicePlan) -> Vec<Part> {
-    let mut parts: Vec<Part> = Vec::new();
+pub(crate) fn emulated(plan: &DevicePlan) -> Vec<Machine> {
+    let mut machines: Vec<Machine> = Vec::new();
     for (_, device) in &plan.devices {
-        if let Device::Emulated(part) = device
-            && !parts.contains(part)
+        if let Device::Emulated(machine) = device
+            && !machines.contains(machine)
         {
-            parts.push(*part);
+            machines.push(*machine);
         }
     }
-    parts
+    machines
+}
+
+/// A device that the user gave no number format has that of the scenario.
+fn in_numbers(device: &Device, numbers: NumberFormat) -> Result<Device> {
+    match device {
+        Device::Emulated(Machine { part, numbers: None }) if numbers != NumberFormat::F32 => {
+            if !part.numbers().contains(&numbers) {
+                bail!(
+                    "--device {device}: the part does not compute in the scenario's numbers = \"{numbers}\"; add `,numbers=FORMAT` \
+                     to the device, or change the scenario"
+                );
+            }
+            Ok(Device::Emulated(Machine { part: *part, numbers: Some(numbers) }))
+        }
+        _ => Ok(device.clone()),
+    }
 }
 
 fn is_emulated(device: &Device) -> bool {
@@ -160,7 +180,8 @@ mod tests {
             ("--device serial:/dev/x --device serial:/dev/x", "given twice"),
             ("--device qemu:microbit --device qemu:riscv32 --devices 1", "fewer than the 2"),
             ("--device qemu:microbit --loss 1", "below 1"),
-            ("", "--device"),
+            ("", "give --device"),
+            ("--devices 2", "give --device"),
         ] {
             let error = plan(arguments).expect_err(arguments);
             assert!(error.contains(why), "{arguments}: {error}");

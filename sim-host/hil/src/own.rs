@@ -1,13 +1,12 @@
 use crate::firmware::{Made, Program};
 use crate::options::DeviceArgs;
-use crate::run::{HilArgs, Swarm, drive};
+use crate::run::{HilArgs, MakeRobot, Swarm, drive};
 use anyhow::{Context as _, Result};
 use clap::{CommandFactory as _, FromArgMatches as _};
 use staya_console::{Ended, Global, WatchArgs};
-use staya_controller::scalar::Q16;
+use staya_controller::scalar::{Fast32, NumberFormat, Q16};
 use staya_link::own::{LinkedLaw, OwnLarge, OwnSmall};
-use staya_link::robot::Controller;
-use staya_runner::Shadows;
+use staya_runner::Shadow;
 use staya_sim::engine::{Engine, ExternalController, Outcome, OwnLaw, StartError, Watch, own_agents};
 use staya_sim::scenario::Scenario;
 use std::path::PathBuf;
@@ -41,7 +40,7 @@ macro_rules! package {
 pub struct Own<G> {
     package: Package,
     law: Arc<dyn Fn(usize) -> G + Send + Sync>,
-    shadows: Shadows,
+    shadows: Vec<Shadow>,
 }
 
 impl<G> std::fmt::Debug for Own<G> {
@@ -55,21 +54,28 @@ impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
     /// start of a robot, as in [`simulate_own`](staya_sim::engine::simulate_own).
     #[must_use]
     pub fn new(package: Package, law: impl Fn(usize) -> G + Send + Sync + 'static) -> Self {
-        Self { package, law: Arc::new(law), shadows: || vec![Box::new(OwnLarge::<G>::new())] }
+        Self { package, law: Arc::new(law), shadows: vec![|| Box::new(OwnLarge::<G>::new())] }
     }
 
-    /// Also supports parts with fixed-point arithmetic (micro:bit); `law` must work with [`Q16`].
+    /// Also supports `numbers = "q16"`, and so the micro:bit; `law` must work with [`Q16`].
     #[must_use]
-    pub fn in_fixed_point(self) -> Self
+    pub fn in_fixed_point(mut self) -> Self
     where
         G: LinkedLaw<Q16>,
     {
-        let shadows: Shadows = || {
-            let both: [Box<dyn Controller + Send>; 2] =
-                [Box::new(OwnLarge::<G>::new()), Box::new(OwnSmall::<G>::new())];
-            both.into()
-        };
-        Self { shadows, ..self }
+        let both: [Shadow; 2] = [|| Box::new(OwnLarge::<G, Q16>::new()), || Box::new(OwnSmall::<G>::new())];
+        self.shadows.extend(both);
+        self
+    }
+
+    /// Also supports `numbers = "fast32"`; `law` must work with [`Fast32`].
+    #[must_use]
+    pub fn in_fast_floats(mut self) -> Self
+    where
+        G: LinkedLaw<Fast32>,
+    {
+        self.shadows.push(|| Box::new(OwnLarge::<G, Fast32>::new()));
+        self
     }
 
     /// A complete program with the arguments of `staya hil`. Returns its exit code.
@@ -109,8 +115,17 @@ impl<G: OwnLaw + LinkedLaw<f32>> Swarm for Own<G> {
         Program { name, says: format!("{name} {version}"), made: Made::InPackage(PathBuf::from(folder)) }
     }
 
-    fn shadows(&self) -> Option<Shadows> {
-        Some(self.shadows)
+    fn shadows(&self) -> Option<Vec<Shadow>> {
+        Some(self.shadows.clone())
+    }
+
+    fn robot_in(&self, numbers: NumberFormat) -> Result<MakeRobot> {
+        // The first of a format is the largest.
+        let shadow = self.shadows.iter().copied().find(|shadow| shadow().number() == numbers);
+        let shadow = shadow.with_context(|| {
+            format!("the law of this program was not built for numbers = \"{numbers}\"; see Own::in_fixed_point and Own::in_fast_floats")
+        })?;
+        Ok(Box::new(shadow))
     }
 
     fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send> {

@@ -1,12 +1,16 @@
 use crate::devices::{Log, OnDevices};
 use crate::firmware::{self, Made, Program};
-use crate::options::{DeviceArgs, emulated_parts};
+use crate::mixed::{Mixed, Others};
+use crate::options::{DeviceArgs, emulated};
 use crate::pace::Pace;
 use crate::summary::Summary;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
-use staya_runner::{Options, Shadows};
+use staya_controller::scalar::NumberFormat;
+use staya_link::robot::Controller;
+use staya_numbers::{added_law, in_f32, robot, unsuitable};
+use staya_runner::{Options, Shadow};
 use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_with};
 use staya_sim::expected::Expected;
 use staya_sim::record::RobotRow;
@@ -48,17 +52,22 @@ impl HilArgs {
 /// Missing devices, firmware or firmware features, or a device that fails or differs from its
 /// shadow.
 pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
-    if let Some(law) = scenario.laws().find(|law| law.built_in().is_none()) {
+    if let Some(law) = added_law(scenario) {
         bail!("law = \"{}\" is not available in firmware; give another law, or run without devices", law.name());
     }
     drive(&Ours, scenario, devices, page, global)
 }
 
+pub(crate) type MakeRobot = Box<dyn Fn() -> Box<dyn Controller + Send>>;
+
 pub(crate) trait Swarm {
     fn program(&self) -> Program;
 
     /// `None` for those of Staya's laws.
-    fn shadows(&self) -> Option<Shadows>;
+    fn shadows(&self) -> Option<Vec<Shadow>>;
+
+    /// Creates robots of this process that compute in `numbers`.
+    fn robot_in(&self, numbers: NumberFormat) -> Result<MakeRobot>;
 
     /// Encoded law of each robot; empty if its name is enough.
     fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send>;
@@ -79,8 +88,12 @@ impl Swarm for Ours {
         Program { name: "staya", says: says.into(), made: Made::InRepository }
     }
 
-    fn shadows(&self) -> Option<Shadows> {
+    fn shadows(&self) -> Option<Vec<Shadow>> {
         None
+    }
+
+    fn robot_in(&self, numbers: NumberFormat) -> Result<MakeRobot> {
+        Ok(Box::new(move || robot(numbers)))
     }
 
     fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send> {
@@ -104,29 +117,12 @@ pub(crate) fn drive(
     page: &WatchArgs,
     global: &Global,
 ) -> Result<Ended> {
-    if scenario.laws.maps.is_some() {
-        bail!("maps.share is not available in firmware; remove [maps], or run without devices");
-    }
-    if scenario.land.known.is_some() {
-        bail!("scouting.model_bytes is not available in firmware; leave it out, or run without devices");
-    }
-    if scenario.plane().is_some_and(|plane| plane.kinds().any(|group| group.half_planes.is_some())) {
-        bail!("plane.orca.model is not available on devices; leave it out, or run without devices");
-    }
-    if scenario.sensing().is_some() {
-        bail!("plane.sensing is not available on devices; remove it, or run without devices");
-    }
-    if !scenario.clocks.is_synchronous() {
-        bail!(
-            "[clocks] is not available on devices, which decide in each tick; remove it and phase_s, or run without devices"
-        );
-    }
-    if scenario.trust.keys.is_some() {
-        bail!("{}: devices do not support keys; remove [authentication]", scenario.name);
+    if let Some((what, remedy)) = unsuitable(scenario) {
+        bail!("{what} is not available on devices; {remedy}, or run without devices");
     }
     let plan = devices.plan(scenario)?;
     let program = swarm.program();
-    let folder = firmware::find(&emulated_parts(&plan), devices.firmware.as_deref(), &program)?;
+    let folder = firmware::find(&emulated(&plan), devices.firmware.as_deref(), &program)?;
     let mut options = Options::new(folder);
     options.program = Some(program.says);
     if let Some(shadows) = swarm.shadows() {
@@ -139,10 +135,13 @@ pub(crate) fn drive(
     let stop = Stop::on_ctrl_c()?;
     options.stop = stop.flag();
     let (on_devices, log) = OnDevices::new(plan, options, swarm.law());
-    let summary = simulate(swarm, scenario, on_devices, &log, Watched { devices, page, global, stop: &stop })?;
+    let others = Others::of(swarm, scenario)?;
+    let has_devices = !on_devices.robots().is_empty();
+    let by = Watched { devices, page, global, stop: &stop };
+    let summary = simulate(swarm, &in_f32(scenario), (on_devices, others.as_ref()), &log, by)?;
     if global.json {
         print_json(&summary)?;
-    } else if !summary.devices.is_empty() {
+    } else if !has_devices || !summary.devices.is_empty() {
         print(&summary.table()?)?;
     }
     match summary.trouble {
@@ -162,7 +161,7 @@ struct Watched<'a> {
 fn simulate(
     swarm: &impl Swarm,
     scenario: &Scenario,
-    on_devices: OnDevices,
+    (on_devices, others): (OnDevices, Option<&Others<'_>>),
     log: &Log,
     by: Watched<'_>,
 ) -> Result<Summary> {
@@ -192,12 +191,16 @@ fn simulate(
         }
         ControlFlow::Continue(())
     };
-    let outcome = swarm.simulate(scenario, Some(Box::new(on_devices)), &mut watch)?;
+    let external = Mixed::new(on_devices, others);
+    let (here, has_devices) = (external.trouble(), external.has_devices());
+    let outcome = swarm.simulate(scenario, Some(Box::new(external)), &mut watch)?;
     progress.finish();
-    let (trouble, interrupted) = (log.trouble(), stop.is_requested());
+    let trouble = log.trouble().or_else(|| here.and_then(|here| here.get()));
+    let interrupted = stop.is_requested();
     let wall_seconds = began.elapsed().as_secs_f64();
-    let without = if trouble.is_none() && !interrupted {
-        Some(swarm.simulate(scenario, None, &mut |_, _| ControlFlow::Continue(()))?)
+    let without = if has_devices && trouble.is_none() && !interrupted {
+        let external = others.map(|others| Box::new(others.except(&[])) as Box<dyn ExternalController>);
+        Some(swarm.simulate(scenario, external, &mut |_, _| ControlFlow::Continue(()))?)
     } else {
         None
     };
@@ -213,6 +216,7 @@ fn simulate(
         arrived: outcome.arrived,
         collisions: outcome.collisions,
         trace_hash: hash(&outcome),
+        numbers: others.map_or(NumberFormat::F32, Others::numbers),
         trace_hash_without_devices: without.as_ref().map(hash),
         real_time: pace.map(|pace| pace.report),
         trouble,

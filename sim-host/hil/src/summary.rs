@@ -1,5 +1,6 @@
 use crate::pace::RealTime;
 use serde::Serialize;
+use staya_controller::scalar::NumberFormat;
 use staya_runner::{Spread, Statistics};
 use std::fmt::Write as _;
 
@@ -18,6 +19,8 @@ pub(crate) struct Summary {
     pub(crate) collisions: u64,
     /// 16 hex digits, equal for equal traces.
     pub(crate) trace_hash: String,
+    /// Number format of the robots in this process.
+    pub(crate) numbers: NumberFormat,
     /// Trace hash of the scenario with all robots in this process; null if the run ended early.
     pub(crate) trace_hash_without_devices: Option<String>,
     pub(crate) real_time: Option<RealTime>,
@@ -36,6 +39,9 @@ impl Summary {
         line("arrived", format!("{} of {} robots", self.arrived, self.robots))?;
         line("collisions", self.collisions.to_string())?;
         line("trace hash", self.trace_hash.clone())?;
+        if self.numbers != NumberFormat::F32 {
+            line("numbers", self.numbers.to_string())?;
+        }
         if let Some(hash) = &self.trace_hash_without_devices {
             let verdict = if *hash == self.trace_hash {
                 "identical"
@@ -53,9 +59,13 @@ impl Summary {
                 ),
             )?;
         }
+        if self.devices.is_empty() {
+            return Ok(text);
+        }
+        let width = self.devices.iter().map(|device| device.device.len() + 1).fold(24, usize::max);
         writeln!(
             text,
-            "\n{:>6}  {:<24}{:>7}{:>11}{:>16}{:>21}{:>8}{:>8}{:>7}",
+            "\n{:>6}  {:<width$}{:>7}{:>11}{:>16}{:>21}{:>8}{:>8}{:>7}",
             "robot", "device", "steps", "mismatches", "round trip ms", "instructions", "stack", "resent", "resets"
         )?;
         for device in &self.devices {
@@ -65,7 +75,7 @@ impl Summary {
             let ms = |us: u64| us as f64 / 1000.0;
             writeln!(
                 text,
-                "{:>6}  {:<24}{:>7}{:>11}{:>16}{:>21}{:>8}{:>8}{:>7}",
+                "{:>6}  {:<width$}{:>7}{:>11}{:>16}{:>21}{:>8}{:>8}{:>7}",
                 device.robot,
                 device.device,
                 device.steps,

@@ -139,12 +139,12 @@ pub fn write_table(stem: &Path, text: &str) -> Result<PathBuf, Error> {
     Ok(path)
 }
 
-/// Simulates a scenario by the engine; a [`Simulator`].
+/// Simulates a scenario by the engine, in its number format; a [`Simulator`].
 ///
 /// # Errors
-/// The robots cannot be placed.
+/// See [`staya_numbers::simulate`].
 pub fn simulate(scenario: &Scenario, each: &mut engine::Watch<'_>) -> Result<engine::Outcome, String> {
-    engine::simulate_with(scenario, None, each).map_err(|error| format!("the robots cannot be placed: {error}"))
+    staya_numbers::simulate(scenario, each)
 }
 
 fn probes(scenario: &Scenario, measures: &[String]) -> Vec<(Kind, Box<dyn Probe>)> {

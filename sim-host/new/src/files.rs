@@ -1,4 +1,6 @@
-pub(crate) type File = (&'static str, &'static str);
+use staya_controller::scalar::NumberFormat;
+
+pub(crate) type File<'a> = (&'a str, &'a str);
 
 macro_rules! files {
     ($($path:literal = $template:literal,)*) => {
@@ -12,11 +14,13 @@ pub(crate) struct Part {
     pub(crate) title: &'static str,
     pub(crate) target: &'static str,
     pub(crate) is_emulated: bool,
-    pub(crate) rust: &'static [File],
+    /// The number format that suits its processor.
+    pub(crate) numbers: NumberFormat,
+    pub(crate) rust: &'static [File<'static>],
     /// The repository's lock file for the firmware; `None` if the template has its own.
     pub(crate) lock: Option<&'static str>,
     /// Empty if there is no C project for this part.
-    pub(crate) c: &'static [File],
+    pub(crate) c: &'static [File<'static>],
 }
 
 pub(crate) static PARTS: [Part; 4] = [
@@ -25,6 +29,7 @@ pub(crate) static PARTS: [Part; 4] = [
         title: "STM32F405, Cortex-M4F at 168 MHz",
         target: "thumbv7em-none-eabihf",
         is_emulated: true,
+        numbers: NumberFormat::F32,
         rust: files! {
             "firmware/Cargo.toml" = "stm32f405/Cargo.toml.in",
             "firmware/.cargo/config.toml" = "stm32f405/config.toml",
@@ -40,6 +45,7 @@ pub(crate) static PARTS: [Part; 4] = [
         title: "RP2350 (Raspberry Pi Pico 2), Cortex-M33 at 150 MHz",
         target: "thumbv8m.main-none-eabihf",
         is_emulated: false,
+        numbers: NumberFormat::F32,
         rust: files! {
             "firmware/Cargo.lock" = "rp2350/Cargo.lock",
             "firmware/Cargo.toml" = "rp2350/Cargo.toml.in",
@@ -58,6 +64,7 @@ pub(crate) static PARTS: [Part; 4] = [
         title: "nRF52840, Cortex-M4F at 64 MHz",
         target: "thumbv7em-none-eabihf",
         is_emulated: false,
+        numbers: NumberFormat::F32,
         rust: files! {
             "firmware/Cargo.lock" = "nrf52840/Cargo.lock",
             "firmware/Cargo.toml" = "nrf52840/Cargo.toml.in",
@@ -76,6 +83,7 @@ pub(crate) static PARTS: [Part; 4] = [
         title: "ESP32-C3, RISC-V at 160 MHz, without an FPU",
         target: "riscv32imc-unknown-none-elf",
         is_emulated: false,
+        numbers: NumberFormat::Q16,
         rust: files! {
             "firmware/Cargo.lock" = "esp32c3/Cargo.lock",
             "firmware/Cargo.toml" = "esp32c3/Cargo.toml.in",
@@ -90,7 +98,7 @@ pub(crate) static PARTS: [Part; 4] = [
     },
 ];
 
-pub(crate) const RUST: &[File] = files! {
+pub(crate) const RUST: &[File<'static>] = files! {
     ".github/workflows/ci.yml" = "rust/ci.yml",
     ".gitignore" = "rust/gitignore",
     "Cargo.toml" = "rust/Cargo.toml.in",
@@ -105,7 +113,7 @@ pub(crate) const RUST: &[File] = files! {
     "tests/swarm.rs" = "rust/tests/swarm.rs",
 };
 
-pub(crate) const C: &[File] = files! {
+pub(crate) const C: &[File<'static>] = files! {
     ".github/workflows/ci.yml" = "c/ci.yml",
     ".gitignore" = "c/gitignore",
     "Makefile" = "c/Makefile",
@@ -119,7 +127,7 @@ pub(crate) const C: &[File] = files! {
     "tests/swarm.c" = "c/tests/swarm.c",
 };
 
-pub(crate) const PYTHON: &[File] = files! {
+pub(crate) const PYTHON: &[File<'static>] = files! {
     ".github/workflows/ci.yml" = "python/ci.yml",
     ".gitignore" = "python/gitignore",
     "README.md" = "python/README.md",

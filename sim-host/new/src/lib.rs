@@ -9,6 +9,7 @@ use clap::Args;
 use files::{C, File, PARTS, PYTHON, Part, RUST};
 use source::Source;
 use staya_console::{Ended, Global, Shown as _, one_line, print};
+use staya_controller::scalar::NumberFormat;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,10 @@ pub struct NewArgs {
     /// Microcontroller of the robot, see --list [default: stm32f405].
     #[arg(long, value_name = "PART", value_parser = part, conflicts_with = "python")]
     part: Option<&'static Part>,
+    /// Number format of the robot's agent: f32, fast32 (approximate functions) or q16 (fixed point)
+    /// [default: q16 for parts without an FPU, else f32].
+    #[arg(long, value_name = "FORMAT", value_parser = numbers, conflicts_with_all = ["c", "python"])]
+    numbers: Option<NumberFormat>,
     /// Use C with the static library.
     #[arg(long, conflicts_with = "python")]
     c: bool,
@@ -63,9 +68,12 @@ impl NewArgs {
         let name = name(folder)?;
         let source = Source::find(self.staya.as_deref(), folder)?;
         let files = files(kind, part)?;
+        let numbers = Numbers(self.numbers.unwrap_or(part.numbers));
+        let files: Vec<(&str, String)> = files.into_iter().map(|(path, text)| (path, numbers.fill(text))).collect();
+        let files: Vec<File<'_>> = files.iter().map(|(path, text)| (*path, text.as_str())).collect();
         write(folder, name, &files, &locks(kind, part), &source)?;
         if !global.quiet {
-            print(&next(folder, kind, part, &source))?;
+            print(&next(folder, kind, part, numbers.0, &source))?;
         }
         Ok(Ended::Done)
     }
@@ -76,16 +84,38 @@ fn part(text: &str) -> Result<&'static Part, String> {
     found.ok_or_else(|| format!("unknown part; give one of {}", names(&PARTS)))
 }
 
+fn numbers(text: &str) -> Result<NumberFormat, String> {
+    const CHOICE: [NumberFormat; 3] = [NumberFormat::F32, NumberFormat::Fast32, NumberFormat::Q16];
+    let found = CHOICE.into_iter().find(|numbers| numbers.name() == text);
+    found.ok_or_else(|| format!("unknown number format; give one of {}", CHOICE.map(NumberFormat::name).join(", ")))
+}
+
+/// Number format of a project's robots.
+#[derive(Clone, Copy)]
+struct Numbers(NumberFormat);
+
+impl Numbers {
+    /// Fills a template's placeholders.
+    fn fill(self, template: &str) -> String {
+        let (scalar, formats) = match self.0 {
+            NumberFormat::Q16 => ("staya_controller::scalar::Q16", ".in_fixed_point()"),
+            NumberFormat::Fast32 => ("staya_controller::scalar::Fast32", ".in_fast_floats()"),
+            NumberFormat::F32 | NumberFormat::F64 => ("f32", ""),
+        };
+        template.replace("MY_NUMBER", scalar).replace("MY_FORMATS", formats)
+    }
+}
+
 fn names<'a>(parts: impl IntoIterator<Item = &'a Part>) -> String {
     let names: Vec<&str> = parts.into_iter().map(|part| part.name).collect();
     names.join(", ")
 }
 
 fn list() -> String {
-    let mut text = String::from("part       --c  emulator  target                       description\n");
-    for Part { name, title, target, is_emulated, c, .. } in &PARTS {
+    let mut text = String::from("part       --c  emulator  numbers  target                       description\n");
+    for Part { name, title, target, is_emulated, numbers, c, .. } in &PARTS {
         let (c, emulator) = (if c.is_empty() { "no" } else { "yes" }, if *is_emulated { "QEMU" } else { "none" });
-        let _ = writeln!(text, "{name:10} {c:4} {emulator:9} {target:28} {title}");
+        let _ = writeln!(text, "{name:10} {c:4} {emulator:9} {numbers:8} {target:28} {title}");
     }
     text + "The law of any Rust project also runs on the emulated stm32f405, see its folder hil.\n"
 }
@@ -116,7 +146,7 @@ fn name(folder: &Path) -> Result<&str> {
     Ok(name)
 }
 
-fn files(kind: Kind, part: &Part) -> Result<Vec<File>> {
+fn files(kind: Kind, part: &Part) -> Result<Vec<File<'static>>> {
     let files = match kind {
         Kind::Rust => [RUST, part.rust].concat(),
         Kind::C if part.c.is_empty() => {
@@ -141,7 +171,7 @@ fn locks(kind: Kind, part: &Part) -> Vec<(&'static str, &'static str)> {
 }
 
 /// The folder must not exist, and is removed after an error.
-fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], source: &Source) -> Result<()> {
+fn write(folder: &Path, name: &str, files: &[File<'_>], locks: &[(&str, &str)], source: &Source) -> Result<()> {
     let shown = folder.shown();
     if let Some(parent) = folder.parent().filter(|parent| !parent.as_os_str().is_empty()) {
         ensure!(parent.is_dir(), "{}: no such folder; create it first", parent.shown());
@@ -168,15 +198,16 @@ fn write_file(path: &Path, text: &str) -> std::io::Result<()> {
     fs::write(path, text)
 }
 
-fn next(folder: &Path, kind: Kind, part: &Part, source: &Source) -> String {
+fn next(folder: &Path, kind: Kind, part: &Part, numbers: NumberFormat, source: &Source) -> String {
     let folder = folder.shown();
     let place = source.fill("", "/STAYA_PIP", "");
     let rest = match kind {
         Kind::Rust => format!(
             "  cargo test                     test the law in the simulator: src/lib.rs, scenario.toml\n  \
              cargo run --example run -- run.staya && staya view run.staya\n  \
-             cd hil && cargo run -- ../scenario.toml --device qemu:stm32f405 --devices 2   run the law on emulated parts\n  \
+             cd hil && cargo run -- ../scenario.toml --device qemu:stm32f405{} --devices 2   run the law on emulated parts\n  \
              cd firmware && cargo build --release   build the firmware ({}): src/robot.rs, src/main.rs\n",
+            if numbers == NumberFormat::F32 { String::new() } else { format!(",numbers={numbers}") },
             part.name
         ),
         Kind::C => format!(

@@ -25,6 +25,7 @@ fn all_files(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn every_kind_of_project_is_complete_without_placeholders() {
     let mut kinds: Vec<Vec<&str>> = vec![vec!["--c"], vec!["--c", "--part", "nrf52840"], vec!["--python"]];
+    kinds.extend(["f32", "fast32", "q16"].map(|numbers| vec!["--numbers", numbers]));
     kinds.extend(PARTS.iter().map(|part| vec!["--part", part.name]));
     for kind in kinds {
         for staya in [None, Some("https://example.org/staya.git")] {
@@ -40,7 +41,7 @@ fn every_kind_of_project_is_complete_without_placeholders() {
                 let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the repository");
                 // Relative paths to the sources are fine.
                 let text = text.replace("../", ".");
-                for left in ["my-swarm", "my_swarm", "/STAYA", root.to_str().expect("text")] {
+                for left in ["my-swarm", "my_swarm", "MY_", "/STAYA", root.to_str().expect("text")] {
                     assert!(!text.contains(left), "{left} in {}", file.display());
                 }
             }
@@ -71,7 +72,7 @@ fn an_existing_folder_is_unchanged() {
 fn a_failed_file_is_named_and_the_folder_removed() {
     let top = top();
     let folder = top.path().join("pack");
-    let files: [File; 2] = [("a", ""), ("a/b", "")];
+    let files: [File<'_>; 2] = [("a", ""), ("a/b", "")];
     let source = Source::Address(String::from("https://example.org/staya.git"));
     let error = write(&folder, "pack", &files, &[], &source).expect_err("a file in a file").to_string();
     assert!(error.contains("a/b") && error.contains("nothing was created"), "{error}");

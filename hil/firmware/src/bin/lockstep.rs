@@ -7,7 +7,7 @@ mod robot {
 
     /// The robot that fits the part, and the content of its longest frame, bytes.
     #[cfg(not(part = "nrf51"))]
-    pub type Robot = robot::Large;
+    pub type Robot = robot::LargeIn<staya_firmware::lockstep::Number>;
     #[cfg(not(part = "nrf51"))]
     pub const CONTENT: usize = content_bytes(169, 32, robot::LARGE_INBOX);
     #[cfg(part = "nrf51")]

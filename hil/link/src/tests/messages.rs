@@ -12,7 +12,7 @@ use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::{Mode, RobotId};
-use staya_controller::scalar::{Q16, Scalar};
+use staya_controller::scalar::{NumberFormat, Q16, Scalar};
 use staya_controller::template::Template;
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::{Duration, Instant};

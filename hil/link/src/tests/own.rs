@@ -1,5 +1,5 @@
 use super::{ABOUT, LARGE, SMALL, answers, frame, in_plane, large, read, stepped};
-use crate::message::{Configured, Fault, FaultKind, Greeting, NumberFormat, Step, StepInputs, Token, kind};
+use crate::message::{Configured, Fault, FaultKind, Greeting, Step, StepInputs, Token, kind};
 use crate::own::{OwnLarge, OwnSmall};
 use crate::refusal::Refusal;
 use crate::robot::Controller;
@@ -11,7 +11,7 @@ use staya_controller::agent::{
     View, Waypoint,
 };
 use staya_controller::geom::{Position, Vec3};
-use staya_controller::scalar::Scalar;
+use staya_controller::scalar::{NumberFormat, Scalar};
 use staya_controller::time::Instant;
 use staya_controller::wire::{Never, ProtocolId};
 use std::vec::Vec;

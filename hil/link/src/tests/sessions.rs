@@ -7,6 +7,7 @@ use crate::surroundings::{OBSTACLE_BYTES, PackedSurroundings, TerrainWindow};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use staya_controller::agent::{CellState, KinematicState, Task, Waypoint};
+use staya_controller::scalar::NumberFormat;
 use staya_controller::time::Instant;
 use std::string::ToString;
 use std::vec::Vec;

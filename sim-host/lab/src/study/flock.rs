@@ -277,8 +277,7 @@ impl Run {
         let exact = self.scenario.plane().filter(|_| self.parameters.knows == Knowledge::All);
         match exact.and_then(|plane| Crowd::new(self, plane)) {
             Some(crowd) => crowd.simulate(&self.scenario, each),
-            None => engine::simulate_with(&self.scenario, None, each)
-                .map_err(|error| format!("the robots cannot be placed: {error}")),
+            None => staya_numbers::simulate(&self.scenario, each),
         }
     }
 }

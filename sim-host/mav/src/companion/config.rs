@@ -8,6 +8,7 @@ use crate::endpoint::EndpointError;
 use crate::geo::{Global, Origin};
 use staya_controller::agent::Goals;
 use staya_controller::robot::RobotId;
+use staya_controller::scalar::NumberFormat;
 use staya_sim::file::{TEXT, read_text};
 use staya_sim::scenario::{LawSetup, Overrides, PlaneSetup, Scenario, ScenarioError, Source};
 use staya_sim::{defaults, table};
@@ -218,7 +219,7 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
     let radius = format!("grid.radius {} is too large", scenario.laws.radius);
     let added = scenario.laws().find(|law| law.built_in().is_none());
     let law = format!("companions do not have the law \"{}\"", added.map_or("", LawSetup::name));
-    let faults: [(bool, &str, &str); 8] = [
+    let faults: [(bool, &str, &str); 9] = [
         (added.is_some(), &law, "give one of the controller's laws"),
         (scenario.tick_us > 500_000, &tick, "give it tick_s = 0.5 or less; 0.1 is good"),
         (
@@ -234,6 +235,7 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         (plane.torus_m.is_some(), "plane.torus_m is not supported on real vehicles", "remove plane.torus_m"),
         (!scenario.clocks.is_synchronous(), "real vehicles have clocks of their own", "remove [clocks] and phase_s"),
         (scenario.sensing().is_some(), "autopilots report no detections of other vehicles", "remove plane.sensing"),
+        (scenario.laws.numbers != NumberFormat::F32, "companions compute in f32", "remove numbers"),
         (scenario.laws.radius > RADIUS, &radius, "give 16 or less"),
     ];
     match faults.into_iter().find(|(is_wrong, ..)| *is_wrong) {

@@ -12,10 +12,15 @@ use staya_controller::geom::Position;
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::robot::RobotId;
+use staya_controller::scalar::cast;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Postcard;
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
+
+/// Number format of the agent: `f32`, `Fast32` with approximate functions, or `Q16` for parts without
+/// an FPU.
+type Number = MY_NUMBER;
 
 // FILL IN. controller/robot/README.md in Staya's repository describes how to measure each value.
 
@@ -89,10 +94,11 @@ where
     config.boot = boot;
     config.max_acceleration_mps2 = ahead.max_speed(LIMITS.acceleration_mps2, TRACK_M);
     config.lag_s = LAG_S;
-    let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
+    let inflation = StalenessInflation { growth_mps: 0.1_f32, max_m: 0.2 };
+    let safety = OrcaSafety::new(AvoidParams::default(), inflation.cast());
     let law = MyLaw::new(max_speed_mps, 0.02, 0.6);
-    let mut agent: Agent<f32, MyLaw, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>> =
-        Agent::new(&config, law, safety, Postcard);
+    let mut agent: Agent<Number, MyLaw, NEIGHBORS, OrcaSafety<Number, HALF_PLANES>> =
+        Agent::new(&config.cast(), law, safety, Postcard);
     agent.order(&WaypointOrder::first(Waypoint::fixed(GOAL)));
 
     let mut ticker = Ticker::every(embassy_time::Duration::from_micros(TICK.as_micros() as u64));
@@ -103,15 +109,16 @@ where
         let rims = [left_rim.travelled(left), right_rim.travelled(right)];
         odometry.advance(&mixer.kinematics().twist(&rims), TICK);
         let heading = odometry.heading_rad();
+        let state = ahead.state(&odometry.state(), heading, odometry.twist().turn_radps);
         let inputs = Inputs {
-            state: ahead.state(&odometry.state(), heading, odometry.twist().turn_radps),
-            surroundings: InPlane { max_speed_mps, obstacles: &[] },
+            state: KinematicState { position: state.position, velocity_mps: state.velocity_mps.cast() },
+            surroundings: InPlane { max_speed_mps: cast(max_speed_mps), obstacles: &[] },
             inbox: radio.take(),
         };
         let now = Instant::from_micros(Clock::now().as_micros() as u32);
         let out = agent.step(&inputs, now, &mut ());
         radio.send(&out.outbox);
-        let twist = ahead.twist(wished_velocity(&out.command), heading);
+        let twist = ahead.twist(wished_velocity(&out.command).cast(), heading);
         // If one motor fails, the other one stops and the robot restarts.
         wheels.turn(&mixer.mix(&twist, TICK)).ok()?;
     }

@@ -38,6 +38,7 @@ mod transmitters;
 mod witness;
 
 pub use crate::own_law::{Own, OwnLaw, add_law};
+pub use crate::world::Misplaced;
 pub use checkpoint_interval::CheckpointInterval;
 use decide::Tick;
 use external::External;
@@ -59,7 +60,6 @@ use crate::radio::{self, HostWire, Radio};
 use crate::record::{Motion, PacketCounts, TickRow};
 use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
-use crate::world::Misplaced;
 use crate::world::plane::CommandAge;
 use clock::{Clock, Timing};
 use hash::StateHash;
@@ -70,6 +70,7 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Agent, AgentConfig, Command, Event, NEIGHBORS, Setup, Task};
 use staya_controller::neighbor::Tracker;
 use staya_controller::robot::RobotId;
+use staya_controller::scalar::NumberFormat;
 use staya_controller::wire::Ring;
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
@@ -169,8 +170,12 @@ impl Engine {
     /// `agents(i)` for its law and safety layer.
     ///
     /// # Errors
-    /// Two robots start in one cell, or one starts in a wall.
+    /// Two robots start in one cell, one starts in a wall, or they compute in another number format
+    /// than `f32`.
     pub fn new(scenario: &Scenario, agents: Agents) -> Result<Self, Misplaced> {
+        if scenario.laws.numbers != NumberFormat::F32 {
+            return Err(Misplaced::Numbers(scenario.laws.numbers));
+        }
         let here = (0..scenario.robots.len() as u32).collect();
         Ok(Self::part(scenario, AnyGround::new(scenario)?, agents, here, true))
     }

@@ -74,6 +74,7 @@ use staya_controller::auth::Key;
 use staya_controller::land::MapParams;
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
+use staya_controller::scalar::NumberFormat;
 use std::collections::HashMap;
 use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
@@ -242,6 +243,9 @@ pub struct Laws {
     pub usual_route: RouteSettings,
     /// Exchange of terrain maps; `None`: disabled.
     pub maps: Option<MapParams>,
+    /// Number format of their arithmetic. An [`Engine`](crate::engine::Engine) computes in `f32`;
+    /// robots in other formats are external to it.
+    pub numbers: NumberFormat,
 }
 
 /// Identities of the robots, and which packets they trust.
@@ -351,7 +355,7 @@ impl Scenario {
         let maps = maps::sharing(draft, &kinds)?;
         let law = plane.map_or(&on_grid, |plane| &plane.general.law);
         let (scouting, known) = scouting::scouting(draft, law, &kinds, robots.len(), land.as_ref())?;
-        let laws = Laws { on_grid, radius, usual_route: grid::usual_route(draft)?, maps };
+        let laws = Laws { on_grid, radius, usual_route: grid::usual_route(draft)?, maps, numbers: file.numbers };
         let terrain = land.unwrap_or_else(|| Terrain::flat(1, 1));
         check::memory(draft, &robots, plane, &terrain)?;
         let mut scenario = Self {

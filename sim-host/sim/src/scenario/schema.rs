@@ -18,6 +18,7 @@ use crate::terrain::generate::Hills;
 use crate::terrain::known::{LEAST_BYTES, MOST_BYTES};
 use crate::{choice, names, one_of, table};
 use staya_controller::grid::Norm;
+use staya_controller::scalar::NumberFormat;
 use std::path::PathBuf;
 
 table! {
@@ -31,6 +32,9 @@ table! {
         pub ticks: u32;
         /// Tick length, 0.001 to 60 s: the time to cross a cell of impassability 1. Default: 1.
         pub tick_s: f64 = 1.0, 0.001..=60.0, "seconds";
+        /// Number format of the robots' arithmetic. Default: `"f32"`. Others run by `staya hil` and
+        /// `staya experiment`.
+        pub numbers: NumberFormat = NumberFormat::F32;
         /// When robots in the plane decide. Default: all of them in each tick.
         pub clocks: ClocksTable = Default::default();
         /// The terrain; optional with `[plane]`.
@@ -373,4 +377,4 @@ table! {
     }
 }
 
-names!(Hills);
+names!(Hills, NumberFormat);

@@ -23,6 +23,7 @@ use staya_controller::agent::Command;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
+use staya_controller::scalar::NumberFormat;
 use std::collections::HashMap;
 use thiserror::Error;
 
@@ -92,6 +93,11 @@ pub enum Misplaced {
         /// Their start.
         cell: Cell,
     },
+    /// The scenario wants another number format than `f32`.
+    #[error(
+        "the robots compute in `{0}`, which `staya hil` and `staya experiment` run; leave out `numbers`, or use one of these"
+    )]
+    Numbers(NumberFormat),
 }
 
 /// The terrain and the bodies on it.

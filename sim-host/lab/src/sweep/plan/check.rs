@@ -3,7 +3,6 @@
 use super::Plan;
 use crate::error::SweepError;
 use crate::sweep::jobs;
-use staya_sim::engine::simulate;
 use staya_sim::scenario::{ScenarioError, Source};
 use staya_sim::summary::Summary;
 use std::collections::BTreeSet;
@@ -44,13 +43,8 @@ fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioErro
     let run = plan.run(0);
     let given = plan.given(&run)?;
     let scenario = given.scenario().map_err(|error| plan.said_of_plan(&run, error))?;
-    let outcome = simulate(&scenario, |_, _| ControlFlow::Break(())).map_err(|error| {
-        source.error(
-            "scenario",
-            format!("its robots cannot be placed: {error}"),
-            "name a scenario that `staya run` runs",
-        )
-    })?;
+    let outcome = staya_numbers::simulate(&scenario, &mut |_, _| ControlFlow::Break(()))
+        .map_err(|error| source.error("scenario", error, "name a scenario that `staya run` runs"))?;
     Ok(Summary::new(&scenario, &outcome, Vec::new()).figures().into_iter().map(|(name, _)| name).collect())
 }
 

@@ -4,8 +4,13 @@
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
 use staya_controller::geom::Vec3;
+use staya_controller::scalar::{Scalar, cast};
 
 /// Drives straight to the goal, slower near other robots. Write your own law here.
+///
+/// It computes in any number format `S`: `f32` in the simulator, and on the robot in the one of
+/// firmware/src/robot.rs. The functions of `Scalar`, such as `y.atan2(x)`, give the same bits on
+/// each processor; those of `f32` do not.
 ///
 /// The fields are the law's memory. serde saves them in checkpoints and sends them to robots in
 /// hardware-in-the-loop tests.
@@ -28,29 +33,30 @@ impl MyLaw {
     }
 }
 
-impl Law<f32> for MyLaw {
-    type Surroundings<'a> = InPlane<'a, f32>;
+impl<S: Scalar> Law<S> for MyLaw {
+    type Surroundings<'a> = InPlane<'a, S>;
     type Protocol = Waypoints;
     type Workspace = ();
 
     /// The preferred velocity. The safety layer changes it to avoid collisions.
     fn decide(
         &mut self,
-        view: &View<'_, f32, Waypoints>,
-        _: &InPlane<'_, f32>,
-        _: Tools<'_, f32, Self>,
-    ) -> Result<Decision<f32>, BadInput> {
+        view: &View<'_, S, Waypoints>,
+        _: &InPlane<'_, S>,
+        _: Tools<'_, S, Self>,
+    ) -> Result<Decision<S>, BadInput> {
         let Some(goal) = &mut self.goal else { return Ok(Decision::idle()) };
         view.can_move()?;
-        let way_m: Vec3<f32> = goal.way(view.state.position, view.now);
+        let [speed_mps, tolerance_m, careful_m] = [self.speed_mps, self.tolerance_m, self.careful_m].map(cast::<f32, S>);
+        let way_m: Vec3<S> = goal.way(view.state.position, view.now).cast();
         let distance_m = way_m.norm();
-        let is_crowded = view.nearby.iter().any(|other| other.offset_m.norm() < self.careful_m);
-        let speed_mps = if is_crowded { self.speed_mps * 0.5 } else { self.speed_mps };
+        let is_crowded = view.nearby.iter().any(|other| other.offset_m.norm() < careful_m);
+        let speed_mps = if is_crowded { speed_mps * S::HALF } else { speed_mps };
         // Slows down over the last half second.
-        let speed_mps = speed_mps.min(view.body.max_speed_mps).min(distance_m * 2.0);
+        let speed_mps = speed_mps.min(view.body.max_speed_mps).min(distance_m * S::TWO);
         let wish_mps = way_m.normalized().unwrap_or_default() * speed_mps;
         let action = Action::Velocity { wish_mps, way_m: Some(way_m) };
-        Ok(Decision::new(action, Progress::at_goal(distance_m <= self.tolerance_m)))
+        Ok(Decision::new(action, Progress::at_goal(distance_m <= tolerance_m)))
     }
 
     fn order(&mut self, order: &WaypointOrder) -> bool {
