@@ -66,6 +66,15 @@ impl<const T: usize> LandMap<T> {
         Self { tiles: SparseVec::new(), origin: Cell::new(0, 0), aged_at: None, next: 0, repeats: false }
     }
 
+    /// Creates a map without known tiles around `cell`, for a base station, which hears patches and
+    /// sees nothing itself.
+    #[must_use]
+    pub fn around(cell: Cell) -> Self {
+        let mut map = Self::new();
+        map.center(cell);
+        map
+    }
+
     /// The tile at this position (in tiles).
     #[must_use]
     pub fn get(&self, at: Cell) -> Tile {

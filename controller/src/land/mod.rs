@@ -5,6 +5,7 @@
 //! ([`LandMap::hear`]), sent as a [`LandPatch`] of 32 tiles ([`LandMap::say`]). Its
 //! [`Outlook`] has the cheapest path onwards from each tile; [`crate::route`] prices the exits of
 //! its window by it, or by [`CostToGo`], a table in flash, made from a map before the mission.
+//! [`LandMap::write_costs`] makes such a table of the tiles, for the next mission on this land.
 //!
 //! The newer tile wins, of equally new ones the dearer, so that order and repetition of messages do
 //! not matter. Own observations override messages for a quarter of the lifetime of tiles. A message
@@ -13,6 +14,7 @@
 pub mod cost_to_go;
 mod map;
 mod outlook;
+mod tabled;
 mod tile;
 
 #[cfg(test)]

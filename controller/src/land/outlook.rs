@@ -93,10 +93,10 @@ fn unknown(gains: &Gains, from: Cell, to: Cell) -> Cost {
     gains.a3.of(tiles.saturating_mul(TILE.unsigned_abs().into()))
 }
 
-struct Search<const T: usize> {
+pub(super) struct Search<const T: usize> {
     /// Price per cell, sixteenths.
-    price: [u16; T],
-    cost: [Cost; T],
+    pub(super) price: [u16; T],
+    pub(super) cost: [Cost; T],
 }
 
 impl<const T: usize> Search<T> {
@@ -163,14 +163,13 @@ impl<const T: usize> LandMap<T> {
     }
 }
 
-impl<const T: usize> FarLand for LandMap<T> {
-    #[inline(never)]
-    fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&dyn Outlook)) {
-        if self.is_empty() {
-            return;
-        }
+impl<const T: usize> LandMap<T> {
+    /// The cost of the path to the tile `target` from each tile; those off the land are as dear as
+    /// can be. O(T).
+    #[inline]
+    pub(super) fn search(&self, gains: &Gains, target: Cell, is_land: impl Fn(Cell) -> bool) -> Search<T> {
         let mut search = Search::<T> { price: [0; T], cost: [Cost::MAX; T] };
-        let (bits, origin, target) = (Self::BITS, self.origin(), tile_of(target));
+        let (bits, origin) = (Self::BITS, self.origin());
         let side = 1_i32 << bits;
         let place = |at: usize| ((at & ((1 << bits) - 1)) as i32, (at >> bits) as i32);
         let is_edge = |along: i32| along == 0 || along == side - 1;
@@ -179,7 +178,7 @@ impl<const T: usize> FarLand for LandMap<T> {
         for (at, (price, cost)) in search.price.iter_mut().zip(&mut search.cost).enumerate() {
             let (x, y) = place(at);
             let here = origin + Cell::new(x as i16, y as i16);
-            *price = self.price(gains, here);
+            *price = if is_land(here) { self.price(gains, here) } else { u16::MAX };
             if (x, y) == to_target {
                 *cost = 0;
             } else if !is_inside && (is_edge(x) || is_edge(y)) {
@@ -187,6 +186,18 @@ impl<const T: usize> FarLand for LandMap<T> {
             }
         }
         search.sweep(gains.norm);
+        search
+    }
+}
+
+impl<const T: usize> FarLand for LandMap<T> {
+    #[inline(never)]
+    fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&dyn Outlook)) {
+        if self.is_empty() {
+            return;
+        }
+        let (bits, origin, target) = (Self::BITS, self.origin(), tile_of(target));
+        let search = self.search(gains, target, |_| true);
         to(&OverTiles { costs: &search.cost, origin, bits, target, gains: *gains });
     }
 }

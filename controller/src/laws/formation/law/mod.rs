@@ -125,6 +125,12 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self
     }
 
+    /// The map.
+    #[must_use]
+    pub const fn map(&self) -> &H {
+        &self.map
+    }
+
     /// The assigned template.
     #[must_use]
     pub const fn template(&self) -> &Template<F> {
