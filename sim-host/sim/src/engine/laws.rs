@@ -9,10 +9,10 @@ use crate::voxel::NeighborModel;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
-    AnyLaw, FormationGuidance, GridWorkspace, Guided, KnownMap, LEARNED, LayerSettings, MAP_TILES, SharedMap, TEMPLATE,
-    VISITS,
+    AnyLaw, FormationGuidance, GridWorkspace, Guided, KnownMap, LEARNED, LayerSettings, MAP_TILES, OverCells,
+    SharedMap, TEMPLATE, VISITS,
 };
-use staya_controller::land::CostToGo;
+use staya_controller::land::{CostToGo, LandMap};
 use staya_controller::laws;
 use staya_papers::{Course, PublishedFormation};
 use std::collections::HashMap;
@@ -30,7 +30,7 @@ pub type Agents = Box<dyn Fn(usize) -> (HostLaw, HostSafety) + Send + Sync>;
 pub const WIDE: usize = 1225;
 
 /// A table of costs to go; robots with one goal share its bytes.
-type Table = CostToGo<Arc<[u8]>>;
+pub type Table = CostToGo<Arc<[u8]>>;
 type Map = (Option<Box<KnownMap<Arc<[u8]>>>>, Option<Box<SharedMap<MAP_TILES>>>);
 
 laws! {
@@ -54,9 +54,29 @@ fn law_of(setup: &LawSetup, map: Map) -> ScenarioLaw {
     }
 }
 
+/// The map that a robot shares, if it shares one.
+pub(super) fn shared_map(law: &HostLaw) -> Option<&LandMap<MAP_TILES>> {
+    let (_, shared) = match law.inside() {
+        ScenarioLaw::BuiltIn(AnyLaw::Route(OverCells::OnGrid(law))) => law.map(),
+        ScenarioLaw::BuiltIn(AnyLaw::Route(OverCells::InPlane(law))) => law.inside().map(),
+        ScenarioLaw::BuiltIn(AnyLaw::Formation(OverCells::OnGrid(law))) => law.map(),
+        ScenarioLaw::BuiltIn(AnyLaw::Formation(OverCells::InPlane(law))) => law.inside().map(),
+        ScenarioLaw::LooksAhead(law) => law.map(),
+        _ => return None,
+    };
+    shared.as_ref().map(|shared| shared.inside())
+}
+
 /// Returns a function that creates the law and the safety layer of a robot.
 #[must_use]
 pub fn agents(scenario: &Scenario) -> Agents {
+    agents_with(scenario, tables(scenario))
+}
+
+/// As [`agents`], with these tables of costs to go instead of those that the scenario describes, by
+/// the robots' indices; robots beyond the last one have none.
+#[must_use]
+pub fn agents_with(scenario: &Scenario, tables: Vec<Option<Table>>) -> Agents {
     let kind = |index| (scenario.law(index), layer(scenario, index), limits(scenario, index));
     // Members of formations differ individually, others only by group; each kind is created once.
     let groups = scenario.plane().map_or(0, |plane| plane.groups.len());
@@ -74,7 +94,6 @@ pub fn agents(scenario: &Scenario) -> Agents {
     });
     let of_robots: Vec<usize> = of_robots.collect();
     let maps = scenario.laws.maps;
-    let tables = tables(scenario);
     Box::new(move |index| {
         let (law, (safety, model), [speed_mps, tolerance_m]) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.

@@ -46,7 +46,7 @@ pub use external::{Decision, ExternalController};
 pub use grid::Grid;
 pub use ground::{AnyGround, Ground, Senses, StateWords, View};
 pub use inspect::{Choice, Inspection, Known, Permitted, SeenLand, known};
-pub use laws::{Agents, HostLaw, HostSafety, ScenarioLaw, WIDE, WrongWorld, agents, own_agents};
+pub use laws::{Agents, HostLaw, HostSafety, ScenarioLaw, Table, WIDE, WrongWorld, agents, agents_with, own_agents};
 pub use operator::{Observation, operated};
 pub use plane::PlaneGround;
 pub use safety::ScenarioSafety;

@@ -1,6 +1,7 @@
 //! Saves and restores single robots and whole runs, in postcard format. The bytes contain keys.
 //! Constant data is not saved: restore into an engine of the same scenario and program version.
 
+use super::laws::shared_map;
 use super::{Engine, OnboardComputer, Status};
 use crate::engine::hash::StateHash;
 use crate::engine::roster::Tuned;
@@ -11,7 +12,8 @@ use crate::scenario::Fault;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Agent, Command};
+use staya_controller::agent::{Agent, Command, MAP_TILES};
+use staya_controller::land::LandMap;
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 use std::fmt;
@@ -30,6 +32,12 @@ pub trait Saves {
         let _ = index;
         Vec::new()
     }
+
+    /// Calls `each` with the map of every robot of this process that shares one, by index. By
+    /// default there are none.
+    fn shared_maps(&self, each: &mut dyn FnMut(&LandMap<MAP_TILES>)) {
+        let _ = each;
+    }
 }
 
 impl fmt::Debug for dyn Saves + '_ {
@@ -45,6 +53,11 @@ impl Saves for Engine {
 
     fn known(&self, index: usize) -> Vec<RobotId> {
         Self::known(self, index)
+    }
+
+    fn shared_maps(&self, each: &mut dyn FnMut(&LandMap<MAP_TILES>)) {
+        let agents = self.computers.iter().filter_map(|computer| computer.agent.as_ref());
+        agents.filter_map(|agent| shared_map(agent.law())).for_each(each);
     }
 }
 

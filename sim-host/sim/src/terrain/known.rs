@@ -93,8 +93,10 @@ pub fn under(land: &Terrain, entries: &[TemplateEntry], footprint: Footprint) ->
     priced
 }
 
-/// The most nodes of that many bytes, about square, and at most one for each cell.
-fn nodes([width, height]: [u16; 2], bytes: usize) -> Option<[u8; 2]> {
+/// The most nodes of that many bytes, about square, and at most one for each cell; `None` if two
+/// along each side do not fit.
+#[must_use]
+pub fn nodes([width, height]: [u16; 2], bytes: usize) -> Option<[u8; 2]> {
     let most = bytes.checked_sub(HEADER_LEN)? * 2 / 3;
     let widest = width.min(255);
     let fitting = (2..=widest).filter_map(|columns| {

@@ -13,6 +13,7 @@ pub mod known;
 pub mod metrics;
 pub mod movingai;
 pub mod optimal;
+pub mod remembered;
 pub mod ros;
 pub mod rows;
 pub mod scouted;
