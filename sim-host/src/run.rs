@@ -19,6 +19,8 @@ use staya_sim::record::{self, Files, History, Options, Recorder, Results, RobotR
 use staya_sim::scenario::Scenario;
 use staya_sim::shown::Shown as _;
 use staya_sim::summary::Summary;
+use staya_sim::terrain::remembered::Remembered;
+use staya_sim::terrain::ros;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -174,7 +176,7 @@ fn run_into(
     };
     let began = Instant::now();
     let done = simulate_recorded(scenario, recorder, &mut outputs, from.as_ref(), checkpoints.as_mut(), stop, global);
-    let (outcome, history) = match done {
+    let (outcome, history, merged) = match done {
         Ok(done) => done,
         Err(error) => {
             incomplete.extend(outputs.stop());
@@ -185,6 +187,10 @@ fn run_into(
     let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
     let names = if keeps_robots { &names[..] } else { &names[..3] };
     let mut files: Vec<_> = names.iter().map(|name| out.join(name)).collect();
+    if let Some(merged) = merged {
+        ros::save(&merged.map(&scenario.land.terrain), &dir.join("map.yaml"))?;
+        files.extend(["map.yaml", "map.pgm"].map(|name| out.join(name)));
+    }
     let pictures = run_pictures(scenario, &history, dir)?;
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
     files.extend(outputs.paths());
@@ -205,11 +211,12 @@ fn simulate_recorded(
     mut checkpoints: Option<&mut Checkpoints>,
     stop: &Stop,
     global: &Global,
-) -> Result<(Outcome, History)> {
+) -> Result<(Outcome, History, Option<Remembered>)> {
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
     let mut failed: Option<anyhow::Error> = None;
     let count = scenario.robots.len();
     let mut expected = Expected::new(scenario.ticks);
+    let mut merged = Remembered::new(scenario);
     let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
         let robots = robots.inspect(|robot| expected.see(robot));
         let done = if !outputs.wants_rows() {
@@ -222,6 +229,9 @@ fn simulate_recorded(
         if let Err(error) = done {
             failed = Some(error);
             return ControlFlow::Break(());
+        }
+        if let Some(merged) = &mut merged {
+            merged.look(moment);
         }
         let Moment { arrived, waiting, .. } = *moment;
         progress.of(expected.ticks(moment.row.tick).into());
@@ -242,6 +252,6 @@ fn simulate_recorded(
     progress.finish();
     match failed {
         Some(error) => Err(error),
-        None => Ok((outcome, recorder.finish()?)),
+        None => Ok((outcome, recorder.finish()?, merged)),
     }
 }
