@@ -9,7 +9,7 @@ mod flow;
 mod foresight;
 mod free;
 mod joint;
-mod optimum;
+pub(crate) mod optimum;
 mod process;
 mod structure;
 mod touch;

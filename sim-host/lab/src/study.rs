@@ -6,6 +6,7 @@ pub mod flock;
 pub mod fvm;
 pub mod minima;
 pub mod movingai;
+pub mod remembered;
 mod rings;
 pub mod route;
 pub mod tune;
@@ -54,7 +55,7 @@ pub trait Study: Debug + Sync {
 }
 
 /// All studies.
-pub const ALL: [&dyn Study; 9] = [
+pub const ALL: [&dyn Study; 10] = [
     &boids::Boids,
     &boids::dimensions::Dimensions,
     &boids::listing::Listing,
@@ -62,6 +63,7 @@ pub const ALL: [&dyn Study; 9] = [
     &fvm::Fvm,
     &minima::Minima,
     &movingai::MovingAi,
+    &remembered::RememberedLand,
     &route::Route,
     &tune::Tune,
 ];
