@@ -114,7 +114,7 @@ fn recorded(scenario: &Scenario, scene: Scene, every: u32, stop: &Stop, global: 
     let (minds, origin_m) = (scene.minds.clone(), scene.origin_m);
     let mut recorder = RunRecorder::of(scene, Vec::new(), Path::new(&scenario.name), scenario, every)?;
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
-    let mut engine = operated(scenario).context("the robots cannot be placed; change their starts")?;
+    let mut engine = operated(scenario)?;
     engine.log_receptions(!minds.is_empty());
     let (mut events, mut tick) = (Events::default(), 0);
     loop {

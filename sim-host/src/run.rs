@@ -3,7 +3,7 @@
 mod checkpoint;
 mod outputs;
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Result, anyhow};
 use checkpoint::{CheckpointArgs, Checkpoints};
 use clap::Args;
 pub use outputs::Observer;
@@ -243,10 +243,10 @@ fn simulate_recorded(
         if is_stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let outcome = match from {
-        None => simulate(scenario, watch).context("the robots cannot be placed; change their starts")?,
+        None => simulate(scenario, watch)?,
         Some(from) => simulate_from(scenario, from.state(), &mut watch).map_err(|unable| match unable {
             StartError::State(error) => from.refused(error).into(),
-            misplaced => anyhow!(misplaced).context("the robots cannot be placed"),
+            misplaced => anyhow!(misplaced),
         })?,
     };
     progress.finish();

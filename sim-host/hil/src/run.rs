@@ -9,7 +9,7 @@ use clap::Args;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
 use staya_controller::scalar::NumberFormat;
 use staya_link::robot::Controller;
-use staya_numbers::{added_law, in_f32, robot, unsuitable};
+use staya_numbers::{added_law, in_f32, robot, unavailable, unsuitable};
 use staya_runner::{Options, Shadow};
 use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_with};
 use staya_sim::expected::Expected;
@@ -106,7 +106,7 @@ impl Swarm for Ours {
         external: Option<Box<dyn ExternalController>>,
         watch: &mut Watch<'_>,
     ) -> Result<Outcome> {
-        simulate_with(scenario, external, watch).context("the robots cannot be placed; change their starts")
+        Ok(simulate_with(scenario, external, watch)?)
     }
 }
 
@@ -117,10 +117,13 @@ pub(crate) fn drive(
     page: &WatchArgs,
     global: &Global,
 ) -> Result<Ended> {
-    if let Some((what, remedy)) = unsuitable(scenario) {
-        bail!("{what} is not available on devices; {remedy}, or run without devices");
-    }
     let plan = devices.plan(scenario)?;
+    if let Some((what, remedy)) = unsuitable(scenario) {
+        match plan.devices.is_empty() {
+            true => bail!(unavailable(what, remedy, scenario.laws.numbers)),
+            false => bail!("{what} is not available on devices; {remedy}, or run without devices"),
+        }
+    }
     let program = swarm.program();
     let folder = firmware::find(&emulated(&plan), devices.firmware.as_deref(), &program)?;
     let mut options = Options::new(folder);

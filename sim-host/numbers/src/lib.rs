@@ -58,12 +58,18 @@ pub fn unsuitable(scenario: &Scenario) -> Option<(&'static str, &'static str)> {
     wrong.into_iter().find(|(is_wrong, ..)| *is_wrong).map(|(_, what, remedy)| (what, remedy))
 }
 
+/// What to say of something that a number format lacks.
+#[must_use]
+pub fn unavailable(what: &str, remedy: &str, numbers: NumberFormat) -> String {
+    format!("{what} is not available with numbers = \"{numbers}\"; {remedy}, or leave out numbers")
+}
+
 /// Runs a scenario in its number format; see [`simulate_with`].
 ///
 /// # Errors
 /// The robots cannot be placed, or something in the scenario is not available in its number format.
 pub fn simulate(scenario: &Scenario, watch: &mut Watch<'_>) -> Result<Outcome, String> {
-    let misplaced = |error: Misplaced| format!("the robots cannot be placed: {error}");
+    let misplaced = |error: Misplaced| error.to_string();
     let Some(robots) = OnHost::of(scenario)? else {
         return simulate_with(scenario, None, watch).map_err(misplaced);
     };
@@ -129,9 +135,7 @@ impl OnHost {
         }
         let law = added_law(scenario).map(|law| (format!("law = \"{}\"", law.name()), "give another law"));
         if let Some((what, remedy)) = law.or_else(|| unsuitable(scenario).map(|(what, remedy)| (what.into(), remedy))) {
-            return Err(format!(
-                "{what} is not available with numbers = \"{numbers}\"; {remedy}, or leave out numbers"
-            ));
+            return Err(unavailable(&what, remedy, numbers));
         }
         Ok(Some(Self::new(0..scenario.robots.len(), || robot(numbers), Box::new(|_| Vec::new()))))
     }

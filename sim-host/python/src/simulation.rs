@@ -159,9 +159,7 @@ impl Run {
                 true => text.to_owned(),
                 false => with_settings(text, &path, &settings).map_err(|e| scenario_error(&e))?,
             };
-            let engine = operated(&scenario).map_err(|error| {
-                ScenarioError::new_err(format!("the robots cannot be placed: {error}; change their starts"))
-            })?;
+            let engine = operated(&scenario).map_err(|error| ScenarioError::new_err(error.to_string()))?;
             let recorder =
                 record.map(|every| RunRecorder::new(Vec::new(), Path::new(&scenario.name), &scenario, every));
             let recorder = recorder.transpose().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;

@@ -188,7 +188,7 @@ fn the_law_does_not_decide_again_while_the_robot_advances_in_its_cell() {
 fn a_robot_that_goes_at_a_slower_pace_advances_too() {
     let decisions = |pace_mps: f32| {
         let mut guidance = counting();
-        let counts = [0, 25, 50].map(|n| {
+        [0, 25, 50].map(|n| {
             let mut told = told(Cell::new(5, 5), [0.0; 2], 1.0, n);
             told.0.scene.body.velocity_mps = Vec3::new(0.2, 0.2, 0.0);
             let mut outgoing = Outgoing::default();
@@ -196,8 +196,7 @@ fn a_robot_that_goes_at_a_slower_pace_advances_too() {
             let tools = Tools { rng: &mut Rng::new(1), radio, workspace: &mut () };
             let _ = guidance.decide_at(pace_mps, &told.0, &told.1, tools).expect("a decision");
             guidance.inside().decisions
-        });
-        counts
+        })
     };
     assert_eq!(decisions(1.0), [1, 2, 3]);
     assert_eq!(decisions(0.3), [1, 1, 1]);

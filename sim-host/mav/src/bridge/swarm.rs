@@ -13,7 +13,7 @@ use crate::framed::framed;
 use crate::geo::Origin;
 use crate::terminal::{number, result_words, say};
 use crate::{Endpoint, Lines, Received, Tlog};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 use clap::Args;
 use staya_mavlink::constants::MAV_SEVERITY_ERROR;
 use staya_mavlink::dialect::MavMessage;
@@ -107,8 +107,7 @@ impl Swarm {
                  robots, or other numbers"
             );
         }
-        let mut engine =
-            operated(scenario).map_err(|error| anyhow!("the robots cannot be placed: {error}; change their starts"))?;
+        let mut engine = operated(scenario)?;
         let model = Arc::new(VehicleModel::new(scenario, options.origin));
         let count = numbers.len();
         let vehicle = |(index, number): (usize, u32)| {

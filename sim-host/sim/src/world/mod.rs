@@ -76,7 +76,7 @@ impl Body {
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum Misplaced {
     /// The start is in a wall or outside the map.
-    #[error("robot {} starts in the impassable cell ({}, {})", .robot.0, .cell.x, .cell.y)]
+    #[error("robot {} starts in the impassable cell ({}, {}); give it another start", .robot.0, .cell.x, .cell.y)]
     Blocked {
         /// Id of the robot.
         robot: RobotId,
@@ -84,7 +84,7 @@ pub enum Misplaced {
         cell: Cell,
     },
     /// Two robots start in one cell.
-    #[error("robots {} and {} both start in cell ({}, {})", .first.0, .second.0, .cell.x, .cell.y)]
+    #[error("robots {} and {} both start in cell ({}, {}); give one of them another start", .first.0, .second.0, .cell.x, .cell.y)]
     Overlap {
         /// Id of the first robot in the list.
         first: RobotId,

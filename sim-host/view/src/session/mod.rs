@@ -16,7 +16,7 @@ use crate::frame::{FrameData, Framer};
 use crate::mind::Events;
 use crate::pace::{Pace, SLICE};
 use crate::server::{Client, FromPage, Server, WORDS};
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use branch::{Branch, Branches, changes_scene};
 use staya_console::say;
 use staya_record::claims::{Claim, claims};
@@ -76,8 +76,7 @@ impl Session {
     /// The scenario is invalid, or its robots cannot be placed.
     pub fn new(text: String, path: &Path, overrides: &Overrides, is_paused: bool) -> Result<Self> {
         let scenario = Scenario::parse(&text, path, overrides)?;
-        let engine = operated(&scenario)
-            .map_err(|error| anyhow!("the robots cannot be placed: {error}; change their starts"))?;
+        let engine = operated(&scenario)?;
         let now = Instant::now();
         let mut session = Self {
             text,
