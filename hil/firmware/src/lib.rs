@@ -62,9 +62,9 @@ macro_rules! entry {
 /// `staya hil` and its library step over the part's serial line.
 ///
 /// The law is a `LinkedLaw` of `staya_link::own` in the number format that the firmware is built
-/// for (`lockstep::Number`; `Q16` on the nRF51). On Arm the crate needs the dependency `cortex-m-rt` (with its feature `device`). Name
-/// and version are those of the calling package. It links only if no panic is reachable, except in
-/// debug builds.
+/// for (`lockstep::Number`; `Q16` on the nRF51). On Arm the crate needs the dependency
+/// `cortex-m-rt` (with its feature `device`). Name and version are those of the calling package. It
+/// links only if no panic is reachable, except in debug builds.
 ///
 /// ```text
 /// #![cfg_attr(target_os = "none", no_std, no_main)]

@@ -24,9 +24,9 @@ pub(crate) enum Made {
     InPackage(PathBuf),
 }
 
-/// Finds the folder with firmware for these machines, or one ELF file: the given path, the environment
-/// variable, firmware installed beside this program or in the user's data folder, the sources of
-/// this program. The last one builds outdated firmware and downloads the emulators.
+/// Finds the folder with firmware for these machines, or one ELF file: the given path, the
+/// environment variable, firmware installed beside this program or in the user's data folder, the
+/// sources of this program. The last one builds outdated firmware and downloads the emulators.
 pub(crate) fn find(machines: &[Machine], given: Option<&Path>, program: &Program) -> Result<PathBuf> {
     if machines.is_empty() {
         return Ok(PathBuf::new());

@@ -26,6 +26,7 @@ mod own;
 mod pace;
 mod run;
 mod summary;
+mod swarm;
 
 pub use options::DeviceArgs;
 pub use own::{Own, Package};

@@ -1,7 +1,7 @@
 //! Robots on devices beside robots of this process that compute in the scenario's number format.
 
 use crate::devices::OnDevices;
-use crate::run::{MakeRobot, Swarm};
+use crate::swarm::{MakeRobot, Swarm};
 use anyhow::Result;
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::scalar::NumberFormat;

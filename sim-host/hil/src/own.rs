@@ -1,6 +1,7 @@
 use crate::firmware::{Made, Program};
 use crate::options::DeviceArgs;
-use crate::run::{HilArgs, MakeRobot, Swarm, drive};
+use crate::run::{HilArgs, drive};
+use crate::swarm::{MakeRobot, Swarm};
 use anyhow::{Context as _, Result};
 use clap::{CommandFactory as _, FromArgMatches as _};
 use staya_console::{Ended, Global, WatchArgs};

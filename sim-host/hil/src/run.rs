@@ -4,11 +4,11 @@ use crate::mixed::{Mixed, Others};
 use crate::options::{DeviceArgs, emulated};
 use crate::pace::Pace;
 use crate::summary::Summary;
+use crate::swarm::{MakeRobot, Swarm};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
 use staya_controller::scalar::NumberFormat;
-use staya_link::robot::Controller;
 use staya_numbers::{added_law, in_f32, robot, unavailable, unsuitable};
 use staya_runner::{Options, Shadow};
 use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_with};
@@ -56,28 +56,6 @@ pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: 
         bail!("law = \"{}\" is not available in firmware; give another law, or run without devices", law.name());
     }
     drive(&Ours, scenario, devices, page, global)
-}
-
-pub(crate) type MakeRobot = Box<dyn Fn() -> Box<dyn Controller + Send>>;
-
-pub(crate) trait Swarm {
-    fn program(&self) -> Program;
-
-    /// `None` for those of Staya's laws.
-    fn shadows(&self) -> Option<Vec<Shadow>>;
-
-    /// Creates robots of this process that compute in `numbers`.
-    fn robot_in(&self, numbers: NumberFormat) -> Result<MakeRobot>;
-
-    /// Encoded law of each robot; empty if its name is enough.
-    fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send>;
-
-    fn simulate(
-        &self,
-        scenario: &Scenario,
-        external: Option<Box<dyn ExternalController>>,
-        watch: &mut Watch<'_>,
-    ) -> Result<Outcome>;
 }
 
 struct Ours;

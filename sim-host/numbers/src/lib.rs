@@ -43,7 +43,8 @@ pub fn added_law(scenario: &Scenario) -> Option<&LawSetup> {
     scenario.laws().find(|law| law.built_in().is_none())
 }
 
-/// What robots outside the engine cannot do, and the remedy; `None`: the scenario suits them.
+/// A field that robots outside the engine do not have, and the remedy; `None`: the scenario suits
+/// them.
 #[must_use]
 pub fn unsuitable(scenario: &Scenario) -> Option<(&'static str, &'static str)> {
     let models = || scenario.plane().is_some_and(|plane| plane.kinds().any(|group| group.half_planes.is_some()));
@@ -58,7 +59,7 @@ pub fn unsuitable(scenario: &Scenario) -> Option<(&'static str, &'static str)> {
     wrong.into_iter().find(|(is_wrong, ..)| *is_wrong).map(|(_, what, remedy)| (what, remedy))
 }
 
-/// What to say of something that a number format lacks.
+/// The error for something that a number format lacks.
 #[must_use]
 pub fn unavailable(what: &str, remedy: &str, numbers: NumberFormat) -> String {
     format!("{what} is not available with numbers = \"{numbers}\"; {remedy}, or leave out numbers")

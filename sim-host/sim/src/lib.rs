@@ -24,6 +24,7 @@ pub mod nearby;
 mod own_law;
 pub mod radio;
 pub mod record;
+pub mod remembered;
 pub mod scenario;
 pub mod shown;
 pub mod summary;

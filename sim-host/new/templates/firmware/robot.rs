@@ -18,8 +18,8 @@ use staya_controller::wire::Postcard;
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
 
-/// Number format of the agent: `f32`, `Fast32` with approximate functions, or `Q16` for parts without
-/// an FPU.
+/// Number format of the agent: `f32`, `Fast32` with approximate functions, or `Q16` for parts
+/// without an FPU.
 type Number = MY_NUMBER;
 
 // FILL IN. controller/robot/README.md in Staya's repository describes how to measure each value.

@@ -13,7 +13,6 @@ pub mod known;
 pub mod metrics;
 pub mod movingai;
 pub mod optimal;
-pub mod remembered;
 pub mod ros;
 pub mod rows;
 pub mod scouted;
@@ -90,7 +89,7 @@ impl Terrain {
     }
 
     /// Marks the blocked ones of these cells as unknown; `is_unknown` has a value for each cell.
-    pub(in crate::terrain) fn mark_unknown(&mut self, is_unknown: impl Iterator<Item = bool>) {
+    pub(crate) fn mark_unknown(&mut self, is_unknown: impl Iterator<Item = bool>) {
         let cells = (0..).zip(&self.cells).zip(is_unknown);
         let blocked = cells.filter(|((_, class), is_unknown)| *is_unknown && **class == BLOCKED);
         self.unknown = blocked.map(|((index, _), _)| index).collect();

@@ -7,9 +7,9 @@
 #[cfg(test)]
 mod tests;
 
-use super::Terrain;
 use crate::engine::Moment;
 use crate::scenario::Scenario;
+use crate::terrain::Terrain;
 use staya_controller::grid::Cell;
 use staya_controller::land::{LandMap, LandPatch, PATCH_HEIGHT, PATCH_TILES, PATCH_WIDTH, TILE, Tile};
 
@@ -89,7 +89,7 @@ impl Remembered {
     #[must_use]
     pub fn map(&self, land: &Terrain) -> Terrain {
         let mut map = land.clone();
-        map.unknown.clear();
+        map.mark_unknown(std::iter::empty());
         for at in cells(self.sides) {
             let price = self.price(at);
             for (y, row) in (0..).zip(STEPS) {
