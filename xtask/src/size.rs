@@ -90,6 +90,22 @@ pub fn run(s: &mut Session, options: &Options) {
     }
 }
 
+/// What `lockstep` takes on the part with an FPU: the quick part of [`run`].
+pub fn run_short(s: &mut Session) {
+    s.report.step("flash and static RAM of all behaviours", || {
+        let limits = budget::read(&files::read(&s.repo.root.join(BUDGETS))?, STM32F405.name).context(BUDGETS)?;
+        let row = row(&FIRMWARE.find(&s.repo, STM32F405, "lockstep")?)?;
+        println!("{}", text("program", &[("lockstep".into(), row.clone())].into()));
+        none_of(&budget::breaches_of("lockstep", row, &limits), "limits are breached")
+    });
+}
+
+/// The sections of a program.
+fn row(elf: &Path) -> Result<Row> {
+    let Sections { text, rodata, flash, ram } = sections(elf)?;
+    Ok(Row::from([("text", text), ("rodata", rodata), ("flash", flash), ("ram", ram)]))
+}
+
 /// Searches for the scene with the longest step behind ORCA, and prints it as an expression for
 /// `hil/cases/src/scene/found.rs`.
 fn search(s: &mut Session, options: &Options) {
@@ -103,10 +119,7 @@ fn search(s: &mut Session, options: &Options) {
 
 fn measure(repo: &Repo, part: &Part, number: &str) -> Result<Measured> {
     let elf = |program: &str| FIRMWARE.elf(repo, part, program);
-    let sizes = ["lockstep", "replay", "bench"].map(|program| {
-        let Sections { text, rodata, flash, ram } = sections(&elf(program))?;
-        Ok((program.to_string(), Row::from([("text", text), ("rodata", rodata), ("flash", flash), ("ram", ram)])))
-    });
+    let sizes = ["lockstep", "replay", "bench"].map(|program| Ok((program.to_string(), row(&elf(program))?)));
     let programs = sizes.into_iter().collect::<Result<_>>()?;
     let cases = cases(&emulate::run(repo, part, &elf("bench"), "none", &[])?)?;
     let program = reach::Program::read(&files::bytes(&elf("bench"))?)?;

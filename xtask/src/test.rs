@@ -32,7 +32,8 @@ pub fn run(s: &mut Session, is_all: bool) {
         project::run(s, is_all);
         law::run(s, is_all);
         swarms::run_short(s, &PARTS[..2]);
-        return emulate::run_fleets(s, &PARTS[..2]);
+        emulate::run_fleets(s, &PARTS[..2]);
+        return size::run_short(s);
     }
     python::book(s);
     python::browser(s);

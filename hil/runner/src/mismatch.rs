@@ -9,6 +9,8 @@ pub struct Mismatch {
     pub robot: RobotId,
     /// The device.
     pub device: String,
+    /// Whether the robot follows a law of the user's own.
+    pub has_own_law: bool,
     /// The host's step count.
     pub tick: u32,
     /// The device's result.
@@ -19,7 +21,7 @@ pub struct Mismatch {
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { robot, device, tick, on_device, in_shadow } = self;
+        let Self { robot, device, tick, on_device, in_shadow, has_own_law } = self;
         writeln!(f, "robot {} on {device} differs at step {tick}:", robot.0)?;
         writeln!(f, "{:>10}  {:<38}  this host", "", "device")?;
         let (a, b) = (on_device, in_shadow);
@@ -49,6 +51,13 @@ impl fmt::Display for Mismatch {
             } else {
                 writeln!(f, "{mark}{name:>9}  {device}\n{:>10}  {:<38}  {host}", "", "")?;
             }
+        }
+        if *has_own_law {
+            writeln!(
+                f,
+                "Does your law take functions of f32, as in `y.atan2(x)` with y: f32? They differ between processors: take \
+                 those of Scalar (docs/project.md); `cargo clippy --all-targets` finds the others"
+            )?;
         }
         Ok(())
     }

@@ -359,6 +359,7 @@ impl Unit {
             Answer::Mismatch(Box::new(Mismatch {
                 robot: self.config.setup.agent.id,
                 device: self.config.device.clone(),
+                has_own_law: !self.config.law.is_empty(),
                 tick: expected.tick,
                 on_device,
                 in_shadow: expected.result,

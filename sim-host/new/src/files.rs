@@ -98,6 +98,9 @@ pub(crate) static PARTS: [Part; 4] = [
     },
 ];
 
+/// The repository's own list of functions whose bits differ between processors.
+pub(crate) const SAME_BITS: File<'static> = ("clippy.toml", include_str!("../../../clippy.toml"));
+
 pub(crate) const RUST: &[File<'static>] = files! {
     ".github/workflows/ci.yml" = "rust/ci.yml",
     ".gitignore" = "rust/gitignore",

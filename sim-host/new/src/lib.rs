@@ -6,7 +6,7 @@ mod source;
 
 use anyhow::{Context as _, Result, anyhow, bail, ensure};
 use clap::Args;
-use files::{C, File, PARTS, PYTHON, Part, RUST};
+use files::{C, File, PARTS, PYTHON, Part, RUST, SAME_BITS};
 use source::Source;
 use staya_console::{Ended, Global, Shown as _, one_line, print};
 use staya_controller::scalar::NumberFormat;
@@ -148,7 +148,7 @@ fn name(folder: &Path) -> Result<&str> {
 
 fn files(kind: Kind, part: &Part) -> Result<Vec<File<'static>>> {
     let files = match kind {
-        Kind::Rust => [RUST, part.rust].concat(),
+        Kind::Rust => [RUST, &[SAME_BITS], part.rust].concat(),
         Kind::C if part.c.is_empty() => {
             let parts = names(PARTS.iter().filter(|part| !part.c.is_empty()));
             bail!("no C firmware for {}; give one of {parts} with --c (see docs/c.md for ESP-IDF)", part.name)

@@ -1,6 +1,6 @@
 //! Limits of a part, and which of them are breached.
 
-use super::Measured;
+use super::{Measured, Row};
 use crate::prelude::*;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
@@ -37,6 +37,13 @@ pub fn breaches(limits: &Table, measured: &Measured) -> Vec<String> {
     breaches
 }
 
+/// The same of a program alone, by the limits whose names begin with its name.
+pub fn breaches_of(program: &str, row: Row, limits: &Table) -> Vec<String> {
+    let own = limits.iter().filter(|(name, _)| name.strip_prefix(program).is_some_and(|rest| rest.starts_with('_')));
+    let own: Table = own.map(|(name, limit)| (name.clone(), limit.clone())).collect();
+    breaches(&own, &Measured { programs: [(program.into(), row)].into(), ..Measured::default() })
+}
+
 /// The figures by the names of their limits, in the kind of number that limits are for; wire
 /// formats have none.
 fn figures(limits: &Table, measured: &Measured) -> BTreeMap<String, u64> {
@@ -71,7 +78,6 @@ fn figures(limits: &Table, measured: &Measured) -> BTreeMap<String, u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Row;
     use super::*;
 
     const TEXT: &str = "[a]\nnumber = 'f32'\nlockstep_text = 100\nram = 60\nstack = 10\n\
@@ -99,6 +105,13 @@ mod tests {
         assert_eq!(told(TEXT, &measured(100, 50, 10, 7)), [""; 0]);
         assert_eq!(told(TEXT, &measured(101, 50, 10, 8)).len(), 2);
         assert_eq!(told(TEXT, &measured(100, 50, 11, 7)), ["ram: 61, at most 60", "stack: 11, at most 10"]);
+    }
+
+    #[test]
+    fn a_program_alone_has_the_limits_of_its_name() {
+        let limits = read(TEXT, "a").unwrap();
+        let told = |text: u64| breaches_of("lockstep", Row::from([("text", text)]), &limits);
+        assert_eq!((told(100), told(101)), (vec![], vec![String::from("lockstep_text: 101, at most 100")]));
     }
 
     #[test]

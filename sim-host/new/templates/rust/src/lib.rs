@@ -1,5 +1,7 @@
 //! The guidance law of my-swarm, for the simulator and for the robot.
 #![no_std]
+// Listed in clippy.toml: functions of f32 whose bits differ between processors.
+#![deny(clippy::disallowed_methods)]
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
