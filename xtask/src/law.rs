@@ -182,7 +182,7 @@ impl Law<'_> {
 
     fn sweeps(&self) -> Result<()> {
         execute(self.staya(SWEEP).arg("--restart"))?;
-        let rows = files::read(&self.copy.root.join("out/rings/rows.csv"))?;
+        let rows = files::read(&self.copy.root.join("out/sweeps/rings/rows.csv"))?;
         println!("{rows}");
         let mut hashes = Vec::new();
         for further in ["ring_m=3 sense=left", "ring_m=3 sense=right", "ring_m=6 sense=left", "ring_m=6 sense=right"] {

@@ -24,7 +24,7 @@ pub struct Figure {
     pub path: PathBuf,
     /// `PAPER/FIGURE`.
     pub place: String,
-    /// Short name; results go to `out/NAME`.
+    /// Short name; results go to `out/experiments/NAME`.
     pub name: String,
     /// Title of the plan; may be empty.
     pub title: String,
@@ -34,7 +34,7 @@ impl Figure {
     /// Folder of the results.
     #[must_use]
     pub fn out(&self) -> PathBuf {
-        Path::new("out").join(&self.name)
+        Path::new("out/experiments").join(&self.name)
     }
 
     /// Verdict on the last complete run; `None` without one.

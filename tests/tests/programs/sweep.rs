@@ -201,7 +201,7 @@ fn scripts_contain_their_commands() {
         "#SBATCH --requeue",
         "#SBATCH --time=20",
         &format!(
-            "exec staya sweep {place}/plan.toml --out {place}/out/p --shard \"$SLURM_ARRAY_TASK_ID\"/8 --threads 1 --resume --quiet"
+            "exec staya sweep {place}/plan.toml --out {place}/out/sweeps/p --shard \"$SLURM_ARRAY_TASK_ID\"/8 --threads 1 --resume --quiet"
         ),
     ] {
         assert!(slurm.lines().any(|own| own == line), "{line}\n{slurm}");
@@ -210,7 +210,10 @@ fn scripts_contain_their_commands() {
     let parallel =
         folder.done(&[&["parallel", "plan.toml", "--tasks", "8", "--program", "staya"], &hosts[..]].concat());
     assert!(parallel.contains("--sshlogin 8/alpha --sshlogin : ") && parallel.contains("--shard {}/8"), "{parallel}");
-    assert!(parallel.ends_with(&format!("staya sweep merge {place}/plan.toml --out {place}/out/p\n")), "{parallel}");
+    assert!(
+        parallel.ends_with(&format!("staya sweep merge {place}/plan.toml --out {place}/out/sweeps/p\n")),
+        "{parallel}"
+    );
 }
 
 #[test]

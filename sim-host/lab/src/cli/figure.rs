@@ -79,7 +79,7 @@ impl FigureArgs {
     fn run_all(&self, global: &Global, stop: &Stop) -> Result<Ended> {
         let (figures, mut broken, mut reports) = (figure::all()?, Vec::new(), Vec::new());
         for figure in &figures {
-            let out = if self.quick { Path::new("out/quick").join(&figure.name) } else { figure.out() };
+            let out = if self.quick { Path::new("out/experiments/quick").join(&figure.name) } else { figure.out() };
             let plan = self.plan(figure)?;
             let report = self.make(&plan, &out, global, stop)?;
             if global.json {

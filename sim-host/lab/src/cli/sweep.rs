@@ -112,7 +112,7 @@ struct ParallelArgs {
 impl TargetArgs {
     fn load(&self) -> Result<(Plan, PathBuf)> {
         let plan = Plan::load(self.plan.as_deref().unwrap_or(Path::new("")), &Changes::default())?;
-        let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&plan.name));
+        let out = self.out.clone().unwrap_or_else(|| plan.out());
         Ok((plan, out))
     }
 }

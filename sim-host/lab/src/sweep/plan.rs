@@ -38,7 +38,7 @@ const FORMAT: u64 = 1;
 /// A checked plan. A run is a function of the plan and its number.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Name of the plan; results go to `out/NAME`.
+    /// Name of the plan; results go to `out/sweeps/NAME`.
     pub name: String,
     /// Description in one line; may be empty.
     pub title: String,
@@ -110,6 +110,12 @@ impl Plan {
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Folder of the results, unless another one is named: not that of a run with this name.
+    #[must_use]
+    pub fn out(&self) -> PathBuf {
+        Path::new("out/sweeps").join(&self.name)
     }
 
     /// Number of runs.

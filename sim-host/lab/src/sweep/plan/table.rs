@@ -9,7 +9,7 @@ use toml::de::DeValue;
 table! {
     /// A whole file.
     pub struct PlanFile {
-        /// Letters, digits, `-` and `_`; results go to `out/<name>`.
+        /// Letters, digits, `-` and `_`; results go to `out/sweeps/<name>`.
         pub name: String;
         /// One line.
         pub title: String = String::new();
