@@ -39,7 +39,18 @@ struct Step<'a, S> {
     drive: Drive<S>,
 }
 
-impl<S: Scalar> Step<'_, S> {
+impl<'a, S: Scalar> Step<'a, S> {
+    /// `None` without a view of the land.
+    fn new(input: &View<'_, S, Grid>, here: &InCells<'a, S>) -> Option<Self> {
+        Some(Self {
+            window: here.grid.window?,
+            cell: here.grid.cell.cell,
+            offset_m: here.in_cell.offset_m,
+            cell_m: here.in_cell.cell_m,
+            drive: Drive::new(&input.body),
+        })
+    }
+
     fn metres(&self, cells: Cell) -> Vec2<S> {
         Vec2::new(S::from_i32(cells.x.into()) * self.cell_m, S::from_i32(cells.y.into()) * self.cell_m)
     }
@@ -128,13 +139,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         H: FarMap,
     {
         let Action::Velocity { wish_mps: by_cells_mps, .. } = decision.action else { return Ok(()) };
-        let step = Step {
-            window: here.grid.window.ok_or(BadInput)?,
-            cell: here.grid.cell.cell,
-            offset_m: here.in_cell.offset_m,
-            cell_m: here.in_cell.cell_m,
-            drive: Drive::new(&input.body),
-        };
+        let step = Step::new(input, here).ok_or(BadInput)?;
         let view = self.inside().view(input.id, input.on_grid());
         let target = Law::<S>::report(&self.cells).target;
         let to_goal_m = step.to_middle(target.ok_or(BadInput)?);
@@ -194,6 +199,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
         decision.action = Action::Velocity { wish_mps: wish_mps.extend(S::ZERO), way_m: None };
         Ok(())
+    }
+
+    /// What the land under the slowest robot allows the top leader, which would else decide again in
+    /// mid-cell, for ever between two ways that seem equally good.
+    fn pace_mps(&self, input: &View<'_, S, Grid>, here: &InCells<'_, S>) -> S {
+        let most_mps = input.body.max_speed_mps;
+        let step = Step::new(input, here).filter(|_| !self.inside().leader.is_some());
+        step.map_or(most_mps, |step| step.slowest_mps(most_mps, &self.inside().view(input.id, input.on_grid()).entries))
     }
 
     /// Returns that the robot is at its goal, or beside it if occupied. Adjusts the wish of a robot
@@ -272,9 +285,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_some() {
             self.cells.discard_decision();
         }
-        // A formation on rough land goes at the pace of its slowest robot: its leader would decide
-        // again in mid-cell, for ever between two ways that seem equally good.
-        let pace_mps = if self.inside().leader.is_some() { input.body.max_speed_mps } else { self.wish_mps.norm() };
+        let pace_mps = self.pace_mps(input, here);
         let tools = Tools { rng, radio: radio.of(), workspace };
         let mut decision = self.cells.decide_at(pace_mps, input, here, tools)?;
         if decision.progress != Progress::Idle {
