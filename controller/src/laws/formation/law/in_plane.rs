@@ -201,8 +201,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         Ok(())
     }
 
-    /// What the land under the slowest robot allows the top leader, which would else decide again in
-    /// mid-cell, for ever between two ways that seem equally good.
+    /// What the land under the slowest robot allows the top leader. Without it the leader would
+    /// decide again in mid-cell, for ever between two ways that seem equally good.
     fn pace_mps(&self, input: &View<'_, S, Grid>, here: &InCells<'_, S>) -> S {
         let most_mps = input.body.max_speed_mps;
         let step = Step::new(input, here).filter(|_| !self.inside().leader.is_some());
