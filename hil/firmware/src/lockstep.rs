@@ -9,13 +9,13 @@ use staya_link::message::Cost;
 use staya_link::robot::{self, Controller};
 use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
 
-/// The number format that the firmware was built for; see `STAYA_NUMBERS` in docs/firmware.md.
+/// The number format that the firmware was built for; see `cargo xtask firmware --numbers`.
 #[cfg(numbers = "f32")]
 pub type Number = f32;
-/// The number format that the firmware was built for; see `STAYA_NUMBERS` in docs/firmware.md.
+/// The number format that the firmware was built for; see `cargo xtask firmware --numbers`.
 #[cfg(numbers = "fast32")]
 pub type Number = staya_controller::scalar::Fast32;
-/// The number format that the firmware was built for; see `STAYA_NUMBERS` in docs/firmware.md.
+/// The number format that the firmware was built for; see `cargo xtask firmware --numbers`.
 #[cfg(numbers = "q16")]
 pub type Number = staya_controller::scalar::Q16;
 /// The robot with law `G` that fits this part.

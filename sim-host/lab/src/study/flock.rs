@@ -14,6 +14,7 @@ use crate::probe;
 use crowd::Crowd;
 use staya_controller::agent::GOALS;
 use staya_controller::rand::Rng;
+use staya_controller::scalar::NumberFormat;
 use staya_sim::engine::{self, Outcome};
 use staya_sim::scenario::{PlaneSetup, Scenario, Start, Target};
 use staya_sim::world::plane::Solid;
@@ -265,6 +266,13 @@ impl Run {
         {
             let what = "exact knowledge is for one alpha flock, or goal flock behind push-out, among balls";
             return Err(given.error("knows", what, "give \"packets\""));
+        }
+        if run.parameters.knows == Knowledge::All && run.scenario.laws.numbers != NumberFormat::F32 {
+            return Err(given.error(
+                "knows",
+                "robots with exact knowledge compute in f32",
+                "give \"packets\", or leave out numbers",
+            ));
         }
         Ok(run)
     }

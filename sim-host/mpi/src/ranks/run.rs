@@ -8,6 +8,7 @@ use super::region::Region;
 use super::wire::Wire;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
+use staya_controller::scalar::NumberFormat;
 use staya_controller::wire::Ring;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::hash;
@@ -16,6 +17,7 @@ use staya_sim::metrics::{FormationQuality, Member};
 use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
 use staya_sim::scenario::{AttackKind, Intervention, Movement, Scenario};
+use staya_sim::world::Misplaced;
 use std::time::Instant;
 
 /// A robot at the end: its number, arrival time and state.
@@ -69,6 +71,9 @@ pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     }
     if matches!(&scenario.movement, Movement::Cells(rules) if rules.simultaneous) {
         return Err(RankError::Simultaneous);
+    }
+    if scenario.laws.numbers != NumberFormat::F32 {
+        return Err(Misplaced::Numbers(scenario.laws.numbers).into());
     }
     if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
 }

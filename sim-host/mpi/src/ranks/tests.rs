@@ -1,9 +1,10 @@
 use super::*;
+use staya_controller::scalar::NumberFormat;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::{Moment, Outcome, agents, simulate, simulate_from};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Movement, Overrides, Scenario};
-use staya_sim::world::MoveRules;
+use staya_sim::world::{Misplaced, MoveRules};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
@@ -90,6 +91,14 @@ fn robots_that_move_at_once_are_refused() {
     scenario.movement = Movement::Cells(MoveRules { simultaneous: true, ..MoveRules::default() });
     let ended = on_ranks(&scenario, 1, &Sharing::default());
     assert!(matches!(ended[..], [Err(RankError::Simultaneous)]));
+}
+
+#[test]
+fn robots_in_another_number_format_are_refused() {
+    let mut scenario = load("corridor.toml", 20);
+    scenario.laws.numbers = NumberFormat::Q16;
+    let ended = on_ranks(&scenario, 1, &Sharing::default());
+    assert!(matches!(ended[..], [Err(RankError::Misplaced(Misplaced::Numbers(NumberFormat::Q16)))]));
 }
 
 #[test]
