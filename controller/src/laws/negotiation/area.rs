@@ -230,14 +230,17 @@ impl Area {
         Cell::new(clamp(cell.x, x), clamp(cell.y, y))
     }
 
+    /// Whether a move is open: its cell, and both cells beside a diagonal.
+    #[must_use]
+    pub fn opens(&self, cell: Cell, dir: Dir) -> bool {
+        let Cell { x, y } = dir.offset();
+        let corners = [Cell::new(x, 0), Cell::new(0, y)];
+        self.is_open(cell + dir.offset())
+            && (!dir.is_diagonal() || corners.iter().all(|&corner| self.is_open(cell + corner)))
+    }
+
     /// The open cells that one move reaches, in the order of `moves`.
     pub fn around<'a>(&'a self, cell: Cell, moves: &'a [Dir]) -> impl Iterator<Item = Cell> + 'a {
-        let to = move |dir: Dir| cell + dir.offset();
-        let is_open = move |&dir: &Dir| {
-            let step = dir.offset();
-            let corners = [Cell::new(step.x, 0), Cell::new(0, step.y)];
-            self.is_open(to(dir)) && (!dir.is_diagonal() || corners.iter().all(|&corner| self.is_open(cell + corner)))
-        };
-        moves.iter().copied().filter(is_open).map(to)
+        moves.iter().copied().filter(move |&dir| self.opens(cell, dir)).map(move |dir| cell + dir.offset())
     }
 }

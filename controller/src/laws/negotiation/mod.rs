@@ -7,13 +7,15 @@ mod distance;
 mod law;
 mod negotiator;
 mod plan;
+mod wish;
 
 pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::Distances;
 #[cfg(feature = "agent")]
 pub use law::{Beat, InStep, InStepPayload, Negotiation, NegotiationGuidance, NegotiationInPlane, NegotiationPayload};
-pub use negotiator::{Negotiator, RANGE, REPORTED, Report, Said, Sensed};
-pub use plan::{Fields, Manners, Member, Moves, Plan, Wish};
+pub use negotiator::{MOST_WAITING, Negotiator, RANGE, REPORTED, Report, Said, Sensed};
+pub use plan::{Fields, Member, Moves, Plan};
+pub use wish::{Manners, Wish};
 
 #[cfg(all(test, feature = "wire"))]
 mod tests;

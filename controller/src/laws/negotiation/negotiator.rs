@@ -3,7 +3,8 @@
 mod sensed;
 
 use super::area::{Area, Sight};
-use super::plan::{Fields, Manners, Member, Moves, Plan, Wish};
+use super::plan::{Fields, Member, Moves, Plan};
+use super::wish::{Manners, Wish};
 use crate::fixint;
 use crate::grid::{Cell, Dir};
 use crate::list;
@@ -20,6 +21,8 @@ pub const RANGE: u32 = 8;
 pub const REPORTED: usize = 8;
 /// Steps after which a robot whose place is not known is forgotten.
 const FORGET: u8 = 6;
+/// The greatest [`Said::waiting`], which takes 12 bits on the air.
+pub const MOST_WAITING: u16 = 4095;
 /// Most cells to a robot in a [`Report`], along each axis.
 const NEAR: i16 = 7;
 /// Steps of a robot to and fro, or without the move that it planned, that are a stalemate.
@@ -32,7 +35,7 @@ const REFUSALS: u8 = 4;
 const MOST_BLOCKED: usize = 2;
 const PURPOSE: u32 = u32::from_be_bytes(*b"mann");
 
-/// A robot's report on itself in each step, before it decides; 14 bytes on the air.
+/// A robot's report on itself in each step, before it decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Said {
     /// Where it is.
@@ -41,7 +44,7 @@ pub struct Said {
     /// Where it wants to go.
     #[serde(with = "fixint")]
     pub goal: Cell,
-    /// Steps since it last stood on its goal, plus 1.
+    /// Steps since it last stood on its goal, plus 1; at most [`MOST_WAITING`].
     #[serde(with = "fixint")]
     pub waiting: u16,
     /// Which cells around it it wants to enter.
@@ -75,8 +78,10 @@ struct Known {
     age: u8,
     /// Steps since its place was heard or reported.
     lost: u8,
-    /// It does not move in this step.
+    /// It stays in its cell.
     holds: bool,
+    /// Steps until it can move.
+    busy: u8,
     /// As in [`Member::leaves_by`].
     leaves_by: Option<Dir>,
 }
@@ -129,7 +134,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         Self {
             id,
             goal: cell,
-            own: Said { cell, goal: cell, waiting: 1, wish: Wish(0), step: 0, manners },
+            own: Said { cell, goal: cell, waiting: 1, wish: Wish::CLOSED, step: 0, manners },
             sight: Sight([0; 16]),
             moves,
             past: [cell; 2],
@@ -230,6 +235,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             other.age = other.age.saturating_add(1);
             other.lost = other.lost.saturating_add(1);
             other.holds = false;
+            other.busy = other.busy.saturating_sub(1);
             other.leaves_by = None;
             let said = &mut other.said;
             said.step = said.step.wrapping_add(1);
@@ -274,7 +280,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     }
 
     fn note(&mut self, id: RobotId, said: &Said) {
-        let known = Known { id, said: *said, age: 0, lost: 0, holds: false, leaves_by: None };
+        let known = Known { id, said: *said, age: 0, lost: 0, holds: false, busy: 0, leaves_by: None };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = known,
             None => {
@@ -331,6 +337,13 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     pub fn hold(&mut self, id: RobotId) {
         if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
             other.holds = true;
+        }
+    }
+
+    /// A robot cannot move for some steps.
+    pub fn set_busy(&mut self, id: RobotId, steps: u8) {
+        if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
+            other.busy = steps;
         }
     }
 
@@ -424,12 +437,15 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         };
         self.known.retain(|other| other.said.cell.chebyshev(own.cell) <= RANGE);
         let mut members: Vec<Member, N> = Vec::new();
-        let _ = members.push(Member { leaves_by: self.leaves_by.take(), ..member(self.id, &own, true, false) });
+        let _ = members.push(Member { leaves_by: self.leaves_by.take(), ..member(self.id, &own) });
         // The newest news of a cell counts.
         list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
         let known = self.known.iter().map(|other| Member {
+            wish: (other.age == 0).then_some(other.said.wish),
+            holds: other.holds,
+            busy: other.busy,
             leaves_by: other.leaves_by,
-            ..member(other.id, &other.said, other.age == 0, other.holds)
+            ..member(other.id, &other.said)
         });
         for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
             let is_same =
@@ -439,11 +455,12 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             }
         }
         let plan: Plan<'_, N, F> = Plan::new(&members, &self.area, &mut self.fields, self.moves);
-        let next = plan.next(0).unwrap_or(own.cell);
+        let goes_to = |index: u8| plan.next(index).filter(|_| plan.moves_now(index));
+        let next = goes_to(0).unwrap_or(own.cell);
         // Until it is heard again, a robot is where this plan puts it.
         for other in &mut self.known {
             let index = members.iter().position(|member| member.id == other.id);
-            if let Some(cell) = index.and_then(|index| plan.next(index as u8)) {
+            if let Some(cell) = index.and_then(|index| goes_to(index as u8)) {
                 other.said.cell = cell;
             }
         }
@@ -479,16 +496,20 @@ fn moves(a: Cell, b: Cell) -> u32 {
 }
 
 const fn waiting(is_at_goal: bool, before: u16) -> u16 {
-    if is_at_goal { 1 } else { before.saturating_add(1) }
+    match before {
+        _ if is_at_goal => 1,
+        before if before < MOST_WAITING => before.saturating_add(1),
+        _ => MOST_WAITING,
+    }
 }
 
-fn member(id: RobotId, said: &Said, is_heard: bool, holds: bool) -> Member {
+fn member(id: RobotId, said: &Said) -> Member {
     let Said { cell, goal, waiting, wish, step, manners } = *said;
-    Member { id, cell, goal, waiting, step, manners, wish: is_heard.then_some(wish), holds, leaves_by: None }
+    Member { id, cell, goal, waiting, step, manners, wish: Some(wish), holds: false, busy: 0, leaves_by: None }
 }
 
 /// A robot of which only the cell is known.
 fn stranger(cell: Cell) -> Member {
     let (id, manners) = (RobotId::NONE, Manners::default());
-    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false, leaves_by: None }
+    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false, busy: 0, leaves_by: None }
 }

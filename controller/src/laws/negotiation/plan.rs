@@ -2,7 +2,7 @@
 
 use super::area::Area;
 use super::distance::Distances;
-use crate::fixint;
+use super::wish::{Manners, Wish};
 use crate::grid::{Cell, Dir};
 use crate::list;
 use crate::rand::Rng;
@@ -33,65 +33,6 @@ impl Moves {
     }
 }
 
-/// A robot's view of the cells around it: two bits for each move. 0: nearer to its goal, 1: as
-/// far as its own cell, 2: farther, 3: closed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Wish(#[serde(with = "fixint")] pub u16);
-
-impl Wish {
-    /// The wish of a robot in `cell`, from its distances.
-    #[must_use]
-    pub fn new(cell: Cell, area: &Area, distances: &Distances, moves: Moves) -> Self {
-        let mut wish = u16::MAX;
-        for &dir in moves.dirs() {
-            let to = cell + dir.offset();
-            let is_open = area.around(cell, core::slice::from_ref(&dir)).next().is_some();
-            let rank = match distances.compare(to, cell) {
-                _ if !is_open => 3,
-                Some(Ordering::Less) => 0,
-                Some(Ordering::Equal) => 1,
-                Some(Ordering::Greater) | None => 2,
-            };
-            wish &= !(3 << (2 * dir.index())) | rank << (2 * dir.index());
-        }
-        Self(wish)
-    }
-
-    /// The rank of a move; `None` if the cell is closed.
-    #[must_use]
-    pub const fn rank(self, dir: Dir) -> Option<u8> {
-        if matches!(dir, Dir::Stay) {
-            return Some(1);
-        }
-        match (self.0 >> (2 * dir.index())) as u8 & 3 {
-            3 => None,
-            rank => Some(rank),
-        }
-    }
-}
-
-/// A robot's part in ending a stalemate, in one step. The default is its usual behaviour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(from = "u8", into = "u8")]
-pub struct Manners {
-    /// It chooses after all others.
-    pub is_last: bool,
-    /// It does not begin to exchange its place with another robot.
-    pub keeps_on: bool,
-}
-
-impl From<u8> for Manners {
-    fn from(bits: u8) -> Self {
-        Self { is_last: bits & 1 == 1, keeps_on: bits & 2 == 2 }
-    }
-}
-
-impl From<Manners> for u8 {
-    fn from(manners: Manners) -> Self {
-        Self::from(manners.is_last) | Self::from(manners.keeps_on) << 1
-    }
-}
-
 /// A robot in a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
@@ -109,8 +50,10 @@ pub struct Member {
     pub manners: Manners,
     /// Its wish; `None` if it is not known.
     pub wish: Option<Wish>,
-    /// It does not move in this step.
+    /// It stays in its cell.
     pub holds: bool,
+    /// Steps until it can move.
+    pub busy: u8,
     /// If another robot is in its cell too, nearer to the centre: the only move that it can make.
     pub leaves_by: Option<Dir>,
 }
@@ -178,7 +121,20 @@ impl<const F: usize> Fields<F> {
 
 /// Longest corridor that a swap looks along, cells.
 const CORRIDOR: usize = 200;
+/// Longest wait for a robot on its way that counts, ticks.
+const MOST_WAIT: u8 = 64;
 const PURPOSE: u32 = u32::from_be_bytes(*b"nego");
+
+/// A key in whose ascending order a cheap move is likely to be first, but never certain to:
+/// Exp(1) x `lost`, 1/64 (P. Efraimidis and P. Spirakis 2006, "Weighted random sampling with a
+/// reservoir"). A strict order by costs lets two robots repeat their moves for ever.
+fn shuffled(uniform: u32, lost: u8) -> u32 {
+    let zeros = uniform.leading_zeros();
+    // -log2, whose fraction is linear.
+    let fraction = uniform.wrapping_shl(zeros.saturating_add(1).min(31)) >> 26;
+    let logarithm = zeros << 6 | 63_u32.saturating_sub(fraction);
+    logarithm.saturating_mul(lost.into())
+}
 
 /// The moves of at most `N` robots.
 pub struct Plan<'a, const N: usize, const F: usize> {
@@ -238,6 +194,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             manners: Manners::default(),
             wish: None,
             holds: false,
+            busy: 0,
             leaves_by: None,
         };
         self.members.get(usize::from(index)).copied().unwrap_or(none)
@@ -284,9 +241,23 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         chain.into_iter().any(|index| self.member(index).cell == cell)
     }
 
-    fn is_nearer(&mut self, member: u8, a: Cell, b: Cell) -> bool {
-        let goal = self.member(member).goal;
-        self.fields.to(goal, self.area, self.moves).is_nearer(a, b)
+    /// Whether a member makes its move now: it can move, and its cell is free or becomes free now.
+    /// O(N^2).
+    #[must_use]
+    pub fn moves_now(&self, index: u8) -> bool {
+        let mut at = index;
+        for _ in 0..N {
+            let (member, Some(to)) = (self.member(at), self.next(at)) else { return false };
+            if member.busy > 0 || to == member.cell {
+                return false;
+            }
+            match self.occupant(to) {
+                Some(other) if other != at => at = other,
+                _ => return true,
+            }
+        }
+        // All of a circle can move.
+        true
     }
 
     /// Chooses the move of a member and of all that it has to ask.
@@ -349,11 +320,15 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let mut order: Vec<(u8, u32, Dir), 9> = Vec::new();
         let can = |dir: &&Dir| member.leaves_by.is_none_or(|by| by == **dir);
         for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]).filter(can) {
-            if let Some(rank) = self.rank(&member, dir) {
+            if let Some(lost) = self.lost(&member, dir) {
                 let to = cell + dir.offset();
                 let place = u64::from(to.x as u16) << 16 | u64::from(to.y as u16);
-                let tie = Rng::keyed(place, PURPOSE, id.0, member.step.into()).next_u32();
-                let _ = order.push((rank, tie, dir));
+                let tie = Rng::keyed(place, PURPOSE, id.0, u32::from(member.step & 15)).next_u32();
+                let busy = |other: u8| if other == index { 0 } else { self.member(other).busy };
+                let wait = self.occupant(to).map_or(0, busy);
+                let lost = if dir == Dir::Stay { lost } else { lost.saturating_add(wait.min(MOST_WAIT)) };
+                let tie = if lost > Wish::STAYING { shuffled(tie, lost) } else { tie };
+                let _ = order.push((lost.min(Wish::STAYING + 1), tie, dir));
             }
         }
         list::sort_by_key(&mut order, |&(rank, tie, dir)| (rank, tie, dir.index()));
@@ -363,8 +338,13 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         } else {
             self.swap(index, cell + best.offset())
         };
-        if swaps.is_some() {
-            order.reverse();
+        if let Some(other) = swaps {
+            // Both move at once, so it waits for a robot that is still on its way.
+            if self.member(other).busy > 0 {
+                order.retain(|&(.., dir)| dir == Dir::Stay);
+            } else {
+                order.reverse();
+            }
         }
         if let Some(turn) = self.turn(index) {
             (turn.tried, turn.swaps, turn.asked_by) = (0, swaps, asked_by);
@@ -373,23 +353,22 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
     }
 
-    /// The rank of a move for a member, by its own wish if it told one.
-    fn rank(&mut self, member: &Member, dir: Dir) -> Option<u8> {
-        if let Some(wish) = member.wish {
-            return wish.rank(dir);
+    /// The ticks that a member loses by a move, by its own wish if that is known.
+    fn lost(&mut self, member: &Member, dir: Dir) -> Option<u8> {
+        if dir == Dir::Stay {
+            return Some(Wish::STAYING);
         }
-        let is_open = dir == Dir::Stay || self.area.around(member.cell, &[dir]).next().is_some();
+        if let Some(wish) = member.wish {
+            return wish.lost(dir);
+        }
+        if !self.area.opens(member.cell, dir) {
+            return None;
+        }
         let distances = self.fields.to(member.goal, self.area, self.moves);
-        is_open.then(|| match distances.along(member.cell, dir) {
+        Some(match distances.along(member.cell, dir) {
             Some(Ordering::Less) => 0,
             Some(Ordering::Equal) => 1,
-            Some(Ordering::Greater) | None => {
-                if dir == Dir::Stay {
-                    1
-                } else {
-                    2
-                }
-            }
+            Some(Ordering::Greater) | None => 2,
         })
     }
 
@@ -408,7 +387,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
         for &dir in self.moves.dirs() {
             let beside = own + dir.offset();
-            if beside == to || self.rank(&member, dir).is_none() {
+            if beside == to || self.lost(&member, dir).is_none() {
                 continue;
             }
             if let Some(other) = self.occupant(beside)
@@ -422,11 +401,20 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         None
     }
 
-    /// Whether robot `behind`, pushed on from `from` over `to`, only comes past `ahead` by
-    /// exchanging places.
+    /// Whether `pusher`, on its way from `from` over `to`, only comes past `pulled` by exchanging
+    /// places. Decided by their wishes and goals alone, because along a corridor a robot goes on
+    /// until its goal.
     fn must_swap(&mut self, pusher: u8, pulled: u8, mut from: Cell, mut to: Cell) -> bool {
+        let (front, back) = (self.member(pusher), self.member(pulled));
+        if !self.goes_over(&front, from, to) {
+            return false;
+        }
+        let comes_back = back.cell == to
+            && back.goal != to
+            && Dir::between(to, from).is_some_and(|dir| self.lost(&back, dir) == Some(0));
+        let mut is_pulled = comes_back || back.goal == from;
         for _ in 0..CORRIDOR {
-            if !self.is_nearer(pusher, to, from) {
+            if front.goal == from {
                 break;
             }
             match self.ways_on([pusher, pulled], to, from) {
@@ -434,9 +422,25 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
                 (1, on) => (from, to) = (to, on),
                 _ => return false,
             }
+            is_pulled |= back.goal == from;
         }
-        let is_there = self.member(pusher).goal == from;
-        self.is_nearer(pulled, from, to) && (is_there || self.is_nearer(pusher, to, from))
+        is_pulled
+    }
+
+    /// Whether a robot in `from`, or beside it, wants to go from there to `to`, or ends in `from`.
+    fn goes_over(&mut self, robot: &Member, from: Cell, to: Cell) -> bool {
+        let is_there = robot.cell == from;
+        let Some(first) = Dir::between(robot.cell, if is_there { to } else { from }) else { return false };
+        if robot.goal == robot.cell || self.lost(robot, first) != Some(0) {
+            return false;
+        }
+        is_there
+            || robot.goal == from
+            || match robot.wish {
+                Some(wish) if wish.best() == Some(first) => from + wish.then.offset() == to,
+                // Its next but one move is not known, unless there is only one.
+                _ => self.area.around(from, self.moves.dirs()).filter(|&on| on != robot.cell).count() == 1,
+            }
     }
 
     /// Whether the way over `to` comes to a fork where one robot can let the other pass.

@@ -36,8 +36,9 @@ impl Protocol for InStep {
 
 impl InAny for InStep {}
 
-/// The payload of a robot that negotiates in the plane; at most 16 bytes on the air.
+/// The payload of a robot that negotiates in the plane; 15 bytes on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "[u8; 15]", into = "[u8; 15]")]
 pub struct InStepPayload {
     /// Where it is at the end of this step.
     pub said: Said,
@@ -48,6 +49,52 @@ pub struct InStepPayload {
 }
 
 impl Content for InStepPayload {}
+
+/// Of the four moves, from 0, and 4 for `Stay`.
+const fn quarter(dir: Dir) -> u8 {
+    dir as u8 >> 1
+}
+
+/// Cell, goal, `waiting`, step, 4 bits for each move of the wish, `by`, the move after the best one
+/// and the manners, and the beat.
+impl From<InStepPayload> for [u8; 15] {
+    fn from(payload: InStepPayload) -> Self {
+        let InStepPayload { said: Said { cell, goal, waiting, wish, step, manners }, by, beat } = payload;
+        let [east, north, west, south] = Moves::FOUR.dirs() else { return [0; 15] };
+        let lost = |dir: &Dir| u16::from(wish.lost(*dir).unwrap_or(15));
+        let lost = lost(east) | lost(north) << 4 | lost(west) << 8 | lost(south) << 12;
+        let moves = u16::from(quarter(by)) << 5 | u16::from(quarter(wish.then)) << 2 | u16::from(u8::from(manners) & 3);
+        let [(a, b), (c, d), (e, f), (g, h), (i, j), (k, l)] =
+            [cell.x as u16, cell.y as u16, goal.x as u16, goal.y as u16, waiting, lost]
+                .map(|pair| (pair as u8, (pair >> 8) as u8));
+        [a, b, c, d, e, f, g, h, i, j, k, l, step, moves as u8, beat.into()]
+    }
+}
+
+impl From<[u8; 15]> for InStepPayload {
+    fn from([a, b, c, d, e, f, g, h, i, j, k, l, step, moves, beat]: [u8; 15]) -> Self {
+        let at = |x: [u8; 2], y: [u8; 2]| Cell::new(i16::from_le_bytes(x), i16::from_le_bytes(y));
+        let dir = |quarter: u8| Dir::from_index((quarter & 7) << 1);
+        let mut wish = Wish::CLOSED;
+        wish.then = dir(moves >> 2);
+        let mut lost = u16::from_le_bytes([k, l]);
+        for &dir in Moves::FOUR.dirs() {
+            if lost & 15 < 15 {
+                wish.set(dir, (lost & 15) as u8);
+            }
+            lost >>= 4;
+        }
+        let said = Said {
+            cell: at([a, b], [c, d]),
+            goal: at([e, f], [g, h]),
+            waiting: u16::from_le_bytes([i, j]),
+            wish,
+            step,
+            manners: Manners::from(moves & 3),
+        };
+        Self { said, by: dir(moves >> 5), beat: beat.into() }
+    }
+}
 
 /// A moment of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -130,7 +177,7 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
                 cell: Cell { x: 0, y: 0 },
                 goal: Cell { x: 0, y: 0 },
                 waiting: 1,
-                wish: Wish(0),
+                wish: Wish::CLOSED,
                 step: 0,
                 manners: Manners { is_last: false, keeps_on: false },
             },

@@ -2,7 +2,7 @@
 
 mod in_plane;
 
-use super::{Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight};
+use super::{MOST_WAITING, Manners, Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight, Wish};
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Progress, Protocol, Radio, Tools, View};
 use crate::laws::any_protocol::InAny;
@@ -29,19 +29,52 @@ impl Protocol for Negotiation {
     type Order = GridOrder;
 }
 
-/// The payload of a robot that negotiates; 16 bytes at most on the air.
+/// The payload of a robot that negotiates; 16 bytes on the air, as [`packed`] there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "[u8; 16]", into = "[u8; 16]")]
 pub struct NegotiationPayload {
     /// Where it is, or goes to in this tick.
     pub said: Said,
     /// The move by which it goes there.
     pub by: Dir,
-    /// Steps after the next one in which it cannot leave that cell; 255: it stays there.
+    /// Steps after the next one in which it cannot leave that cell; [`STAYS`]: it stays there.
     pub busy: u8,
 }
 
 /// Of a robot without a goal, or that an operator stopped.
-const STAYS: u8 = u8::MAX;
+pub const STAYS: u8 = 63;
+
+/// Cell, goal, 4 bits of the step and 12 of `waiting`, the wish, `by` and the move after the best
+/// one, 6 bits of `busy` and the manners.
+impl From<NegotiationPayload> for [u8; 16] {
+    fn from(payload: NegotiationPayload) -> Self {
+        let NegotiationPayload { said, by, busy } = payload;
+        let Said { cell, goal, waiting, wish, step, manners } = said;
+        let order = waiting.min(MOST_WAITING) << 4 | u16::from(step & 15);
+        let [(a, b), (c, d), (e, f), (g, h), (i, j)] =
+            [cell.x as u16, cell.y as u16, goal.x as u16, goal.y as u16, order]
+                .map(|pair| (pair as u8, (pair >> 8) as u8));
+        let [k, l, m, n] = wish.bits().to_le_bytes();
+        let moves = by as u8 | (wish.then as u8) << 4;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, moves, busy.min(STAYS) << 2 | u8::from(manners) & 3]
+    }
+}
+
+impl From<[u8; 16]> for NegotiationPayload {
+    fn from([a, b, c, d, e, f, g, h, i, j, k, l, m, n, moves, busy]: [u8; 16]) -> Self {
+        let at = |x: [u8; 2], y: [u8; 2]| Cell::new(i16::from_le_bytes(x), i16::from_le_bytes(y));
+        let order = u16::from_le_bytes([i, j]);
+        let said = Said {
+            cell: at([a, b], [c, d]),
+            goal: at([e, f], [g, h]),
+            waiting: order >> 4,
+            wish: Wish::from_bits(u32::from_le_bytes([k, l, m, n]), Dir::from_index(moves >> 4)),
+            step: (order & 15) as u8,
+            manners: Manners::from(busy & 3),
+        };
+        Self { said, by: Dir::from_index(moves & 15), busy: busy >> 2 }
+    }
+}
 
 impl Content for NegotiationPayload {}
 impl Content for Report {}
@@ -132,8 +165,12 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
                     robot.hear(neighbor.id, &said);
                 }
             }
-            if view.now.since(neighbor.heard) < view.tick.saturating_mul(busy.into()) {
-                robot.hold(neighbor.id);
+            let age = view.now.since(neighbor.heard).as_micros().max(0).checked_div(view.tick.as_micros());
+            let left = i32::from(busy).saturating_sub(age.unwrap_or(0));
+            match u8::try_from(left) {
+                Ok(0) | Err(_) => {}
+                Ok(_) if busy == STAYS => robot.hold(neighbor.id),
+                Ok(left) => robot.set_busy(neighbor.id, left),
             }
         }
         let dir = robot.decide(Sensed::Nothing);
@@ -175,7 +212,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         // The last step of a crossing ends when it is free.
         let left = self.crossed.since(now).as_micros().saturating_sub(1);
         let busy = left.checked_div(self.tick.as_micros()).unwrap_or(0);
-        let busy = u8::try_from(busy.max(0)).unwrap_or(STAYS);
+        let busy = busy.clamp(0, i32::from(STAYS - 1)) as u8;
         NegotiationPayload { said, by, busy: if stays { STAYS } else { busy } }
     }
 
