@@ -39,6 +39,8 @@ const ORDERS: usize = 4;
 
 /// A message or an order for the law.
 pub(super) enum Received<Q: Protocol> {
+    /// The payload of a new beacon, and when it was sent.
+    Payload(RobotId, Q::Payload, Instant),
     /// Call [`Link::take_message`] with the receipt if the law takes it; none if it is for all.
     Message(RobotId, Q::Message, Option<Receipt>),
     /// Call [`Link::take_order`] with the receipt if the law takes it.
@@ -259,7 +261,10 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         let is_mine = |to: RobotId| to == self.header.sender;
         match message {
             Message::Beacon(beacon) if arrival.is_latest() => {
-                self.keep(Neighbor::from_beacon(id, beacon, Q::ID, listener.heard_at), header, now, listener, out);
+                let neighbor = Neighbor::from_beacon(id, beacon, Q::ID, listener.heard_at);
+                let payload = neighbor.payload;
+                self.keep(neighbor, header, now, listener, out);
+                return payload.map(|payload| Received::Payload(id, payload, listener.heard_at));
             }
             Message::Law(Addressed { to, number, protocol, content }) if Q::Message::EXISTS && is_mine(*to) => {
                 let message = Q::Message::decode(Q::ID, *protocol, content)?;

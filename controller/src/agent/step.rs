@@ -190,6 +190,7 @@ impl<S: Scalar, L: Law<S>, const N: usize, A: Safety<S>, W: Wire, P: Perception<
                 needs: &|id| id == leader || id == config.id.duplicate() || law.needs(id),
             };
             match link.hear(frame, now, &listener, out) {
+                Some(Received::Payload(from, payload, sent)) => law.receive_payload(from, &payload, sent),
                 Some(Received::Message(from, message, receipt)) => {
                     let takes = law.receive(from, &message, &mut Radio::new(now, config.message_valid, &mut outgoing));
                     if let Some(receipt) = receipt.filter(|_| takes) {

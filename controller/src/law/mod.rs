@@ -128,6 +128,10 @@ pub trait Law<S: Scalar>: Sized {
         Default::default()
     }
 
+    /// Receives the payload of a new beacon, sent at `sent`, of a robot whose law has this protocol:
+    /// also of one for which the table of neighbours has no room.
+    fn receive_payload(&mut self, _from: RobotId, _payload: &PayloadOf<Self, S>, _sent: Instant) {}
+
     /// Receives a message of another robot. Returns whether the law takes it: then it is
     /// acknowledged, and its repeats do not come. Sends after all messages of the inbox.
     fn receive(

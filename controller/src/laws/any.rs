@@ -13,6 +13,7 @@ use crate::parameters::Parameters;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
+use crate::time::Instant;
 use core::marker::PhantomData;
 
 /// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
@@ -55,6 +56,10 @@ impl<S: Scalar, G: Law<S>> Law<S> for Large<G> {
         radio: &mut Radio<'_, G::Protocol>,
     ) -> PayloadOf<G, S> {
         (**self).payload(here, heading, radio)
+    }
+
+    fn receive_payload(&mut self, from: RobotId, payload: &PayloadOf<G, S>, sent: Instant) {
+        (**self).receive_payload(from, payload, sent);
     }
 
     fn receive(&mut self, from: RobotId, message: &MessageOf<G, S>, radio: &mut Radio<'_, G::Protocol>) -> bool {
@@ -147,6 +152,20 @@ macro_rules! laws {
                     $(#[$attribute])*
                     Self::$variant(law) => $crate::agent::dispatch::payload(
                         law, here, heading, radio,
+                    ),
+                )+}
+            }
+
+            fn receive_payload(
+                &mut self,
+                from: $crate::robot::RobotId,
+                payload: &$crate::agent::AnyPayload,
+                sent: $crate::time::Instant,
+            ) {
+                match self {$(
+                    $(#[$attribute])*
+                    Self::$variant(law) => $crate::agent::dispatch::receive_payload::<$number, _>(
+                        law, from, payload, sent,
                     ),
                 )+}
             }
@@ -262,6 +281,18 @@ pub mod dispatch {
     ) -> AnyPayload {
         let Ok(here) = L::Surroundings::try_from(*here) else { return AnyPayload::default() };
         L::Protocol::wrap(law.payload(&here, heading, &mut radio.of()))
+    }
+
+    /// Gives a payload.
+    pub fn receive_payload<S: Scalar, L: Law<S, Protocol: InAny>>(
+        law: &mut L,
+        from: RobotId,
+        payload: &AnyPayload,
+        sent: Instant,
+    ) {
+        if let Some(payload) = L::Protocol::payload(*payload) {
+            law.receive_payload(from, &payload, sent);
+        }
     }
 
     /// Gives a message.

@@ -177,6 +177,10 @@ impl<S: Scalar, L: Law<S>> Law<S> for Guided<S, L> {
         self.inside.payload(here, heading, radio)
     }
 
+    fn receive_payload(&mut self, from: RobotId, payload: &PayloadOf<Self, S>, sent: Instant) {
+        self.inside.receive_payload(from, payload, sent);
+    }
+
     fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) -> bool {
         self.inside.receive(from, message, radio)
     }

@@ -14,6 +14,7 @@ use staya_controller::negotiation::{Moves, NegotiationGuidance, NegotiationInPla
 use staya_controller::parameters::Parameters;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
+use staya_controller::time::Instant;
 use std::any::type_name;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
@@ -231,6 +232,7 @@ trait Hosted: fmt::Debug + Send + Sync {
         heading: Dir,
         radio: &mut Radio<'_, AnyProtocol>,
     ) -> AnyPayload;
+    fn receive_payload(&mut self, from: RobotId, payload: &AnyPayload, sent: Instant);
     fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool;
     fn order(&mut self, order: &AnyOrder) -> bool;
     fn needs(&self, id: RobotId) -> bool;
@@ -274,6 +276,10 @@ impl<L: OwnLaw> Hosted for Held<L> {
         radio: &mut Radio<'_, AnyProtocol>,
     ) -> AnyPayload {
         dispatch::payload(&mut self.law, here, heading, radio)
+    }
+
+    fn receive_payload(&mut self, from: RobotId, payload: &AnyPayload, sent: Instant) {
+        dispatch::receive_payload(&mut self.law, from, payload, sent);
     }
 
     fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {
@@ -323,6 +329,10 @@ impl Law<f32> for Own {
         radio: &mut Radio<'_, AnyProtocol>,
     ) -> AnyPayload {
         self.0.payload(here, heading, radio)
+    }
+
+    fn receive_payload(&mut self, from: RobotId, payload: &AnyPayload, sent: Instant) {
+        self.0.receive_payload(from, payload, sent);
     }
 
     fn receive(&mut self, from: RobotId, message: &AnyMessage, radio: &mut Radio<'_, AnyProtocol>) -> bool {

@@ -109,6 +109,10 @@ where
         self.law.payload(&here.grid, heading, radio)
     }
 
+    fn receive_payload(&mut self, from: RobotId, payload: &PayloadOf<Self, S>, sent: Instant) {
+        self.law.receive_payload(from, payload, sent);
+    }
+
     fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, Self::Protocol>) -> bool {
         let takes = self.law.receive(from, message, radio);
         if radio.takes_decision() {

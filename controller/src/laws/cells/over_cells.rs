@@ -8,6 +8,7 @@ use crate::law::{
 use crate::parameters::Parameters;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
+use crate::time::Instant;
 use serde::{Deserialize, Serialize};
 
 /// A law over cells that moves a body in the plane (`P`), or from cell to cell (`G`).
@@ -67,6 +68,10 @@ where
             (Self::OnGrid(law), AnySurroundings::OnGrid(here)) => law.payload(here, heading, radio),
             _ => PayloadOf::<Self, S>::default(),
         }
+    }
+
+    fn receive_payload(&mut self, from: RobotId, payload: &PayloadOf<Self, S>, sent: Instant) {
+        each!(self, law => law.receive_payload(from, payload, sent));
     }
 
     fn receive(&mut self, from: RobotId, message: &MessageOf<Self, S>, radio: &mut Radio<'_, G::Protocol>) -> bool {

@@ -118,10 +118,12 @@ pub struct Negotiator<const N: usize, const F: usize> {
     /// Whether anything of this step came, and whether it saw its cell in this step.
     has_begun: bool,
     has_seen: bool,
+    /// It could not decide in the last step, because it was on its way.
+    is_busy: bool,
     area: Area,
     known: Vec<Known, N>,
-    /// Reported robots that it does not know.
-    strangers: Vec<Cell, N>,
+    /// Reported robots that it does not know: the lowest byte of the number, and the cell.
+    strangers: Vec<(u8, Cell), N>,
     #[serde(skip)]
     fields: Fields<F>,
 }
@@ -147,6 +149,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             leaves_by: None,
             has_begun: false,
             has_seen: false,
+            is_busy: false,
             area: Area::new(cell),
             known: Vec::new(),
             strangers: Vec::new(),
@@ -170,6 +173,12 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     #[must_use]
     pub const fn goal(&self) -> Cell {
         self.goal
+    }
+
+    /// Where it was in the last step.
+    #[must_use]
+    pub const fn cell(&self) -> Cell {
+        self.own.cell
     }
 
     /// Whether it stays beside its goal, which another robot does not leave.
@@ -196,7 +205,9 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             self.own.waiting = waiting(cell == self.own.goal, self.own.waiting);
             self.own.step = self.own.step.wrapping_add(1);
             self.area.pass();
-            self.manners = self.manners(cell, self.own.step);
+            if !self.is_busy {
+                self.manners = self.manners(cell, self.own.step);
+            }
             self.own.manners = self.promised.unwrap_or(self.manners);
         }
         self.own = Said { cell, wish: self.wish(cell, self.own.goal), ..self.own };
@@ -250,8 +261,12 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// its steps.
     fn manners(&mut self, cell: Cell, step: u8) -> Manners {
         let [last, before] = self.past;
-        let swings = cell == before && cell != last;
-        self.swung = if swings { self.swung.saturating_add(1) } else { 0 };
+        let (swings, waits) = (cell == before && cell != last, cell == last && !self.moves.circles);
+        self.swung = match self.swung {
+            swung if waits => swung,
+            swung if swings => swung.saturating_add(1),
+            _ => 0,
+        };
         let is_refused = cell == last && self.chosen != Dir::Stay;
         self.refused = if is_refused { self.refused.saturating_add(1) } else { self.refused.saturating_sub(1) };
         let wanted = last + self.chosen.offset();
@@ -259,7 +274,9 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             (barred, count) if is_refused && barred == wanted => (wanted, count.saturating_add(1)),
             _ => (wanted, is_refused.into()),
         };
-        self.past = [cell, last];
+        if !waits {
+            self.past = [cell, last];
+        }
         let coin = |use_: u64, step: u32| Rng::keyed(use_, PURPOSE, self.id.0, step).next_u32() & 1 == 1;
         let step = u32::from(step);
         Manners {
@@ -331,6 +348,13 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// The own move takes more than a step, or is put off, so it is not refused.
     pub const fn take_time(&mut self) {
         self.chosen = Dir::Stay;
+    }
+
+    /// A step passes in which it is on its way to a cell. Returns what to say before the next one.
+    pub fn rest(&mut self) -> Said {
+        self.begin();
+        (self.has_begun, self.has_seen, self.is_busy) = (false, false, true);
+        self.stay()
     }
 
     /// A robot cannot move in this step.
@@ -415,7 +439,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         };
         match self.known.iter_mut().filter(may_be).min_by_key(|other| moves(other.said.cell, cell)) {
             Some(other) => (other.said.cell, other.lost) = (cell, 0),
-            None if !self.strangers.contains(&cell) => drop(self.strangers.push(cell)),
+            None if !self.strangers.iter().any(|&(_, at)| at == cell) => drop(self.strangers.push((number, cell))),
             None => {}
         }
     }
@@ -423,7 +447,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// Chooses the move of this step. O(N^2), and the plan: see [`Plan::new`].
     pub fn decide(&mut self, sensed: Sensed<'_>) -> Dir {
         self.begin();
-        (self.has_begun, self.has_seen) = (false, false);
+        (self.has_begun, self.has_seen, self.is_busy) = (false, false, false);
         let own = self.own;
         let (barred, refusals) = self.barred;
         if refusals >= REFUSALS {
@@ -431,7 +455,11 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
         self.known.retain(|other| other.lost <= FORGET || !matches!(sensed, Sensed::Nothing));
         let strangers = match sensed {
-            Sensed::Nothing => self.strangers.clone(),
+            // A report of a robot that was heard itself is only what another one expected.
+            Sensed::Nothing => {
+                let is_heard = |number: u8| self.known.iter().any(|other| other.age == 0 && other.id.0 as u8 == number);
+                list::collect(self.strangers.iter().filter(|(number, _)| !is_heard(*number)).map(|&(_, cell)| cell))
+            }
             Sensed::Cells(cells) => self.match_sensed(cells),
             Sensed::Robots(robots) => self.place_sensed(robots),
         };

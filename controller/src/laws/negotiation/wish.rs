@@ -55,7 +55,7 @@ impl Wish {
             let at = cell + best.offset();
             let goes_on = |&dir: &Dir| {
                 let on = at + dir.offset();
-                on != cell && area.opens(at, dir) && distances.is_nearer(on, at)
+                on != cell && area.opens(at, dir) && (distances.is_nearer(on, at))
             };
             wish.then = moves.dirs().iter().copied().find(goes_on).unwrap_or_default();
         }

@@ -7,7 +7,6 @@ use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Progress, Protocol, Radio, Tools, View};
 use crate::laws::any_protocol::InAny;
 use crate::laws::cells::GridOrder;
-use crate::neighbor::Neighbor;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
@@ -37,7 +36,7 @@ pub struct NegotiationPayload {
     pub said: Said,
     /// The move by which it goes there.
     pub by: Dir,
-    /// Steps after the next one in which it cannot leave that cell; [`STAYS`]: it stays there.
+    /// Steps from the next one on in which it cannot leave that cell; [`STAYS`]: it stays there.
     pub busy: u8,
 }
 
@@ -93,6 +92,23 @@ pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
     /// When its last crossing of a cell ended, or ends if it makes the move that it chose.
     crossed: Instant,
     tick: Duration,
+    /// The newest beacon of each robot since it last decided, and when it was sent.
+    heard: Vec<Heard, N>,
+}
+
+/// A beacon.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Heard {
+    from: RobotId,
+    payload: NegotiationPayload,
+    sent: Instant,
+}
+
+impl Heard {
+    /// Where its robot was when it sent.
+    fn start(&self) -> Cell {
+        self.payload.said.cell - self.payload.by.offset()
+    }
 }
 
 // Memory of firmware: a change of these sizes changes the memory map of every user.
@@ -115,6 +131,7 @@ impl<const N: usize, const F: usize> NegotiationGuidance<N, F> {
             decided: Instant::from_micros(0),
             crossed: Instant::from_micros(0),
             tick: Duration::ZERO,
+            heard: Vec::new(),
         }
     }
 
@@ -152,29 +169,31 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             robot.set_goal(goal);
         }
         robot.see(cell, &sight(cell, cell, &window));
-        let failed: Vec<RobotId, N> = failed(view, cell);
-        for (neighbor, NegotiationPayload { said, by, busy }) in view.peers() {
-            if neighbor.heard.since(self.decided) > Duration::ZERO {
-                let from = said.cell - by.offset();
-                if busy == STAYS {
-                    robot.hear_staying(neighbor.id, &said);
-                } else if failed.contains(&neighbor.id) {
-                    robot.hear_at(neighbor.id, &said, from);
-                } else {
-                    robot.free(from);
-                    robot.hear(neighbor.id, &said);
-                }
+        let failed: Vec<RobotId, N> = failed(&self.heard, cell);
+        for heard in &self.heard {
+            let Heard { from: id, payload: NegotiationPayload { said, busy, .. }, sent } = *heard;
+            if busy == STAYS {
+                robot.hear_staying(id, &said);
+            } else if failed.contains(&id) {
+                robot.hear_at(id, &said, heard.start());
+            } else {
+                robot.free(heard.start());
+                robot.hear(id, &said);
             }
-            let age = view.now.since(neighbor.heard).as_micros().max(0).checked_div(view.tick.as_micros());
-            let left = i32::from(busy).saturating_sub(age.unwrap_or(0));
+            // It counted from its next step.
+            let age = view.now.since(sent).as_micros().max(0).checked_div(view.tick.as_micros()).unwrap_or(0);
+            let left = if busy > 0 { i32::from(busy).saturating_add(1).saturating_sub(age) } else { 0 };
             match u8::try_from(left) {
                 Ok(0) | Err(_) => {}
-                Ok(_) if busy == STAYS => robot.hold(neighbor.id),
-                Ok(left) => robot.set_busy(neighbor.id, left),
+                Ok(_) if busy == STAYS => robot.hold(id),
+                Ok(left) => robot.set_busy(id, left),
             }
         }
+        self.heard.clear();
         let dir = robot.decide(Sensed::Nothing);
-        let begun = if view.now.since(self.crossed) < view.tick { self.crossed } else { view.now };
+        // The rest of a tick counts; it is free now, so a later end is that of a refused move.
+        let rest = view.now.since(self.crossed);
+        self.crossed = if rest >= Duration::ZERO && rest < view.tick { self.crossed } else { view.now };
         (self.decided, self.tick) = (view.now, view.tick);
         let is_beside = robot.is_beside_goal();
         let has_arrived = cell == goal || is_beside;
@@ -182,7 +201,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let mut moves = Vec::new();
         if dir != Dir::Stay {
             let class = window.get(cell + dir.offset()).unwrap_or(1);
-            self.crossed = begun + crossing(view.tick, dir, class);
+            self.crossed = self.crossed + crossing(view.tick, dir, class);
             let _ = moves.push(dir);
         }
         let makes_way = has_arrived && !moves.is_empty();
@@ -203,8 +222,11 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             Ok((cell, window)) if self.decided != now => {
                 self.crossed = now + busy;
                 stays = busy == Duration::ZERO;
-                robot.take_time();
-                robot.see(cell, &sight(cell, cell, &window))
+                if stays {
+                    robot.take_time();
+                }
+                robot.see(cell, &sight(cell, cell, &window));
+                robot.rest()
             }
             _ => robot.promise(),
         };
@@ -214,6 +236,22 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let busy = left.checked_div(self.tick.as_micros()).unwrap_or(0);
         let busy = busy.clamp(0, i32::from(STAYS - 1)) as u8;
         NegotiationPayload { said, by, busy: if stays { STAYS } else { busy } }
+    }
+
+    fn receive_payload(&mut self, from: RobotId, payload: &NegotiationPayload, sent: Instant) {
+        let heard = Heard { from, payload: *payload, sent };
+        if let Some(known) = self.heard.iter_mut().find(|known| known.from == from) {
+            *known = heard;
+        } else if self.heard.push(heard).is_err()
+            && let Some(robot) = &self.robot
+        {
+            let far = |heard: &Heard| heard.payload.said.cell.chebyshev(robot.cell());
+            if let Some(farthest) = self.heard.iter_mut().max_by_key(|known| far(known))
+                && far(farthest) > far(&heard)
+            {
+                *farthest = heard;
+            }
+        }
     }
 
     fn receive(&mut self, _: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
@@ -239,18 +277,17 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
 }
 
 /// The robots that did not get the cell that they said, because another one is there. O(N^3).
-fn failed<S: Copy, const N: usize>(view: &View<'_, S, Negotiation>, own: Cell) -> Vec<RobotId, N> {
+fn failed<const N: usize>(heard: &[Heard], own: Cell) -> Vec<RobotId, N> {
     let mut failed = Vec::new();
     loop {
         let is_free = |to: Cell| {
-            let stays = |(other, said): (Neighbor<S, _>, NegotiationPayload)| {
-                (said.by == Dir::Stay || failed.contains(&other.id)) && said.said.cell - said.by.offset() == to
-            };
-            to != own && !view.peers().any(stays)
+            let stays =
+                |other: &Heard| (other.payload.by == Dir::Stay || failed.contains(&other.from)) && other.start() == to;
+            to != own && !heard.iter().any(stays)
         };
-        let mut going = view.peers().filter(|(other, said)| said.by != Dir::Stay && !failed.contains(&other.id));
-        let Some((other, _)) = going.find(|(_, said)| !is_free(said.said.cell)) else { return failed };
-        if failed.push(other.id).is_err() {
+        let mut going = heard.iter().filter(|other| other.payload.by != Dir::Stay && !failed.contains(&other.from));
+        let Some(other) = going.find(|other| !is_free(other.payload.said.cell)) else { return failed };
+        if failed.push(other.from).is_err() {
             return failed;
         }
     }
