@@ -120,6 +120,7 @@ pub struct Negotiator<const N: usize, const F: usize> {
     has_seen: bool,
     /// It could not decide in the last step, because it was on its way.
     is_busy: bool,
+    is_priced: bool,
     area: Area,
     known: Vec<Known, N>,
     /// Reported robots that it does not know: the lowest byte of the number, and the cell.
@@ -150,6 +151,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             has_begun: false,
             has_seen: false,
             is_busy: false,
+            is_priced: false,
             area: Area::new(cell),
             known: Vec::new(),
             strangers: Vec::new(),
@@ -179,6 +181,32 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     #[must_use]
     pub const fn cell(&self) -> Cell {
         self.own.cell
+    }
+
+    /// Sets whether [`set_wish`](Self::set_wish) gives its wishes, so that it searches for none.
+    pub const fn set_priced(&mut self, is_priced: bool) {
+        self.is_priced = is_priced;
+    }
+
+    /// Replaces its wish in this step.
+    pub const fn set_wish(&mut self, wish: Wish) {
+        self.own.wish = wish;
+    }
+
+    /// Cells to the nearest robot that it knows of; `None` if it is alone. O(N).
+    #[must_use]
+    pub fn nearest(&self) -> Option<u32> {
+        let known = self.known.iter().filter(|other| other.lost <= FORGET).map(|other| other.said.cell);
+        let cells = known.chain(self.strangers.iter().map(|&(_, cell)| cell));
+        cells.map(|cell| cell.chebyshev(self.own.cell)).min()
+    }
+
+    /// Chooses a move without a plan, because no robot can be in its way.
+    pub fn go(&mut self, dir: Dir) {
+        self.begin();
+        (self.has_begun, self.has_seen, self.is_busy) = (false, false, false);
+        self.known.retain(|other| other.lost <= FORGET && other.said.cell.chebyshev(self.own.cell) <= RANGE);
+        self.chosen = dir;
     }
 
     /// Whether it stays beside its goal, which another robot does not leave.
@@ -215,6 +243,9 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     }
 
     fn wish(&mut self, cell: Cell, goal: Cell) -> Wish {
+        if self.is_priced {
+            return Wish::CLOSED;
+        }
         let distances = self.fields.to(goal, &self.area, self.moves);
         Wish::new(cell, &self.area, distances, self.moves)
     }

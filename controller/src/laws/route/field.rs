@@ -203,6 +203,15 @@ impl<const CELLS: usize> CostField<CELLS> {
         (weights.get(dir) <= here).then_some(dir)
     }
 
+    /// Weights of the moves out of `cell` under the last query, not back to the robot's own cell.
+    #[must_use]
+    pub fn weights_at(&self, params: &RouteParams, cell: Cell) -> Weights {
+        match self.index(cell) {
+            Some(at) => self.outgoing(&Query { params, from: at, from_cell: cell, target: cell }),
+            None => Weights::CLOSED,
+        }
+    }
+
     #[cfg(test)]
     pub(super) const fn turns(&self) -> u32 {
         self.turns

@@ -1,16 +1,21 @@
 //! Negotiation as a law.
 
+mod costs;
 mod in_plane;
 
 use super::{MOST_WAITING, Manners, Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight, Wish};
+use crate::cost::{Gain, Weights};
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Progress, Protocol, Radio, Tools, View};
 use crate::laws::any_protocol::InAny;
-use crate::laws::cells::GridOrder;
+use crate::laws::cells::{GridOrder, GridWorkspace, MoveHistory};
 use crate::robot::RobotId;
+use crate::route::{ExitRule, RouteParams, Router};
 use crate::scalar::Scalar;
+use crate::shuffle::Sharpness;
 use crate::time::{Duration, Instant};
 use crate::wire::{Content, ProtocolId};
+use costs::Costs;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +45,20 @@ pub struct NegotiationPayload {
     pub busy: u8,
 }
 
+/// Cells between two robots up to which one can be in the other's way in this step.
+const LINK: u32 = 2;
+/// The same in the next step but one, when others use what it says now.
+const MEETS: u32 = 6;
+const ROUTE: RouteParams = RouteParams {
+    radius: 5,
+    exit: ExitRule::Best,
+    norm: Norm::Euclidean,
+    corner_cutting: false,
+    a0: Gain::ONE,
+    a1: Gain::from_int(2),
+    a2: Gain::from_int(3),
+    a3: Gain::from_int(3),
+};
 /// Of a robot without a goal, or that an operator stopped.
 pub const STAYS: u8 = 63;
 
@@ -92,6 +111,10 @@ pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
     /// When its last crossing of a cell ended, or ends if it makes the move that it chose.
     crossed: Instant,
     tick: Duration,
+    params: RouteParams,
+    router: Router<64, 256>,
+    /// Its wish in the cell that it goes to, by costs.
+    next: Option<(Cell, Wish)>,
     /// The newest beacon of each robot since it last decided, and when it was sent.
     heard: Vec<Heard, N>,
 }
@@ -131,6 +154,9 @@ impl<const N: usize, const F: usize> NegotiationGuidance<N, F> {
             decided: Instant::from_micros(0),
             crossed: Instant::from_micros(0),
             tick: Duration::ZERO,
+            params: ROUTE,
+            router: Router::new(),
+            next: None,
             heard: Vec::new(),
         }
     }
@@ -153,13 +179,13 @@ impl<const N: usize, const F: usize> Default for NegotiationGuidance<N, F> {
 impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N, F> {
     type Surroundings<'a> = OnGrid<'a>;
     type Protocol = Negotiation;
-    type Workspace = ();
+    type Workspace = GridWorkspace<169>;
 
     fn decide(
         &mut self,
         view: &View<'_, S, Negotiation>,
         here: &OnGrid<'_>,
-        _: Tools<'_, S, Self>,
+        tools: Tools<'_, S, Self>,
     ) -> Result<Decision<S>, BadInput> {
         let Some(goal) = view.sent_to.or(self.goal) else { return Ok(Decision::idle()) };
         let (cell, window) = here.seen()?;
@@ -168,6 +194,13 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         if robot.goal() != goal {
             robot.set_goal(goal);
         }
+        let target = window.reachable(goal);
+        self.router.observe(&self.params, cell, target);
+        // Behind walls only a search of the shared area finds the way that others expect.
+        let is_behind_walls = window.cells().contains(&BLOCKED) && self.router.idle() > 0;
+        let has_company = !self.heard.is_empty() || robot.nearest().is_some();
+        let is_priced = self.moves.diagonals && !robot.is_beside_goal() && !(has_company && is_behind_walls);
+        robot.set_priced(is_priced);
         robot.see(cell, &sight(cell, cell, &window));
         let failed: Vec<RobotId, N> = failed(&self.heard, cell);
         for heard in &self.heard {
@@ -190,19 +223,52 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             }
         }
         self.heard.clear();
-        let dir = robot.decide(Sensed::Nothing);
+        let (params, router, workspace) = (&self.params, &mut self.router, tools.workspace);
+        let mut costs = Costs { params, router, workspace, window: &window, target };
+        let weights = if is_priced && cell != target { costs.weights(cell) } else { None };
+        let told = self.next.take().filter(|&(at, _)| at == cell).map(|(_, wish)| wish);
+        let nearest = robot.nearest().unwrap_or(u32::MAX);
+        let mut moves = Vec::new();
+        if is_priced && nearest > LINK {
+            // Nobody can be in its way.
+            let weights = weights.unwrap_or(Weights::CLOSED);
+            moves = MoveHistory::order(&weights, Sharpness::Greedy, 8, tools.rng);
+            robot.go(moves.first().copied().unwrap_or_default());
+        } else {
+            if is_priced {
+                let wish = told.unwrap_or_else(|| costs.wish(cell, weights.as_ref()));
+                robot.set_wish(wish);
+            }
+            let dir = robot.decide(Sensed::Nothing);
+            if dir != Dir::Stay {
+                let _ = moves.push(dir);
+            }
+        }
+        let dir = moves.first().copied().unwrap_or_default();
+        if is_priced && nearest <= MEETS {
+            let wish = if dir != Dir::Stay {
+                costs.wish_after(cell, dir)
+            } else {
+                told.unwrap_or_else(|| costs.wish(cell, weights.as_ref()))
+            };
+            self.next = Some((cell + dir.offset(), wish));
+        }
         // The rest of a tick counts; it is free now, so a later end is that of a refused move.
         let rest = view.now.since(self.crossed);
         self.crossed = if rest >= Duration::ZERO && rest < view.tick { self.crossed } else { view.now };
         (self.decided, self.tick) = (view.now, view.tick);
         let is_beside = robot.is_beside_goal();
-        let has_arrived = cell == goal || is_beside;
-        let progress = if has_arrived { Progress::arrived(is_beside) } else { Progress::Going };
-        let mut moves = Vec::new();
+        let has_arrived = cell == target || is_beside;
+        let progress = if has_arrived {
+            Progress::arrived(is_beside)
+        } else if is_priced && weights.is_none() {
+            Progress::Stuck
+        } else {
+            Progress::Going
+        };
         if dir != Dir::Stay {
             let class = window.get(cell + dir.offset()).unwrap_or(1);
             self.crossed = self.crossed + crossing(view.tick, dir, class);
-            let _ = moves.push(dir);
         }
         let makes_way = has_arrived && !moves.is_empty();
         Ok(Decision { makes_way, ..Decision::new(Action::Moves(moves), progress) })
@@ -229,6 +295,10 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
                 robot.rest()
             }
             _ => robot.promise(),
+        };
+        let said = match self.next {
+            Some((at, wish)) if at == said.cell => Said { wish, ..said },
+            _ => said,
         };
         let by = Dir::between(cell, said.cell).unwrap_or_default();
         // The last step of a crossing ends when it is free.
