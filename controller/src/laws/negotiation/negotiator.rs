@@ -196,9 +196,13 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     /// Cells to the nearest robot that it knows of; `None` if it is alone. O(N).
     #[must_use]
     pub fn nearest(&self) -> Option<u32> {
+        self.others().map(|cell| cell.chebyshev(self.own.cell)).min()
+    }
+
+    /// The cells of the robots that it knows of.
+    pub fn others(&self) -> impl Iterator<Item = Cell> + Clone {
         let known = self.known.iter().filter(|other| other.lost <= FORGET).map(|other| other.said.cell);
-        let cells = known.chain(self.strangers.iter().map(|&(_, cell)| cell));
-        cells.map(|cell| cell.chebyshev(self.own.cell)).min()
+        known.chain(self.strangers.iter().map(|&(_, cell)| cell))
     }
 
     /// Chooses a move without a plan, because no robot can be in its way.

@@ -16,11 +16,11 @@ pub(super) struct Costs<'a, const CELLS: usize, const M: usize, const L: usize> 
 }
 
 impl<const CELLS: usize, const M: usize, const L: usize> Costs<'_, CELLS, M, L> {
-    /// The weights of the moves out of `cell`, as of a robot without others; `None` without a
-    /// route. Work: see [`Router::weights`].
-    pub fn weights(&mut self, cell: Cell) -> Option<Weights> {
+    /// The weights of the moves out of `cell`, with other robots in the cells `others`; `None`
+    /// without a route. Work: see [`Router::weights`].
+    pub fn weights(&mut self, cell: Cell, others: impl IntoIterator<Item = Cell> + Clone) -> Option<Weights> {
         let Self { params, router, workspace, window, target } = self;
-        router.weights(params, &mut workspace.field, window, cell, *target, core::iter::empty()).ok()
+        router.weights(params, &mut workspace.field, window, cell, *target, others).ok()
     }
 
     /// The wish of a robot in `cell` with these weights; without, it is in its target.

@@ -225,7 +225,7 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         self.heard.clear();
         let (params, router, workspace) = (&self.params, &mut self.router, tools.workspace);
         let mut costs = Costs { params, router, workspace, window: &window, target };
-        let weights = if is_priced && cell != target { costs.weights(cell) } else { None };
+        let weights = if is_priced && cell != target { costs.weights(cell, robot.others()) } else { None };
         let told = self.next.take().filter(|&(at, _)| at == cell).map(|(_, wish)| wish);
         let nearest = robot.nearest().unwrap_or(u32::MAX);
         let mut moves = Vec::new();
