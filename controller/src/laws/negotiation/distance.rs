@@ -25,6 +25,12 @@ impl Distances {
         (self.goal, self.version) == (goal, area.version())
     }
 
+    /// The goal.
+    #[must_use]
+    pub const fn goal(&self) -> Cell {
+        self.goal
+    }
+
     /// Searches from the goal outwards, 64 cells at once: at most 64 rows for each move of the
     /// longest way, and only those near cells that were just reached. `diagonals`: with the moves
     /// to eight neighbours.

@@ -45,11 +45,17 @@ impl Wish {
                 continue;
             }
             let lost = match distances.along(cell, dir) {
-                Some(Ordering::Less) => 0,
+                // Distances count diagonals as moves like others, but they are longer.
+                Some(Ordering::Less) => u8::from(dir.is_diagonal() && !approaches(cell, dir, distances.goal())),
                 Some(Ordering::Equal) => 1,
                 Some(Ordering::Greater) | None => 2,
             };
             wish.set(dir, lost);
+        }
+        if wish.best().is_none() {
+            // Only diagonals lead on.
+            let nearer = |&&dir: &&Dir| area.opens(cell, dir) && distances.along(cell, dir) == Some(Ordering::Less);
+            moves.dirs().iter().filter(nearer).for_each(|&dir| wish.set(dir, 0));
         }
         if let Some(best) = wish.best() {
             let at = cell + best.offset();
@@ -100,6 +106,12 @@ impl Wish {
     pub fn best(self) -> Option<Dir> {
         Dir::MOVES.into_iter().find(|&dir| self.lost(dir) == Some(0))
     }
+}
+
+/// Whether a move brings a robot nearer to its goal along both axes.
+fn approaches(cell: Cell, dir: Dir, goal: Cell) -> bool {
+    let (way, step) = (goal - cell, dir.offset());
+    way.x.signum() == step.x && way.y.signum() == step.y
 }
 
 /// A robot's part in ending a stalemate, in one step. The default is its usual behaviour.

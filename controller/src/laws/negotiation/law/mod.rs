@@ -47,6 +47,8 @@ pub struct NegotiationPayload {
 
 /// Cells between two robots up to which one can be in the other's way in this step.
 const LINK: u32 = 2;
+/// Cells to the nearest robot up to which a robot among walls goes by the shared area.
+const CROWD: u32 = 4;
 /// The same in the next step but one, when others use what it says now.
 const MEETS: u32 = 6;
 const ROUTE: RouteParams = RouteParams {
@@ -196,10 +198,12 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         }
         let target = window.reachable(goal);
         self.router.observe(&self.params, cell, target);
-        // Behind walls only a search of the shared area finds the way that others expect.
-        let is_behind_walls = window.cells().contains(&BLOCKED) && self.router.idle() > 0;
-        let has_company = !self.heard.is_empty() || robot.nearest().is_some();
-        let is_priced = self.moves.diagonals && !robot.is_beside_goal() && !(has_company && is_behind_walls);
+        // Among walls only a search of the shared area finds the way that others expect.
+        let has_walls = window.cells().contains(&BLOCKED);
+        let heard = self.heard.iter().map(|heard| heard.payload.said.cell.chebyshev(cell));
+        let nearest = heard.chain(robot.nearest()).min();
+        let is_among = has_walls && nearest.is_some_and(|cells| cells <= CROWD || self.router.idle() > 0);
+        let is_priced = self.moves.diagonals && !robot.is_beside_goal() && !is_among;
         robot.set_priced(is_priced);
         robot.see(cell, &sight(cell, cell, &window));
         let failed: Vec<RobotId, N> = failed(&self.heard, cell);
