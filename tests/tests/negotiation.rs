@@ -119,6 +119,25 @@ fn a_disc_walks_around_one_that_died_in_a_corridor() {
     }
 }
 
+#[test]
+fn a_lone_robot_that_negotiates_moves_as_by_a_route() {
+    for seed in 1..=8 {
+        let text = |law: &str| {
+            format!(
+                "name = \"lone\"\nseed = {seed}\nticks = 600\n{law}\
+                 [terrain.natural]\nwidth = 100\nheight = 100\nobstacles = 70\n\
+                 [robots]\nlist = [{{ start = [1, 1], goal = [98, 98] }}]\n[radio]\nrange_m = 8\n"
+            )
+        };
+        let run = |law: &str| {
+            let none = Overrides { seed: None, ticks: None };
+            run(&Scenario::parse(&text(law), &root().join("scenarios/lone.toml"), &none).unwrap()).0
+        };
+        let (route, negotiated) = (run(""), run("grid = { law = \"negotiation\" }\n"));
+        assert_eq!((route.arrived, route.trace_hash), (1, negotiated.trace_hash), "seed {seed}");
+    }
+}
+
 const LAW: &str = "law = \"negotiation\"\n";
 
 /// Sixty robots of a benchmark among walls.

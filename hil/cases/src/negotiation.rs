@@ -7,7 +7,7 @@ use crate::medium::{Faults, Medium};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use staya_controller::agent::{
-    Agent, AgentConfig, CellState, GridOrder, Inputs, KinematicState, OnGrid, Outputs, Protocol as _, Unguarded,
+    Agent, AgentConfig, CELLS, CellState, GridOrder, GridWorkspace, Inputs, KinematicState, OnGrid, Outputs, Protocol as _, Unguarded,
 };
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
 use staya_controller::negotiation::{Manners, Negotiation, NegotiationGuidance, NegotiationPayload};
@@ -32,7 +32,7 @@ pub(crate) fn swarm<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let mut walkers = Vec::new();
     add_robots(&mut walkers);
     let mut medium = Medium::<Postcard, ROBOTS, 800>::new(Postcard, scene.faults);
-    grid::run(&scene, &mut walkers, &mut medium, &mut (), |_, _| {}, probe)
+    grid::run(&scene, &mut walkers, &mut medium, &mut grid::workspace(), |_, _| {}, probe)
 }
 
 #[inline(never)]
@@ -83,8 +83,8 @@ fn hear(step: u32, inbox: &mut Inbox) {
         };
         let (cell, goal) = (open_cell(&mut rng, [1, 4]), open_cell(&mut rng, [15, 30]));
         let along = if rng.below(2) == 0 { [Dir::North, Dir::South] } else { [Dir::South, Dir::North] };
-        let rank = |bits: u16, (dir, rank): (Dir, u16)| bits & !((3 ^ rank) << (2 * dir.index()));
-        let wish = Wish(along.into_iter().zip([0, 2]).fold(u16::MAX, rank));
+        let mut wish = Wish::CLOSED;
+        along.into_iter().zip([0, 2]).for_each(|(dir, lost)| wish.set(dir, lost));
         let waiting = rng.below(100) as u16;
         let said = Said { cell, goal, waiting, wish, step: step as u8, manners: Manners::default() };
         let payload = NegotiationPayload { said, by: Dir::Stay, busy: 0 };
@@ -110,7 +110,8 @@ pub(crate) fn worst<S: Scalar, P: Probe<S>, const N: usize>(probe: &mut P) -> Su
     let config = AgentConfig { seed: 1, ..AgentConfig::new(OWN, S::ZERO, TICK) };
     let mut agent = Crowded::<S, N>::new(&config, Guidance::default(), Unguarded, Postcard);
     agent.order(&GridOrder::Goal(Cell::new(EDGE - 1, 0)));
-    let mut summary = Summary::of::<Crowded<S, N>, ()>();
+    let mut summary = Summary::of::<Crowded<S, N>, GridWorkspace<CELLS>>();
+    let mut workspace = grid::workspace();
     let (mut hashes, mut inbox) = (Hashes::new(), Inbox::new());
     let origin = Cell::new(-SIGHT, -SIGHT);
     let side = 2 * SIGHT + 1;
@@ -130,7 +131,7 @@ pub(crate) fn worst<S: Scalar, P: Probe<S>, const N: usize>(probe: &mut P) -> Su
         };
         let mut out = Outputs::default();
         let now = Instant::from_micros(0) + TICK.saturating_mul(step.cast_signed());
-        probe.step(&mut agent, &inputs, now, &mut (), &mut out);
+        probe.step(&mut agent, &inputs, now, &mut workspace, &mut out);
         hashes.step(&out, agent.digest());
         summary.count(&out);
     }

@@ -318,12 +318,14 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let member = self.member(index);
         let Member { id, cell, .. } = member;
         let mut order: Vec<(u8, u32, Dir), 9> = Vec::new();
+        // Four bits of the step are on the air: with them alone, plans would repeat after 16 steps.
+        let turn = u32::from(member.step & 15) | u32::from(member.waiting) << 4;
         let can = |dir: &&Dir| member.leaves_by.is_none_or(|by| by == **dir);
         for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]).filter(can) {
             if let Some(lost) = self.lost(&member, dir) {
                 let to = cell + dir.offset();
                 let place = u64::from(to.x as u16) << 16 | u64::from(to.y as u16);
-                let tie = Rng::keyed(place, PURPOSE, id.0, u32::from(member.step & 15)).next_u32();
+                let tie = Rng::keyed(place, PURPOSE, id.0, turn).next_u32();
                 let busy = |other: u8| if other == index { 0 } else { self.member(other).busy };
                 let wait = self.occupant(to).map_or(0, busy);
                 let lost = if dir == Dir::Stay { lost } else { lost.saturating_add(wait.min(MOST_WAIT)) };

@@ -170,6 +170,7 @@ fn plans_never_collide() {
                     manners,
                     wish: None,
                     holds: false,
+                    busy: 0,
                     leaves_by: None,
                 });
             }
@@ -211,6 +212,7 @@ fn a_robot_in_the_cell_of_another_leaves_it_and_others_make_way() {
         manners: Manners::default(),
         wish: None,
         holds: false,
+        busy: 0,
         leaves_by,
     };
     let west = Some(Dir::West);
@@ -280,15 +282,100 @@ fn bytes(message: &impl serde::Serialize) -> Vec<u8> {
 #[test]
 fn messages_fit_their_frames() {
     let cell = Cell::new(i16::MIN, i16::MAX);
-    let manners = Manners { is_last: true, keeps_on: true };
-    let said = Said { cell, goal: cell, waiting: u16::MAX, wish: Wish(u16::MAX), step: 255, manners };
     let mut report = Report { cell, sight: Sight([255; 16]), ..Report::default() };
     while report.heard.push((255, 255)).is_ok() {}
-    let bytes = [bytes(&said), bytes(&report)];
-    assert!(bytes[0].len() <= crate::wire::MAX_PAYLOAD, "{}", bytes[0].len());
-    assert!(bytes[1].len() < crate::wire::MAX_CONTENT, "{}, and one byte for the kind", bytes[1].len());
-    assert_eq!(postcard::from_bytes(&bytes[0]), Ok(said));
-    assert_eq!(postcard::from_bytes(&bytes[1]), Ok(report));
+    let bytes = bytes(&report);
+    assert!(bytes.len() < crate::wire::MAX_CONTENT, "{}, and one byte for the kind", bytes.len());
+    assert_eq!(postcard::from_bytes(&bytes), Ok(report));
+}
+
+/// Robots in a corridor, west of each other, with wishes to the given sides.
+fn corridor(robots: &[(i16, i16, Dir, u8)]) -> Vec<(Cell, bool)> {
+    let mut area = Area::new(Cell::new(5, 1));
+    (1..10).flat_map(|x| [(x, 0), (x, 2)]).for_each(|(x, y)| area.close(Cell::new(x, y)));
+    let member = |(&(x, goal, best, busy), number): (&(i16, i16, Dir, u8), u32)| {
+        let mut wish = Wish::CLOSED;
+        for dir in [Dir::East, Dir::West] {
+            wish.set(dir, if dir == best { 0 } else { 2 });
+        }
+        wish.then = if (x - goal).abs() == 1 { Dir::Stay } else { best };
+        Member {
+            id: RobotId(number),
+            cell: Cell::new(x, 1),
+            goal: Cell::new(goal, 1),
+            waiting: 100 - number as u16,
+            step: 0,
+            manners: Manners::default(),
+            wish: Some(wish),
+            holds: false,
+            busy,
+            leaves_by: None,
+        }
+    };
+    let members: Vec<Member> = robots.iter().zip(1..).map(member).collect();
+    let mut fields: Fields<2> = Fields::new();
+    let plan: Plan<'_, 8, 2> = Plan::new(&members, &area, &mut fields, Moves::FOUR);
+    (0..members.len() as u8).map(|index| (plan.next(index).unwrap(), plan.moves_now(index))).collect()
+}
+
+#[test]
+fn a_robot_that_meets_another_in_a_corridor_pulls_it_back_to_the_fork_behind() {
+    let at = |x| Cell::new(x, 1);
+    assert_eq!(corridor(&[(4, 8, Dir::East, 0), (5, -9, Dir::West, 0)]), [(at(3), true), (at(4), true)]);
+    // Behind a robot with the same way it goes on.
+    assert_eq!(corridor(&[(4, 8, Dir::East, 0), (5, 9, Dir::East, 0)]), [(at(5), true), (at(6), true)]);
+    // The goal of the other one lies behind it in the corridor: no robot has to pass.
+    assert_eq!(corridor(&[(4, 4, Dir::Stay, 0), (5, 7, Dir::East, 0)])[1], (at(6), true));
+}
+
+#[test]
+fn a_move_waits_for_a_robot_on_its_way_and_an_exchange_too() {
+    let at = |x| Cell::new(x, 1);
+    let next = corridor(&[(4, 20, Dir::East, 0), (5, 20, Dir::East, 2)]);
+    assert_eq!(next[1], (at(6), false), "it is planned as if it were free, but does not move");
+    assert!(!next[0].1, "its cell is not free: {next:?}");
+    let next = corridor(&[(4, 8, Dir::East, 0), (5, -9, Dir::West, 1)]);
+    assert_eq!(next[0], (at(4), false), "both begin at once");
+}
+
+#[test]
+fn a_wish_keeps_the_loss_of_each_move() {
+    let mut wish = Wish::CLOSED;
+    assert!(Dir::MOVES.into_iter().all(|dir| wish.lost(dir).is_none()) && wish.best().is_none());
+    for (dir, lost) in Dir::MOVES.into_iter().zip([3, 0, 14, 15, 200, 1, 2, 0]) {
+        wish.set(dir, lost);
+    }
+    wish.set(Dir::Stay, 9);
+    let lost = Dir::MOVES.map(|dir| wish.lost(dir).unwrap());
+    assert_eq!(lost, [3, 0, 14, 14, 14, 1, 2, 0], "more than the most is the most");
+    assert_eq!((wish.best(), wish.lost(Dir::Stay)), (Some(Dir::NorthEast), Some(Wish::STAYING)));
+}
+
+#[cfg(feature = "agent")]
+#[test]
+fn payloads_keep_their_fields_in_16_bytes() {
+    let mut wish = Wish::CLOSED;
+    wish.then = Dir::SouthEast;
+    for (dir, lost) in Dir::MOVES.into_iter().zip(7..) {
+        wish.set(dir, lost);
+    }
+    let (cell, manners) = (Cell::new(i16::MIN, i16::MAX), Manners { is_last: true, keeps_on: false });
+    let said = Said { cell, goal: Cell::new(-2, 3), waiting: MOST_WAITING, wish, step: 15, manners };
+    let payload = NegotiationPayload { said, by: Dir::West, busy: 62 };
+    assert_eq!(bytes(&payload).len(), crate::wire::MAX_PAYLOAD);
+    assert_eq!(postcard::from_bytes(&bytes(&payload)), Ok(payload));
+    let most = NegotiationPayload { said: Said { waiting: u16::MAX, step: 255, ..said }, busy: 255, ..payload };
+    let read = postcard::from_bytes::<NegotiationPayload>(&bytes(&most)).unwrap();
+    assert_eq!((read.said.waiting, read.said.step, read.busy), (MOST_WAITING, 15, 63));
+
+    let mut wish = Wish::CLOSED;
+    wish.set(Dir::North, 14);
+    wish.set(Dir::West, 0);
+    wish.then = Dir::South;
+    let said = Said { wish, step: 255, ..said };
+    let payload = InStepPayload { said, by: Dir::Stay, beat: Beat { phase: 127, is_late: true } };
+    assert!(bytes(&payload).len() <= crate::wire::MAX_PAYLOAD);
+    assert_eq!(postcard::from_bytes(&bytes(&payload)), Ok(payload));
 }
 
 #[test]
@@ -337,6 +424,6 @@ fn a_robot_that_says_that_it_stays_is_a_wall_until_it_moves() {
             robot.hear(RobotId(2), &stays);
         }
         robot.decide(Sensed::Nothing);
-        assert_eq!(robot.see(Cell::new(0, 0), &Sight::default()).wish.rank(Dir::East).is_some(), expected);
+        assert_eq!(robot.see(Cell::new(0, 0), &Sight::default()).wish.lost(Dir::East).is_some(), expected);
     }
 }

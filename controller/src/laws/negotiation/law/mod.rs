@@ -33,7 +33,7 @@ impl Protocol for Negotiation {
     type Order = GridOrder;
 }
 
-/// The payload of a robot that negotiates; 16 bytes on the air, as [`packed`] there.
+/// The payload of a robot that negotiates; 16 bytes on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[u8; 16]", into = "[u8; 16]")]
 pub struct NegotiationPayload {
