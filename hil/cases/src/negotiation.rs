@@ -7,7 +7,8 @@ use crate::medium::{Faults, Medium};
 use crate::{Probe, Summary};
 use heapless::Vec;
 use staya_controller::agent::{
-    Agent, AgentConfig, CELLS, CellState, GridOrder, GridWorkspace, Inputs, KinematicState, OnGrid, Outputs, Protocol as _, Unguarded,
+    Agent, AgentConfig, CELLS, CellState, GridOrder, GridWorkspace, Inputs, KinematicState, OnGrid, Outputs,
+    Protocol as _, Unguarded,
 };
 use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
 use staya_controller::negotiation::{Manners, Negotiation, NegotiationGuidance, NegotiationPayload};

@@ -75,8 +75,9 @@ impl<const CELLS: usize, const M: usize, const L: usize> Costs<'_, CELLS, M, L> 
         let mut wish = Wish::CLOSED;
         for (dir, weight) in weights.iter() {
             if weight != EXCLUDED {
-                let lost = weight.saturating_sub(least).saturating_add(TICK / 2) / TICK;
-                wish.set(dir, u8::try_from(lost).unwrap_or(Wish::MOST_LOST));
+                let lost = weight.saturating_sub(least).saturating_add(TICK >> 1).checked_div(TICK);
+                let lost = lost.and_then(|lost| u8::try_from(lost).ok());
+                wish.set(dir, lost.unwrap_or(Wish::MOST_LOST));
             } else if open.get(dir) != EXCLUDED {
                 // No route leads there, but another robot may push it there.
                 wish.set(dir, Wish::MOST_LOST);
