@@ -351,6 +351,14 @@ fn a_wish_keeps_the_loss_of_each_move() {
     assert_eq!((wish.best(), wish.lost(Dir::Stay)), (Some(Dir::NorthEast), Some(Wish::STAYING)));
 }
 
+/// Nothing in it is smaller on this host than on a 32-bit part.
+#[cfg(feature = "agent")]
+#[test]
+fn the_law_fits_the_memory_of_its_documentation() {
+    let sizes = [size_of::<NegotiationGuidance<16, 2>>(), size_of::<NegotiationGuidance<64, 8>>()];
+    assert!(sizes[0] <= 3600 + 80 * 16 + 1036 * 2 && sizes[1] <= 3600 + 80 * 64 + 1036 * 8, "{sizes:?}");
+}
+
 #[cfg(feature = "agent")]
 #[test]
 fn payloads_keep_their_fields_in_16_bytes() {
