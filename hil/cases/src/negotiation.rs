@@ -19,7 +19,7 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Broadcast, Content as _, Header, Message, Postcard, encode};
 
-type Guidance = NegotiationGuidance<16, 2>;
+type Guidance = NegotiationGuidance<16>;
 
 const ROBOTS: usize = 8;
 /// Two rooms and a corridor of three cells that is one robot wide.

@@ -87,8 +87,8 @@ pub(crate) fn own(name: &str, moves: Moves, cruise_mps: Option<f32>) -> Option<O
     match named.get(name) {
         Some(make) => Some(make()),
         None if name == NEGOTIATION => Some(match cruise_mps {
-            Some(speed) => Own::new(NegotiationInPlane::<f32, 64, 8>::new(speed)),
-            None => Own::new(NegotiationGuidance::<64, 8>::new(moves)),
+            Some(speed) => Own::new(NegotiationInPlane::<f32, 64>::new(speed)),
+            None => Own::new(NegotiationGuidance::<64>::new(moves)),
         }),
         None => None,
     }

@@ -3,6 +3,7 @@
 use super::area::{Area, Plane, SIDE, bit, place, set};
 use crate::grid::{Cell, Dir};
 use core::cmp::Ordering;
+use serde::{Deserialize, Serialize};
 
 /// Moves from each cell of an [`Area`] to a goal, modulo 3: enough to compare neighbouring cells,
 /// whose distances differ by at most 1. 1 KiB.
@@ -13,6 +14,12 @@ pub struct Distances {
     /// The two bits of each remainder; 3 for cells that were not reached.
     low: Plane,
     high: Plane,
+}
+
+impl Default for Distances {
+    fn default() -> Self {
+        Self::EMPTY
+    }
 }
 
 impl Distances {
@@ -79,13 +86,11 @@ impl Distances {
     /// not reached.
     #[must_use]
     pub fn compare(&self, a: Cell, b: Cell) -> Option<Ordering> {
-        let remainder = |cell: Cell| u8::from(bit(&self.low, cell)) | u8::from(bit(&self.high, cell)) << 1;
-        match (remainder(a), remainder(b)) {
-            (3, _) | (_, 3) => None,
-            (a, b) if a == b => Some(Ordering::Equal),
-            (0, 2) | (1, 0) | (2, 1) => Some(Ordering::Greater),
-            _ => Some(Ordering::Less),
-        }
+        order(self.remainder(a), self.remainder(b))
+    }
+
+    fn remainder(&self, cell: Cell) -> u8 {
+        u8::from(bit(&self.low, cell)) | u8::from(bit(&self.high, cell)) << 1
     }
 
     /// Whether `a` is nearer to the goal than its neighbour `b`.
@@ -130,3 +135,58 @@ fn ones(bits: u64) -> impl Iterator<Item = usize> {
 }
 
 const _: () = assert!(place(-1) == SIDE - 1);
+
+/// The distances of a robot's goal from the cells within 2 of it, modulo 3: what others need to
+/// foresee its wishes while they do not hear it. Two bits a cell, row by row from the south; 3 for
+/// cells that were not reached. 7 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Nearby([u8; 7]);
+
+impl Default for Nearby {
+    fn default() -> Self {
+        Self::UNKNOWN
+    }
+}
+
+impl Nearby {
+    /// No cell was reached.
+    pub const UNKNOWN: Self = Self([!0; 7]);
+
+    /// Those around `center`.
+    #[must_use]
+    pub fn new(center: Cell, distances: &Distances) -> Self {
+        let mut nearby = Self::UNKNOWN;
+        let cells = (-2..=2).flat_map(|y| (-2..=2).map(move |x| Cell::new(x, y)));
+        for (at, offset) in (0_usize..).step_by(2).zip(cells) {
+            let remainder = distances.remainder(center + offset);
+            if let Some(byte) = nearby.0.get_mut(at >> 3) {
+                *byte &= !((3 ^ remainder) << (at & 7));
+            }
+        }
+        nearby
+    }
+
+    /// Compares the distances of two cells with one move between them, at offsets from the centre;
+    /// `None` if one of them is not known.
+    #[must_use]
+    pub fn compare(&self, a: Cell, b: Cell) -> Option<Ordering> {
+        let remainder = |Cell { x, y }: Cell| {
+            if x.abs() > 2 || y.abs() > 2 {
+                return 3;
+            }
+            let at = ((y + 2) * 5 + x + 2) as usize * 2;
+            self.0.get(at >> 3).map_or(3, |byte| byte >> (at & 7) & 3)
+        };
+        order(remainder(a), remainder(b))
+    }
+}
+
+/// Compares distances that differ by at most 1 by their remainders; 3: not reached.
+fn order(a: u8, b: u8) -> Option<Ordering> {
+    match (a, b) {
+        (3, _) | (_, 3) => None,
+        (a, b) if a == b => Some(Ordering::Equal),
+        (0, 2) | (1, 0) | (2, 1) => Some(Ordering::Greater),
+        _ => Some(Ordering::Less),
+    }
+}

@@ -10,11 +10,11 @@ mod plan;
 mod wish;
 
 pub use area::{Area, SIDE, SIGHT, Sight};
-pub use distance::Distances;
+pub use distance::{Distances, Nearby};
 #[cfg(feature = "agent")]
 pub use law::{Beat, InStep, InStepPayload, Negotiation, NegotiationGuidance, NegotiationInPlane, NegotiationPayload};
 pub use negotiator::{MOST_WAITING, Negotiator, RANGE, REPORTED, Report, Said, Sensed};
-pub use plan::{Fields, Member, Moves, Plan};
+pub use plan::{Member, Moves, Plan};
 pub use wish::{Manners, Wish};
 
 #[cfg(all(test, feature = "wire"))]

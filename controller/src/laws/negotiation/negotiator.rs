@@ -4,7 +4,8 @@ mod report;
 mod sensed;
 
 use super::area::{Area, Sight};
-use super::plan::{Fields, Member, Moves, Plan};
+use super::distance::{Distances, Nearby};
+use super::plan::{Member, Moves, Plan};
 use super::wish::{Manners, Wish};
 use crate::fixint;
 use crate::grid::{Cell, Dir};
@@ -19,6 +20,10 @@ pub use sensed::Sensed;
 
 /// Distance up to which robots plan together, cells.
 pub const RANGE: u32 = 8;
+/// Cells between two robots up to which one can be in the other's way in this step.
+pub(super) const LINK: u32 = 2;
+/// Cells to a robot whose silence shows that packets are lost.
+const CLOSE: u32 = 4;
 /// Steps after which a robot whose place is not known is forgotten.
 const FORGET: u8 = 6;
 /// The greatest [`Said::waiting`], which takes 12 bits on the air.
@@ -56,6 +61,8 @@ pub struct Said {
 struct Known {
     id: RobotId,
     said: Said,
+    /// What it told of the way to its goal, and where.
+    way: (Cell, Nearby),
     /// Steps since it was heard.
     age: u8,
     /// Steps since its place was heard or reported.
@@ -68,14 +75,43 @@ struct Known {
     leaves_by: Option<Dir>,
 }
 
-/// A robot that plans with the robots near it: at most `N` with itself, and distances of `F` goals.
+impl Known {
+    /// It went to a cell, or stayed, as far as this robot can tell, and so has another wish.
+    fn goes(&mut self, to: Cell, area: &Area, moves: Moves) {
+        let Said { cell, wish, .. } = self.said;
+        if to == cell {
+            return;
+        }
+        self.said.cell = to;
+        self.said.wish = match wish.then {
+            dir if dir != Dir::Stay && wish.best().is_some_and(|best| cell + best.offset() == to) => {
+                Wish::only(dir, to, area, moves)
+            }
+            _ => Wish::CLOSED,
+        };
+        let foreseen = self.foreseen(area, moves);
+        if foreseen.best().is_some() || self.said.wish.best().is_none() {
+            self.said.wish = foreseen;
+        }
+    }
+
+    /// Its wish by what it told of its way, and otherwise by its goal.
+    fn foreseen(&self, area: &Area, moves: Moves) -> Wish {
+        let (center, way) = self.way;
+        let Said { cell, goal, .. } = self.said;
+        let wish = Wish::new((cell, goal), area, |a, b| way.compare(a - center, b - center), moves);
+        if wish.best().is_some() || cell == goal { wish } else { Wish::towards(cell, goal, area, moves) }
+    }
+}
+
+/// A robot that plans with the robots near it: at most `N` with itself.
 ///
 /// In each step: [`see`](Self::see), send what that returns, [`hear`](Self::hear) the others, send
 /// a [`report`](Self::report), [`hear_report`](Self::hear_report) the others, and
 /// [`decide`](Self::decide). Without reports, robots know only the land that they have seen. A step
 /// ends when it decides; all but that may come repeatedly and in any order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Negotiator<const N: usize, const F: usize> {
+pub struct Negotiator<const N: usize> {
     id: RobotId,
     goal: Cell,
     /// Its report; its goal is its own cell where it stays beside its goal.
@@ -108,10 +144,10 @@ pub struct Negotiator<const N: usize, const F: usize> {
     /// Reported robots that it does not know: the lowest byte of the number, and the cell.
     strangers: Vec<(u8, Cell), N>,
     #[serde(skip)]
-    fields: Fields<F>,
+    distances: Distances,
 }
 
-impl<const N: usize, const F: usize> Negotiator<N, F> {
+impl<const N: usize> Negotiator<N> {
     /// A robot at its goal, which knows nothing.
     #[must_use]
     pub const fn new(id: RobotId, cell: Cell, moves: Moves) -> Self {
@@ -137,7 +173,7 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             area: Area::new(cell),
             known: Vec::new(),
             strangers: Vec::new(),
-            fields: Fields::new(),
+            distances: Distances::EMPTY,
         }
     }
 
@@ -179,6 +215,17 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     #[must_use]
     pub fn nearest(&self) -> Option<u32> {
         self.others().map(|cell| cell.chebyshev(self.own.cell)).min()
+    }
+
+    /// Whether others can use its report: of the way among walls, and of robots, as packets are
+    /// lost. O(N).
+    #[must_use]
+    pub fn has_news(&self) -> bool {
+        let is_missed = |other: &Known| {
+            let cells = other.said.cell.chebyshev(self.own.cell);
+            (1..=FORGET).contains(&other.age) && cells <= CLOSE
+        };
+        !self.is_priced || self.known.iter().any(is_missed)
     }
 
     /// The cells of the robots that it knows of.
@@ -232,8 +279,10 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         if self.is_priced {
             return Wish::CLOSED;
         }
-        let distances = self.fields.to(goal, &self.area, self.moves);
-        Wish::new(cell, &self.area, distances, self.moves)
+        if !self.distances.is_for(goal, &self.area) {
+            self.distances.search(goal, &self.area, self.moves.diagonals);
+        }
+        Wish::new((cell, goal), &self.area, |a, b| self.distances.compare(a, b), self.moves)
     }
 
     /// The report after a decision, before the next step: its next cell.
@@ -314,9 +363,10 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     }
 
     fn note(&mut self, id: RobotId, said: &Said) {
-        let known = Known { id, said: *said, age: 0, lost: 0, holds: false, busy: 0, leaves_by: None };
+        let way = (said.cell, Nearby::UNKNOWN);
+        let known = Known { id, said: *said, way, age: 0, lost: 0, holds: false, busy: 0, leaves_by: None };
         match self.known.iter_mut().find(|other| other.id == id) {
-            Some(other) => *other = known,
+            Some(other) => *other = Known { way: other.way, ..known },
             None => {
                 let Err(known) = self.known.push(known) else { return };
                 let own = self.own.cell;
@@ -357,7 +407,8 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
     pub fn hear_at(&mut self, id: RobotId, said: &Said, cell: Cell) {
         self.hear(id, &Said { cell, ..*said });
         if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
-            // Its wish is that of another cell.
+            // It told the wish of another cell.
+            other.said.wish = other.foreseen(&self.area, self.moves);
             other.age = 1;
         }
     }
@@ -423,31 +474,48 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         // The newest news of a cell counts.
         list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
         let known = self.known.iter().map(|other| Member {
-            wish: (other.age == 0).then_some(other.said.wish),
             holds: other.holds,
             busy: other.busy,
             leaves_by: other.leaves_by,
             ..member(other.id, &other.said)
         });
-        for member in known.chain(strangers.iter().map(|&cell| stranger(cell))) {
+        for member in known.chain(strangers.iter().map(|&cell| self.stranger(cell))) {
             let is_same =
                 |other: &Member| other.cell == member.cell && (member.leaves_by, other.leaves_by) == (None, None);
             if !members.iter().any(is_same) {
                 let _ = members.push(member);
             }
         }
-        let plan: Plan<'_, N, F> = Plan::new(&members, &self.area, &mut self.fields, self.moves);
+        let is_free = |cell: Cell| !members.iter().any(|member| member.cell == cell);
+        let alone = |member: &Member| {
+            let to = member.cell + member.wish.best().unwrap_or_default().offset();
+            if member.holds || member.busy > 0 || !is_free(to) { member.cell } else { to }
+        };
+        // Among walls a robot that was not heard may be a cell further.
+        let linked = linked(&members, if self.is_priced { LINK } else { LINK + 1 });
+        let plan: Plan<'_, N> = Plan::new(&linked, &self.area, self.moves);
         let goes_to = |index: u8| plan.next(index).filter(|_| plan.moves_now(index));
         let next = goes_to(0).unwrap_or(own.cell);
-        // Until it is heard again, a robot is where this plan puts it.
+        // Until it is heard again, a robot is where this plan puts it, or where it wanted to go.
         for other in &mut self.known {
-            let index = members.iter().position(|member| member.id == other.id);
-            if let Some(cell) = index.and_then(|index| goes_to(index as u8)) {
-                other.said.cell = cell;
+            let in_plan = linked.iter().position(|member| member.id == other.id);
+            let to = match in_plan {
+                Some(index) => goes_to(index as u8),
+                None => members.iter().find(|member| member.id == other.id).map(alone),
+            };
+            if let Some(cell) = to {
+                other.goes(cell, &self.area, self.moves);
             }
         }
         self.chosen = Dir::between(own.cell, next).unwrap_or(Dir::Stay);
         self.chosen
+    }
+
+    /// A robot of which only the cell is known.
+    fn stranger(&self, cell: Cell) -> Member {
+        let (id, manners) = (RobotId::NONE, Manners::default());
+        let wish = Wish::towards(cell, cell, &self.area, self.moves);
+        Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish, holds: false, busy: 0, leaves_by: None }
     }
 
     /// Where it expects a robot after the last decision; itself too.
@@ -458,6 +526,28 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         }
         self.known.iter().find(|other| other.id == id).map(|other| other.said.cell)
     }
+}
+
+/// The first member, and those that steps of at most `link` cells from robot to robot link with it:
+/// no other one can be in its way, nor in the way of these. O(N^2).
+fn linked<const N: usize>(members: &Vec<Member, N>, link: u32) -> Vec<Member, N> {
+    let mut is_linked: Vec<bool, N> = members.iter().map(|_| false).collect();
+    let mut open: Vec<Cell, N> = Vec::new();
+    let mut take = |index: usize, open: &mut Vec<Cell, N>| {
+        if let (Some(flag @ false), Some(member)) = (is_linked.get_mut(index), members.get(index)) {
+            *flag = true;
+            let _ = open.push(member.cell);
+        }
+    };
+    take(0, &mut open);
+    while let Some(cell) = open.pop() {
+        for (index, member) in members.iter().enumerate() {
+            if member.cell.chebyshev(cell) <= link {
+                take(index, &mut open);
+            }
+        }
+    }
+    list::collect(members.iter().zip(&is_linked).filter(|(_, is_linked)| **is_linked).map(|(member, _)| *member))
 }
 
 /// Moves between two cells without diagonals.
@@ -475,11 +565,5 @@ const fn waiting(is_at_goal: bool, before: u16) -> u16 {
 
 fn member(id: RobotId, said: &Said) -> Member {
     let Said { cell, goal, waiting, wish, step, manners } = *said;
-    Member { id, cell, goal, waiting, step, manners, wish: Some(wish), holds: false, busy: 0, leaves_by: None }
-}
-
-/// A robot of which only the cell is known.
-fn stranger(cell: Cell) -> Member {
-    let (id, manners) = (RobotId::NONE, Manners::default());
-    Member { id, cell, goal: cell, waiting: 0, step: 0, manners, wish: None, holds: false, busy: 0, leaves_by: None }
+    Member { id, cell, goal, waiting, step, manners, wish, holds: false, busy: 0, leaves_by: None }
 }

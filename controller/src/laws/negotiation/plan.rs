@@ -1,13 +1,12 @@
 //! The moves of all robots that one robot knows of, by one deterministic rule.
 
 use super::area::Area;
-use super::distance::Distances;
 use super::wish::{Manners, Wish};
 use crate::grid::{Cell, Dir};
 use crate::list;
 use crate::rand::Rng;
 use crate::robot::RobotId;
-use core::cmp::{Ordering, Reverse};
+use core::cmp::Reverse;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -48,8 +47,8 @@ pub struct Member {
     pub step: u8,
     /// How it behaves in this step.
     pub manners: Manners,
-    /// Its wish; `None` if it is not known.
-    pub wish: Option<Wish>,
+    /// Its wish, as far as is known.
+    pub wish: Wish,
     /// It stays in its cell.
     pub holds: bool,
     /// Steps until it can move.
@@ -77,48 +76,6 @@ impl Turn {
     const NONE: Self = Self { next: None, order: [Dir::Stay; 9], count: 0, tried: 0, swaps: None, asked_by: None };
 }
 
-/// Distances of `F` goals, those that were used last.
-#[derive(Clone, Debug)]
-pub struct Fields<const F: usize> {
-    fields: [Distances; F],
-    used: [u32; F],
-    clock: u32,
-}
-
-impl<const F: usize> Default for Fields<F> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl<const F: usize> Fields<F> {
-    const TWO: () = assert!(F >= 2, "a plan compares the distances of two robots");
-
-    /// Without distances.
-    #[must_use]
-    pub const fn new() -> Self {
-        let () = Self::TWO;
-        Self { fields: [Distances::EMPTY; F], used: [0; F], clock: 0 }
-    }
-
-    /// The distances to a goal; searches unless they are there.
-    pub fn to(&mut self, goal: Cell, area: &Area, moves: Moves) -> &Distances {
-        self.clock = self.clock.wrapping_add(1);
-        let (clock, used) = (self.clock, &self.used);
-        let age = |index: &usize| used.get(*index).map_or(0, |&at| clock.wrapping_sub(at));
-        let there = self.fields.iter().zip(used).position(|(field, &at)| at != 0 && field.is_for(goal, area));
-        let index = there.or_else(|| (0..F).max_by_key(age)).unwrap_or(0);
-        if let Some(at) = self.used.get_mut(index) {
-            *at = clock;
-        }
-        let Some(field) = self.fields.get_mut(index) else { return const { &Distances::EMPTY } };
-        if there.is_none() {
-            field.search(goal, area, moves.diagonals);
-        }
-        field
-    }
-}
-
 /// Longest corridor that a swap looks along, cells.
 const CORRIDOR: usize = 200;
 /// Longest wait for a robot on its way that counts, ticks.
@@ -137,23 +94,22 @@ fn shuffled(uniform: u32, lost: u8) -> u32 {
 }
 
 /// The moves of at most `N` robots.
-pub struct Plan<'a, const N: usize, const F: usize> {
+pub struct Plan<'a, const N: usize> {
     members: &'a [Member],
     turns: [Turn; N],
     area: &'a Area,
-    fields: &'a mut Fields<F>,
     moves: Moves,
 }
 
-impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
+impl<'a, const N: usize> Plan<'a, N> {
     /// Plans the moves of `members`; those beyond the first `N` are ignored. All robots that know
     /// the same plan the same.
     ///
     /// Each robot chooses once, among at most 9 cells, and looks along at most 9 corridors of 200
-    /// cells; each look takes O(N). A search takes 64 words for each move of the longest way.
-    pub fn new(members: &'a [Member], area: &'a Area, fields: &'a mut Fields<F>, moves: Moves) -> Self {
+    /// cells; each look takes O(N).
+    pub fn new(members: &'a [Member], area: &'a Area, moves: Moves) -> Self {
         let members = members.get(..N).unwrap_or(members);
-        let mut plan = Self { members, turns: [Turn::NONE; N], area, fields, moves };
+        let mut plan = Self { members, turns: [Turn::NONE; N], area, moves };
         // Where two robots share a cell, one has to leave it, whoever else has to make way.
         let shares = |member: &Member| {
             let is_guest_here = |other: &Member| other.leaves_by.is_some() && other.cell == member.cell;
@@ -192,7 +148,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
             waiting: 0,
             step: 0,
             manners: Manners::default(),
-            wish: None,
+            wish: Wish::CLOSED,
             holds: false,
             busy: 0,
             leaves_by: None,
@@ -322,7 +278,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         let turn = u32::from(member.step & 15) | u32::from(member.waiting) << 4;
         let can = |dir: &&Dir| member.leaves_by.is_none_or(|by| by == **dir);
         for &dir in self.moves.dirs().iter().chain(&[Dir::Stay]).filter(can) {
-            if let Some(lost) = self.lost(&member, dir) {
+            if let Some(lost) = member.wish.lost(dir) {
                 let to = cell + dir.offset();
                 let place = u64::from(to.x as u16) << 16 | u64::from(to.y as u16);
                 let tie = Rng::keyed(place, PURPOSE, id.0, turn).next_u32();
@@ -355,29 +311,10 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
     }
 
-    /// The ticks that a member loses by a move, by its own wish if that is known.
-    fn lost(&mut self, member: &Member, dir: Dir) -> Option<u8> {
-        if dir == Dir::Stay {
-            return Some(Wish::STAYING);
-        }
-        if let Some(wish) = member.wish {
-            return wish.lost(dir);
-        }
-        if !self.area.opens(member.cell, dir) {
-            return None;
-        }
-        let distances = self.fields.to(member.goal, self.area, self.moves);
-        Some(match distances.along(member.cell, dir) {
-            Some(Ordering::Less) => 0,
-            Some(Ordering::Equal) => 1,
-            Some(Ordering::Greater) | None => 2,
-        })
-    }
-
     /// The robot that a member must exchange places with, because a corridor is too narrow for
     /// both. LaCAM2's rule (K. Okumura 2023, "Improving LaCAM for scalable eventually optimal
     /// multi-agent pathfinding", IJCAI).
-    fn swap(&mut self, index: u8, to: Cell) -> Option<u8> {
+    fn swap(&self, index: u8, to: Cell) -> Option<u8> {
         let member = self.member(index);
         let own = member.cell;
         if let Some(other) = self.occupant(to)
@@ -389,7 +326,7 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
         }
         for &dir in self.moves.dirs() {
             let beside = own + dir.offset();
-            if beside == to || self.lost(&member, dir).is_none() {
+            if beside == to || member.wish.lost(dir).is_none() {
                 continue;
             }
             if let Some(other) = self.occupant(beside)
@@ -406,14 +343,14 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     /// Whether `pusher`, on its way from `from` over `to`, only comes past `pulled` by exchanging
     /// places. Decided by their wishes and goals alone, because along a corridor a robot goes on
     /// until its goal.
-    fn must_swap(&mut self, pusher: u8, pulled: u8, mut from: Cell, mut to: Cell) -> bool {
+    fn must_swap(&self, pusher: u8, pulled: u8, mut from: Cell, mut to: Cell) -> bool {
         let (front, back) = (self.member(pusher), self.member(pulled));
         if !self.goes_over(&front, from, to) {
             return false;
         }
         let comes_back = back.cell == to
             && back.goal != to
-            && Dir::between(to, from).is_some_and(|dir| self.lost(&back, dir) == Some(0));
+            && Dir::between(to, from).is_some_and(|dir| back.wish.lost(dir) == Some(0));
         let mut is_pulled = comes_back || back.goal == from;
         for _ in 0..CORRIDOR {
             if front.goal == from {
@@ -430,18 +367,19 @@ impl<'a, const N: usize, const F: usize> Plan<'a, N, F> {
     }
 
     /// Whether a robot in `from`, or beside it, wants to go from there to `to`, or ends in `from`.
-    fn goes_over(&mut self, robot: &Member, from: Cell, to: Cell) -> bool {
+    fn goes_over(&self, robot: &Member, from: Cell, to: Cell) -> bool {
         let is_there = robot.cell == from;
         let Some(first) = Dir::between(robot.cell, if is_there { to } else { from }) else { return false };
-        if robot.goal == robot.cell || self.lost(robot, first) != Some(0) {
+        if robot.goal == robot.cell || robot.wish.lost(first) != Some(0) {
             return false;
         }
         is_there
             || robot.goal == from
-            || match robot.wish {
-                Some(wish) if wish.best() == Some(first) => from + wish.then.offset() == to,
+            || if robot.wish.best() == Some(first) && robot.wish.then != Dir::Stay {
+                from + robot.wish.then.offset() == to
+            } else {
                 // Its next but one move is not known, unless there is only one.
-                _ => self.area.around(from, self.moves.dirs()).filter(|&on| on != robot.cell).count() == 1,
+                self.area.around(from, self.moves.dirs()).filter(|&on| on != robot.cell).count() == 1
             }
     }
 

@@ -13,7 +13,7 @@ use std::vec::Vec;
 #[derive(Clone)]
 struct World {
     map: Vec<&'static [u8]>,
-    robots: Vec<Negotiator<16, 4>>,
+    robots: Vec<Negotiator<16>>,
     cells: Vec<Cell>,
     /// Number of dead robots, the first ones.
     dead: usize,
@@ -57,7 +57,7 @@ impl World {
         let reports: Vec<Report> = self.robots.iter().map(Negotiator::report).collect();
         for (from, to) in pairs() {
             if !is_lost(from, to, true) {
-                self.robots[to].hear_report(Some(id(from)), &reports[from]);
+                self.robots[to].hear_report(id(from), &reports[from], true);
             }
         }
         let before = self.cells.clone();
@@ -168,15 +168,14 @@ fn plans_never_collide() {
                     waiting,
                     step: 0,
                     manners,
-                    wish: None,
+                    wish: Wish::towards(cell, goal, &area, moves),
                     holds: false,
                     busy: 0,
                     leaves_by: None,
                 });
             }
         }
-        let mut fields: Fields<4> = Fields::new();
-        let plan: Plan<'_, 16, 4> = Plan::new(&members, &area, &mut fields, moves);
+        let plan: Plan<'_, 16> = Plan::new(&members, &area, moves);
         let next: Vec<Cell> = (0..members.len()).map(|index| plan.next(index as u8).unwrap()).collect();
         let cells: BTreeSet<(i16, i16)> = next.iter().map(|cell| (cell.x, cell.y)).collect();
         assert_eq!(cells.len(), members.len(), "two in one cell, round {round}");
@@ -210,15 +209,14 @@ fn a_robot_in_the_cell_of_another_leaves_it_and_others_make_way() {
         waiting: id as u16,
         step: 0,
         manners: Manners::default(),
-        wish: None,
+        wish: Wish::towards(Cell::new(x, 1), Cell::new(8, 1), &area, Moves::FOUR),
         holds: false,
         busy: 0,
         leaves_by,
     };
     let west = Some(Dir::West);
     let next = |members: &[Member]| -> Vec<i16> {
-        let mut fields: Fields<4> = Fields::new();
-        let plan: Plan<'_, 8, 4> = Plan::new(members, &area, &mut fields, Moves::FOUR);
+        let plan: Plan<'_, 8> = Plan::new(members, &area, Moves::FOUR);
         (0..members.len()).map(|index| plan.next(index as u8).unwrap().x).collect()
     };
     let moves = next(&[member(1, 4, None), member(2, 4, west), member(3, 3, None)]);
@@ -232,7 +230,7 @@ fn a_robot_in_the_cell_of_another_leaves_it_and_others_make_way() {
 #[test]
 fn all_robots_that_share_a_cell_leave_it() {
     let cell = Cell::new(4, 1);
-    let mut robot: Negotiator<8, 4> = Negotiator::new(RobotId(1), cell, Moves::FOUR);
+    let mut robot: Negotiator<8> = Negotiator::new(RobotId(1), cell, Moves::FOUR);
     let said = robot.see(cell, &Sight::new(cell, |_| false));
     for (id, by) in [(2, Dir::West), (3, Dir::East)] {
         robot.hear(RobotId(id), &said);
@@ -281,8 +279,7 @@ fn bytes(message: &impl serde::Serialize) -> Vec<u8> {
 
 #[test]
 fn messages_fit_their_frames() {
-    let cell = Cell::new(i16::MIN, i16::MAX);
-    let mut report = Report { cell, sight: Sight([255; 16]), ..Report::default() };
+    let mut report = Report { cell: [255; 2], sight: Sight([255; 16]), ..Report::default() };
     while report.heard.push((255, 255)).is_ok() {}
     let bytes = bytes(&report);
     assert!(bytes.len() < crate::wire::MAX_CONTENT, "{}, and one byte for the kind", bytes.len());
@@ -306,15 +303,14 @@ fn corridor(robots: &[(i16, i16, Dir, u8)]) -> Vec<(Cell, bool)> {
             waiting: 100 - number as u16,
             step: 0,
             manners: Manners::default(),
-            wish: Some(wish),
+            wish,
             holds: false,
             busy,
             leaves_by: None,
         }
     };
     let members: Vec<Member> = robots.iter().zip(1..).map(member).collect();
-    let mut fields: Fields<2> = Fields::new();
-    let plan: Plan<'_, 8, 2> = Plan::new(&members, &area, &mut fields, Moves::FOUR);
+    let plan: Plan<'_, 8> = Plan::new(&members, &area, Moves::FOUR);
     (0..members.len() as u8).map(|index| (plan.next(index).unwrap(), plan.moves_now(index))).collect()
 }
 

@@ -1,10 +1,9 @@
 //! A robot's view of the cells around it, and its part in ending a stalemate.
 
 use super::area::Area;
-use super::distance::Distances;
 use super::plan::Moves;
 use crate::fixint;
-use crate::grid::{Cell, Dir};
+use crate::grid::{Cell, Dir, Norm};
 use core::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 
@@ -36,35 +35,57 @@ impl Wish {
     pub const STAYING: u8 = 1;
     const SHUT: u8 = 15;
 
-    /// The wish of a robot in `cell`, from its distances over land whose cells cost the same.
+    /// The wish of a robot in `cell` with this goal, over land whose cells cost the same. `compare`
+    /// compares the distances of two cells from the goal, with one move between them.
     #[must_use]
-    pub fn new(cell: Cell, area: &Area, distances: &Distances, moves: Moves) -> Self {
-        let mut wish = Self::CLOSED;
-        for &dir in moves.dirs() {
-            if !area.opens(cell, dir) {
-                continue;
-            }
-            let lost = match distances.along(cell, dir) {
-                // Distances count diagonals as moves like others, but they are longer.
-                Some(Ordering::Less) => u8::from(dir.is_diagonal() && !approaches(cell, dir, distances.goal())),
-                Some(Ordering::Equal) => 1,
-                Some(Ordering::Greater) | None => 2,
-            };
-            wish.set(dir, lost);
-        }
+    pub fn new(
+        (cell, goal): (Cell, Cell),
+        area: &Area,
+        compare: impl Fn(Cell, Cell) -> Option<Ordering>,
+        moves: Moves,
+    ) -> Self {
+        let along = |at: Cell, dir: Dir| compare(at + dir.offset(), at);
+        let mut wish = Self::by(cell, area, moves, |dir| match along(cell, dir) {
+            // Distances count diagonals as moves like others, but they are longer.
+            Some(Ordering::Less) => u8::from(dir.is_diagonal() && !approaches(cell, dir, goal)),
+            Some(Ordering::Equal) => 1,
+            Some(Ordering::Greater) | None => 2,
+        });
         if wish.best().is_none() {
             // Only diagonals lead on.
-            let nearer = |&&dir: &&Dir| area.opens(cell, dir) && distances.along(cell, dir) == Some(Ordering::Less);
+            let nearer = |&&dir: &&Dir| area.opens(cell, dir) && along(cell, dir) == Some(Ordering::Less);
             moves.dirs().iter().filter(nearer).for_each(|&dir| wish.set(dir, 0));
         }
         if let Some(best) = wish.best() {
             let at = cell + best.offset();
             let goes_on = |&dir: &Dir| {
-                let on = at + dir.offset();
-                on != cell && area.opens(at, dir) && (distances.is_nearer(on, at))
+                at + dir.offset() != cell && area.opens(at, dir) && along(at, dir) == Some(Ordering::Less)
             };
             wish.then = moves.dirs().iter().copied().find(goes_on).unwrap_or_default();
         }
+        wish
+    }
+
+    /// The wish of a robot in `cell` as far as others can tell from its goal alone.
+    #[must_use]
+    pub fn towards(cell: Cell, goal: Cell, area: &Area, moves: Moves) -> Self {
+        let far = |cell: Cell| cell.distance(goal, Norm::Euclidean);
+        Self::by(cell, area, moves, |dir| match far(cell + dir.offset()).cmp(&far(cell)) {
+            Ordering::Less => 0,
+            Ordering::Equal => 1,
+            Ordering::Greater => 2,
+        })
+    }
+
+    /// The wish of a robot in `cell` that makes one move.
+    #[must_use]
+    pub fn only(dir: Dir, cell: Cell, area: &Area, moves: Moves) -> Self {
+        Self::by(cell, area, moves, |other| if other == dir { 0 } else { 2 })
+    }
+
+    fn by(cell: Cell, area: &Area, moves: Moves, lost: impl Fn(Dir) -> u8) -> Self {
+        let mut wish = Self::CLOSED;
+        moves.dirs().iter().filter(|&&dir| area.opens(cell, dir)).for_each(|&dir| wish.set(dir, lost(dir)));
         wish
     }
 

@@ -10,9 +10,8 @@ use staya_controller::negotiation::{Moves, Negotiator, Report, Said, Sensed, Sig
 use staya_controller::robot::RobotId;
 use std::sync::{Mutex, PoisonError};
 
-/// Robots in a plan, and goals whose distances a robot keeps.
+/// Robots in a plan.
 const MEMBERS: usize = 64;
-const GOALS: usize = 8;
 const BATCH: usize = 4;
 /// Distance at which occupied cells are sensed, cells.
 const SENSED: u32 = 5;
@@ -21,7 +20,7 @@ const SENSED: u32 = 5;
 #[pyclass(frozen, module = "staya._staya")]
 pub struct Negotiators {
     ids: Vec<RobotId>,
-    all: Mutex<Vec<Negotiator<MEMBERS, GOALS>>>,
+    all: Mutex<Vec<Negotiator<MEMBERS>>>,
 }
 
 #[pymethods]
@@ -54,12 +53,12 @@ impl Negotiators {
         let (at, goals) = (cells(&at)?, cells(&goals)?);
         let (sights, beacons, reports) = (sights.as_slice()?, beacons.as_slice()?, reports.as_slice()?);
         let mut all = self.all.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        let all: &mut [Negotiator<MEMBERS, GOALS>] = &mut all;
+        let all: &mut [Negotiator<MEMBERS>] = &mut all;
         let moves = pool::detached(py, || {
             let said: Vec<Said> = begin(all, &at, &goals, sights);
             self.each(all, beacons, |robot, id, from| robot.hear(id, &said[from]));
             let told: Vec<Report> = all.iter().map(Negotiator::report).collect();
-            self.each(all, reports, |robot, id, from| robot.hear_report(Some(id), &told[from]));
+            self.each(all, reports, |robot, id, from| robot.hear_report(id, &told[from], true));
             let robots = all.par_iter_mut().zip(&at).with_min_len(BATCH);
             let moves = robots.map(|(robot, &own)| self.decide(robot, own, &at, sensing).offset());
             moves.map(|Cell { x, y }| vec![x, y]).collect::<Vec<_>>()
@@ -72,9 +71,9 @@ impl Negotiators {
     /// Calls `hears` for each robot with the numbers of those whose packets it receives.
     fn each(
         &self,
-        all: &mut [Negotiator<MEMBERS, GOALS>],
+        all: &mut [Negotiator<MEMBERS>],
         received: &[bool],
-        hears: impl Fn(&mut Negotiator<MEMBERS, GOALS>, RobotId, usize) + Sync,
+        hears: impl Fn(&mut Negotiator<MEMBERS>, RobotId, usize) + Sync,
     ) {
         let count = self.ids.len().max(1);
         all.par_iter_mut().zip(received.par_chunks(count)).with_min_len(BATCH).for_each(|(robot, received)| {
@@ -84,7 +83,7 @@ impl Negotiators {
         });
     }
 
-    fn decide(&self, robot: &mut Negotiator<MEMBERS, GOALS>, own: Cell, at: &[Cell], sensing: u8) -> Dir {
+    fn decide(&self, robot: &mut Negotiator<MEMBERS>, own: Cell, at: &[Cell], sensing: u8) -> Dir {
         let near = self.ids.iter().zip(at).filter(|&(_, &cell)| cell != own && cell.chebyshev(own) <= SENSED);
         let near: Vec<(RobotId, Cell)> = near.map(|(&id, &cell)| (id, cell)).collect();
         let occupied: Vec<Cell> = near.iter().map(|&(_, cell)| cell).collect();
@@ -96,7 +95,7 @@ impl Negotiators {
     }
 }
 
-fn begin(all: &mut [Negotiator<MEMBERS, GOALS>], at: &[Cell], goals: &[Cell], sights: &[u8]) -> Vec<Said> {
+fn begin(all: &mut [Negotiator<MEMBERS>], at: &[Cell], goals: &[Cell], sights: &[u8]) -> Vec<Said> {
     let robots = all.par_iter_mut().zip(at).zip(goals).zip(sights.as_chunks::<121>().0).with_min_len(BATCH);
     let said = robots.map(|(((robot, &cell), &goal), sight)| {
         if robot.goal() != goal {

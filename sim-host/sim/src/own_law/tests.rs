@@ -180,7 +180,7 @@ fn a_wrong_name_place_or_parameter_is_refused_with_a_remedy() {
         [robots]\nlist = [{ start = [1, 1], goal = [8, 1] }]\n";
     let grid = Scenario::parse(grid, Path::new("t.toml"), &Overrides::default()).unwrap_err().to_string();
     assert!(grid.contains("grid.law") && grid.contains("give [plane]"), "{grid}");
-    add_law::<staya_controller::negotiation::NegotiationGuidance<16, 2>>("convoy_on_foot");
+    add_law::<staya_controller::negotiation::NegotiationGuidance<16>>("convoy_on_foot");
     let on_foot = "name = \"t\"\nticks = 4\ntick_s = 0.1\n[terrain]\nuniform = { width = 9, height = 4, classes = 1 }\n\
         [robots]\nlist = [{ start = [1, 1], goal = [8, 1] }]\n[plane]\nradius_m = 0.1\nmax_speed_mps = 1\n\
         law = \"convoy_on_foot\"\n";

@@ -1,6 +1,6 @@
 //! Negotiation of bodies that move in the plane.
 
-use super::super::{Manners, Moves, Negotiator, Report, Said, Sensed, Sight, Wish};
+use super::super::{Manners, Moves, Nearby, Negotiator, Report, Said, Sensed, Sight, Wish};
 use super::sight;
 use crate::geom::Vec2;
 use crate::grid::{Cell, Dir};
@@ -138,10 +138,10 @@ impl From<Beat> for u8 {
 ///
 /// A decision takes O(N), and at the start of a step as much as a plan.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
+pub struct NegotiationInPlane<S, const N: usize = 16> {
     speed_mps: S,
     goal: Option<Cell>,
-    robot: Option<Negotiator<N, F>>,
+    robot: Option<Negotiator<N>>,
     /// The cell at the start of the last step and of this one, and the move in this one.
     before: Cell,
     from: Cell,
@@ -159,10 +159,10 @@ pub struct NegotiationInPlane<S, const N: usize = 16, const F: usize = 2> {
 }
 
 crate::parameters! {
-    impl[S: Scalar, const N: usize, const F: usize] NegotiationInPlane<S, N, F> { SPEED => speed_mps }
+    impl[S: Scalar, const N: usize] NegotiationInPlane<S, N> { SPEED => speed_mps }
 }
 
-impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
+impl<S: Scalar, const N: usize> NegotiationInPlane<S, N> {
     /// Creates the law with a cruising speed of `speed_mps`, within the speed limit of the body.
     #[must_use]
     pub const fn new(speed_mps: S) -> Self {
@@ -181,7 +181,7 @@ impl<S: Scalar, const N: usize, const F: usize> NegotiationInPlane<S, N, F> {
                 step: 0,
                 manners: Manners { is_last: false, keeps_on: false },
             },
-            shared: Report { cell: Cell { x: 0, y: 0 }, sight: Sight([0; 16]), heard: Vec::new() },
+            shared: Report { cell: [0; 2], sight: Sight([0; 16]), way: Nearby::UNKNOWN, heard: Vec::new() },
             step: 0,
             began: Instant::from_micros(0),
             length: Duration::ZERO,
@@ -258,7 +258,7 @@ fn step_length<S: Scalar>(cell_m: S, speed_mps: S, max_acceleration_mps2: S) -> 
     (length_s * S::from_i32(1000)).floor_to_i32().map(Duration::from_millis)
 }
 
-impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S, N, F> {
+impl<S: Scalar, const N: usize> Law<S> for NegotiationInPlane<S, N> {
     type Surroundings<'a> = InCells<'a, S>;
     type Protocol = InStep;
     type Workspace = ();
@@ -378,9 +378,9 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationInPlane<S,
         InStepPayload { said, by, beat: Beat { phase, is_late } }
     }
 
-    fn receive(&mut self, _: RobotId, report: &Report, _: &mut Radio<'_, InStep>) -> bool {
+    fn receive(&mut self, from: RobotId, report: &Report, _: &mut Radio<'_, InStep>) -> bool {
         if let Some(robot) = &mut self.robot {
-            robot.hear_report(None, report);
+            robot.hear_report(from, report, false);
         }
         true
     }

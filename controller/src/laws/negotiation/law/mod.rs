@@ -3,6 +3,7 @@
 mod costs;
 mod in_plane;
 
+use super::negotiator::LINK;
 use super::{MOST_WAITING, Manners, Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight, Wish};
 use crate::cost::{Gain, Weights};
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
@@ -45,8 +46,6 @@ pub struct NegotiationPayload {
     pub busy: u8,
 }
 
-/// Cells between two robots up to which one can be in the other's way in this step.
-const LINK: u32 = 2;
 /// Cells to the nearest robot up to which a robot among walls goes by the shared area.
 const CROWD: u32 = 4;
 /// The same in the next step but one, when others use what it says now.
@@ -100,14 +99,13 @@ impl Content for NegotiationPayload {}
 impl Content for Report {}
 impl InAny for Negotiation {}
 
-/// Robots that pass each other on the grid, with or without a map: at most `N` plan together, with
-/// distances of `F` goals. Cells cost the same, walls apart. Robots of other laws are not seen. On
-/// a 32-bit part it takes at most 3600 + 80 `N` + 1036 `F` bytes.
+/// Robots that pass each other on the grid, with or without a map: at most `N` plan together. Cells cost the same, walls apart. Robots of other laws are not seen. On
+/// a 32-bit part it takes at most 4636 + 80 `N` bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct NegotiationGuidance<const N: usize = 16, const F: usize = 2> {
+pub struct NegotiationGuidance<const N: usize = 16> {
     moves: Moves,
     goal: Option<Cell>,
-    robot: Option<Negotiator<N, F>>,
+    robot: Option<Negotiator<N>>,
     /// When it last decided.
     decided: Instant,
     /// When its last crossing of a cell ended, or ends if it makes the move that it chose.
@@ -139,13 +137,13 @@ impl Heard {
 // Memory of firmware: a change of these sizes changes the memory map of every user.
 #[cfg(target_pointer_width = "32")]
 const _: () = {
-    const fn fits<const N: usize, const F: usize>() -> bool {
-        size_of::<NegotiationGuidance<N, F>>() <= 3600 + 80 * N + 1036 * F
+    const fn fits<const N: usize>() -> bool {
+        size_of::<NegotiationGuidance<N>>() <= 4636 + 80 * N
     }
-    assert!(fits::<8, 2>() && fits::<16, 2>() && fits::<32, 4>() && fits::<64, 8>());
+    assert!(fits::<8>() && fits::<16>() && fits::<64>());
 };
 
-impl<const N: usize, const F: usize> NegotiationGuidance<N, F> {
+impl<const N: usize> NegotiationGuidance<N> {
     /// Creates the law for bodies with these moves.
     #[must_use]
     pub const fn new(moves: Moves) -> Self {
@@ -172,13 +170,13 @@ impl<const N: usize, const F: usize> NegotiationGuidance<N, F> {
     }
 }
 
-impl<const N: usize, const F: usize> Default for NegotiationGuidance<N, F> {
+impl<const N: usize> Default for NegotiationGuidance<N> {
     fn default() -> Self {
         Self::new(Moves::EIGHT)
     }
 }
 
-impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N, F> {
+impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
     type Surroundings<'a> = OnGrid<'a>;
     type Protocol = Negotiation;
     type Workspace = GridWorkspace<169>;
@@ -202,7 +200,8 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         let has_walls = window.cells().contains(&BLOCKED);
         let heard = self.heard.iter().map(|heard| heard.payload.said.cell.chebyshev(cell));
         let nearest = heard.chain(robot.nearest()).min();
-        let is_among = has_walls && nearest.is_some_and(|cells| cells <= CROWD || self.router.idle() > 0);
+        let is_among = has_walls
+            && nearest.is_some_and(|cells| cells <= CROWD && is_dense(&window) || self.router.idle() > 0);
         let is_priced = self.moves.diagonals && !robot.is_beside_goal() && !is_among;
         robot.set_priced(is_priced);
         robot.see(cell, &sight(cell, cell, &window));
@@ -285,7 +284,9 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
             let said = Said { cell, goal: cell, waiting: 1, ..Said::default() };
             return NegotiationPayload { said, by: Dir::Stay, busy: STAYS };
         };
-        radio.broadcast(&robot.report());
+        if robot.has_news() {
+            radio.broadcast(&robot.report());
+        }
         let now = radio.now();
         let mut stays = false;
         let said = match here.seen() {
@@ -328,9 +329,9 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
         }
     }
 
-    fn receive(&mut self, _: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
+    fn receive(&mut self, from: RobotId, report: &Report, _: &mut Radio<'_, Negotiation>) -> bool {
         if let Some(robot) = &mut self.robot {
-            robot.hear_report(None, report);
+            robot.hear_report(from, report, false);
         }
         true
     }
@@ -348,6 +349,12 @@ impl<S: Scalar, const N: usize, const F: usize> Law<S> for NegotiationGuidance<N
     fn expects(&self, id: RobotId) -> Option<Cell> {
         self.robot.as_ref()?.expects(id)
     }
+}
+
+/// Whether walls are so many that they decide the ways: a sixteenth of the cells in sight.
+fn is_dense(window: &Window<'_>) -> bool {
+    let cells = window.cells();
+    cells.iter().filter(|&&class| class == BLOCKED).count() > cells.len() >> 4
 }
 
 /// The robots that did not get the cell that they said, because another one is there. O(N^3).

@@ -1,8 +1,7 @@
 //! What robots tell each other of the land and of third robots.
 
-use super::{Known, Sight};
+use super::{Known, Nearby, Sight};
 use super::{Negotiator, RANGE, moves};
-use crate::fixint;
 use crate::grid::Cell;
 use crate::list;
 use crate::robot::RobotId;
@@ -10,27 +9,28 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Robots in a [`Report`].
-pub const REPORTED: usize = 8;
+pub const REPORTED: usize = 5;
 /// Most cells to a robot in a [`Report`], along each axis.
 const NEAR: i16 = 7;
 /// Most blocked cells in a [`Report`].
 const MOST_BLOCKED: usize = 2;
 
-/// A robot's broadcast after it has heard the others in a step; at most 37 bytes on the air.
+/// A robot's broadcast after it has heard the others in a step; at most 36 bytes on the air.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
-    /// Where it is.
-    #[serde(with = "fixint")]
-    pub cell: Cell,
+    /// Where it is: the lowest bytes of the coordinates.
+    pub cell: [u8; 2],
     /// The land that it sees.
     pub sight: Sight,
+    /// How far its goal is from the cells around it.
+    pub way: Nearby,
     /// The nearest robots that it heard in this step: the lowest byte of the number, and the
     /// offsets to the east and to the north plus 8, in the low and in the high four bits. Before
     /// them cells that it found blocked: these offsets, and 0.
     pub heard: Vec<(u8, u8), REPORTED>,
 }
 
-impl<const N: usize, const F: usize> Negotiator<N, F> {
+impl<const N: usize> Negotiator<N> {
     /// The broadcast after the others were heard.
     #[must_use]
     pub fn report(&self) -> Report {
@@ -46,24 +46,30 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
         let blocked = blocked.take(MOST_BLOCKED).map(|offset| (packed(offset), 0));
         let heard = near.iter().map(|&(_, id, offset)| (id.0 as u8, packed(offset)));
         let heard = list::collect(blocked.chain(heard).take(REPORTED));
-        Report { cell: self.own.cell, sight: self.sight, heard }
+        let is_known = !self.is_priced && self.distances.goal() == self.own.goal;
+        let way = if is_known { Nearby::new(self.own.cell, &self.distances) } else { Nearby::UNKNOWN };
+        Report { cell: low(self.own.cell), sight: self.sight, way, heard }
     }
 
-    /// Hears what another robot reports in this step. `from`: that robot, if it did not move since.
-    /// O(N) for each robot in it.
-    pub fn hear_report(&mut self, from: Option<RobotId>, report: &Report) {
+    /// Hears what another robot reports in this step. `is_there`: it did not move since. O(N) for
+    /// each robot in it.
+    pub fn hear_report(&mut self, from: RobotId, report: &Report, is_there: bool) {
         self.begin();
-        self.area.learn(report.cell, &report.sight);
-        if let Some(from) = from {
-            self.place(from.0 as u8, report.cell);
+        let cell = nearest(report.cell, self.own.cell);
+        self.area.learn(cell, &report.sight);
+        if let Some(known) = self.known.iter_mut().find(|known| known.id == from) {
+            known.way = (cell, report.way);
+        }
+        if is_there {
+            self.place(from.0 as u8, cell);
         }
         // Others may say where they expect this robot.
         let own = self.id.0 as u8;
         for &(number, offset) in &report.heard {
             if offset == 0 {
-                self.hear_blocked(report.cell + unpacked(number));
+                self.hear_blocked(cell + unpacked(number));
             } else if number != own {
-                self.place(number, report.cell + unpacked(offset));
+                self.place(number, cell + unpacked(offset));
             }
         }
     }
@@ -88,7 +94,10 @@ impl<const N: usize, const F: usize> Negotiator<N, F> {
             other.id.0 as u8 == number && other.lost > 0 && moves(other.said.cell, cell) <= most
         };
         match self.known.iter_mut().filter(may_be).min_by_key(|other| moves(other.said.cell, cell)) {
-            Some(other) => (other.said.cell, other.lost) = (cell, 0),
+            Some(other) => {
+                (other.said.cell, other.lost) = (cell, 0);
+                other.said.wish = other.foreseen(&self.area, self.moves);
+            }
             None if !self.strangers.iter().any(|&(_, at)| at == cell) => drop(self.strangers.push((number, cell))),
             None => {}
         }
@@ -105,4 +114,14 @@ const fn packed(offset: Cell) -> u8 {
 
 fn unpacked(offset: u8) -> Cell {
     Cell::new((offset & 15).into(), (offset >> 4).into()) - Cell::new(NEAR + 1, NEAR + 1)
+}
+
+const fn low(cell: Cell) -> [u8; 2] {
+    [cell.x as u8, cell.y as u8]
+}
+
+/// The cell with these lowest bytes that is nearest to `own`.
+fn nearest([x, y]: [u8; 2], own: Cell) -> Cell {
+    let [own_x, own_y] = low(own);
+    own + Cell::new(i16::from(x.wrapping_sub(own_x) as i8), i16::from(y.wrapping_sub(own_y) as i8))
 }

@@ -23,7 +23,7 @@ pub enum Sensed<'a> {
     Robots(&'a [(RobotId, Cell)]),
 }
 
-impl<const N: usize, const F: usize> Negotiator<N, F> {
+impl<const N: usize> Negotiator<N> {
     /// Puts known robots where they are sensed. Returns the cells of those that are not known.
     pub(super) fn place_sensed(&mut self, robots: &[(RobotId, Cell)]) -> Vec<Cell, N> {
         let mut unknown = Vec::new();
