@@ -63,6 +63,8 @@ struct Known {
     said: Said,
     /// What it told of the way to its goal, and where.
     way: (Cell, Nearby),
+    /// It is not in the cell whose wish it told, and makes this move next, if that is known.
+    strayed: Option<Dir>,
     /// Steps since it was heard.
     age: u8,
     /// Steps since its place was heard or reported.
@@ -76,31 +78,27 @@ struct Known {
 }
 
 impl Known {
-    /// It went to a cell, or stayed, as far as this robot can tell, and so has another wish.
-    fn goes(&mut self, to: Cell, area: &Area, moves: Moves) {
+    /// It went to a cell, or stayed, as far as this robot can tell.
+    fn goes(&mut self, to: Cell) {
         let Said { cell, wish, .. } = self.said;
-        if to == cell {
-            return;
-        }
-        self.said.cell = to;
-        self.said.wish = match wish.then {
-            dir if dir != Dir::Stay && wish.best().is_some_and(|best| cell + best.offset() == to) => {
-                Wish::only(dir, to, area, moves)
-            }
-            _ => Wish::CLOSED,
-        };
-        let foreseen = self.foreseen(area, moves);
-        if foreseen.best().is_some() || self.said.wish.best().is_none() {
-            self.said.wish = foreseen;
+        if to != cell {
+            let is_best = self.strayed.is_none() && wish.best().is_some_and(|best| cell + best.offset() == to);
+            self.strayed = Some(if is_best { wish.then } else { Dir::Stay });
+            self.said.cell = to;
         }
     }
 
-    /// Its wish by what it told of its way, and otherwise by its goal.
-    fn foreseen(&self, area: &Area, moves: Moves) -> Wish {
+    /// Its wish: as told, by what it told of its way, or by its goal.
+    fn wish(&self, area: &Area, moves: Moves) -> Wish {
+        let Said { cell, goal, wish, .. } = self.said;
+        let Some(then) = self.strayed else { return wish };
         let (center, way) = self.way;
-        let Said { cell, goal, .. } = self.said;
         let wish = Wish::new((cell, goal), area, |a, b| way.compare(a - center, b - center), moves);
-        if wish.best().is_some() || cell == goal { wish } else { Wish::towards(cell, goal, area, moves) }
+        match (wish.best(), then) {
+            (None, Dir::Stay) if cell != goal => Wish::towards(cell, goal, area, moves),
+            (None, then) if then != Dir::Stay => Wish::only(then, cell, area, moves),
+            _ => wish,
+        }
     }
 }
 
@@ -256,9 +254,19 @@ impl<const N: usize> Negotiator<N> {
 
     /// Sees its cell and the land around it. Returns what to say.
     pub fn see(&mut self, cell: Cell, sight: &Sight) -> Said {
-        self.begin();
         self.area.follow(cell);
         self.area.learn(cell, sight);
+        self.be_at(cell, sight)
+    }
+
+    /// [`Self::see`] for a robot that does not look at the land, because it needs it for no plan.
+    pub fn pass(&mut self, cell: Cell) -> Said {
+        self.area.follow(cell);
+        self.be_at(cell, &Sight::default())
+    }
+
+    fn be_at(&mut self, cell: Cell, sight: &Sight) -> Said {
+        self.begin();
         self.sight = *sight;
         if !self.has_seen {
             self.has_seen = true;
@@ -364,7 +372,7 @@ impl<const N: usize> Negotiator<N> {
 
     fn note(&mut self, id: RobotId, said: &Said) {
         let way = (said.cell, Nearby::UNKNOWN);
-        let known = Known { id, said: *said, way, age: 0, lost: 0, holds: false, busy: 0, leaves_by: None };
+        let known = Known { id, said: *said, way, strayed: None, age: 0, lost: 0, holds: false, busy: 0, leaves_by: None };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = Known { way: other.way, ..known },
             None => {
@@ -407,8 +415,7 @@ impl<const N: usize> Negotiator<N> {
     pub fn hear_at(&mut self, id: RobotId, said: &Said, cell: Cell) {
         self.hear(id, &Said { cell, ..*said });
         if let Some(other) = self.known.iter_mut().find(|other| other.id == id) {
-            // It told the wish of another cell.
-            other.said.wish = other.foreseen(&self.area, self.moves);
+            other.strayed = Some(Dir::Stay);
             other.age = 1;
         }
     }
@@ -474,6 +481,7 @@ impl<const N: usize> Negotiator<N> {
         // The newest news of a cell counts.
         list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
         let known = self.known.iter().map(|other| Member {
+            wish: other.wish(&self.area, self.moves),
             holds: other.holds,
             busy: other.busy,
             leaves_by: other.leaves_by,
@@ -504,7 +512,7 @@ impl<const N: usize> Negotiator<N> {
                 None => members.iter().find(|member| member.id == other.id).map(alone),
             };
             if let Some(cell) = to {
-                other.goes(cell, &self.area, self.moves);
+                other.goes(cell);
             }
         }
         self.chosen = Dir::between(own.cell, next).unwrap_or(Dir::Stay);

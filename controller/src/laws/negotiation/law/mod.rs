@@ -204,7 +204,7 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
             && nearest.is_some_and(|cells| cells <= CROWD && is_dense(&window) || self.router.idle() > 0);
         let is_priced = self.moves.diagonals && !robot.is_beside_goal() && !is_among;
         robot.set_priced(is_priced);
-        robot.see(cell, &sight(cell, cell, &window));
+        look(robot, cell, &window, !is_priced || nearest.is_some_and(|cells| cells <= LINK));
         let failed: Vec<RobotId, N> = failed(&self.heard, cell);
         for heard in &self.heard {
             let Heard { from: id, payload: NegotiationPayload { said, busy, .. }, sent } = *heard;
@@ -296,7 +296,7 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
                 if stays {
                     robot.take_time();
                 }
-                robot.see(cell, &sight(cell, cell, &window));
+                look(robot, cell, &window, robot.nearest().is_some_and(|cells| cells <= LINK));
                 robot.rest()
             }
             _ => robot.promise(),
@@ -348,6 +348,17 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
 
     fn expects(&self, id: RobotId) -> Option<Cell> {
         self.robot.as_ref()?.expects(id)
+    }
+}
+
+/// Sees the land if it `needs` it and there are walls, of the map or around it.
+fn look<const N: usize>(robot: &mut Negotiator<N>, cell: Cell, window: &Window<'_>, needs: bool) {
+    let whole = 2 * usize::from(ROUTE.radius) + 1;
+    let is_open = || window.cells().len() == whole * whole && !window.cells().contains(&BLOCKED);
+    if !needs || is_open() {
+        robot.pass(cell);
+    } else {
+        robot.see(cell, &sight(cell, cell, window));
     }
 }
 

@@ -95,8 +95,8 @@ impl<const N: usize> Negotiator<N> {
         };
         match self.known.iter_mut().filter(may_be).min_by_key(|other| moves(other.said.cell, cell)) {
             Some(other) => {
-                (other.said.cell, other.lost) = (cell, 0);
-                other.said.wish = other.foreseen(&self.area, self.moves);
+                other.goes(cell);
+                other.lost = 0;
             }
             None if !self.strangers.iter().any(|&(_, at)| at == cell) => drop(self.strangers.push((number, cell))),
             None => {}

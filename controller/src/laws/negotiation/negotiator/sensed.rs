@@ -1,6 +1,6 @@
 //! Robots that a robot senses, beside those that it hears.
 
-use super::{Known, Negotiator, moves};
+use super::{Negotiator, moves};
 use crate::grid::Cell;
 use crate::list;
 use crate::robot::RobotId;
@@ -29,7 +29,7 @@ impl<const N: usize> Negotiator<N> {
         let mut unknown = Vec::new();
         for &(id, cell) in robots {
             match self.known.iter_mut().find(|other| other.id == id) {
-                Some(other) => other.said.cell = cell,
+                Some(other) => other.goes(cell),
                 None => drop(unknown.push(cell)),
             }
         }
@@ -44,17 +44,18 @@ impl<const N: usize> Negotiator<N> {
         list::sort_by_key(&mut self.known, |other| (other.lost, other.age, other.id.0));
         let mut placed: Vec<RobotId, N> = Vec::new();
         for most in [0, MOST_MISSED] {
-            for Known { id, said, .. } in &mut self.known {
-                if said.cell.chebyshev(own) > SENSED || placed.contains(id) {
+            for other in &mut self.known {
+                let at = other.said.cell;
+                if at.chebyshev(own) > SENSED || placed.contains(&other.id) {
                     continue;
                 }
-                let far = |&index: &usize| free.get(index).map_or(u32::MAX, |&cell| moves(cell, said.cell));
+                let far = |&index: &usize| free.get(index).map_or(u32::MAX, |&cell| moves(cell, at));
                 let nearest = (0..free.len()).min_by_key(far).filter(|index| far(index) <= most);
                 if let Some(index) = nearest
                     && index < free.len()
                 {
-                    said.cell = free.swap_remove(index);
-                    let _ = placed.push(*id);
+                    other.goes(free.swap_remove(index));
+                    let _ = placed.push(other.id);
                 }
             }
         }
