@@ -417,13 +417,23 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
             let beacon = Message::Beacon(Beacon { protocol, payload, ..beacon });
             self.count_periods(now, period);
             self.said.note(self.header.sequence, &beacon);
+            let start = out.outbox.len();
+            let again = |start: usize, out: &mut Outputs<S>| {
+                if outgoing.repeats_beacon {
+                    repeat(start, &mut out.outbox);
+                }
+            };
             if self.say(&beacon, 0, out) == Err(EncodeError::Exhausted) {
                 report(out, Event::Muted);
             }
+            // Each behind its first one: receivers take no beacon after later frames.
+            again(start, out);
             self.queue(&outgoing, now);
             // A broadcast that does not fit is lost, as one in the air.
-            if let Some((protocol, content)) = outgoing.broadcast {
+            if let Some((protocol, content)) = outgoing.broadcast.clone() {
+                let start = out.outbox.len();
                 let _ = self.say(&Message::Broadcast(Broadcast { protocol, content }), 0, out);
+                again(start, out);
             }
             if let Some(told) = self.state_to_tell(own, now) {
                 let _ = self.say(&Message::Lost(told), 0, out);
@@ -462,6 +472,16 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
         }
         self.header.sequence = self.header.sequence.wrapping_add(1);
         Ok(())
+    }
+}
+
+/// Adds the bytes from `start` on once more, if they fit.
+fn repeat(start: usize, outbox: &mut heapless::Vec<u8, OUTBOX>) {
+    let end = outbox.len();
+    if 2 * end - start <= OUTBOX {
+        for at in start..end {
+            let _ = outbox.get(at).copied().map(|byte| outbox.push(byte));
+        }
     }
 }
 

@@ -75,6 +75,7 @@ pub struct Queued {
 pub struct Outgoing {
     pub(crate) messages: Vec<Queued, MESSAGES>,
     pub(crate) broadcast: Option<(ProtocolId, Bytes<MAX_CONTENT>)>,
+    pub(crate) repeats_beacon: bool,
     decides_at_once: bool,
 }
 
@@ -104,6 +105,12 @@ impl<'t, P> Radio<'t, P> {
     /// Makes a [`CellFollower`](crate::agent::CellFollower) decide at once, not in the next cell.
     pub const fn decide_at_once(&mut self) {
         self.outgoing.decides_at_once = true;
+    }
+
+    /// Sends the beacon of this step twice, and what follows it, for a law whose robots have to hear
+    /// each other in each step, on a bad radio. The second ones are left out if they do not fit.
+    pub const fn repeat_beacon(&mut self) {
+        self.outgoing.repeats_beacon = true;
     }
 
     /// Whether the law inside must decide at once.

@@ -24,6 +24,9 @@ pub const RANGE: u32 = 8;
 pub(super) const LINK: u32 = 2;
 /// Cells to a robot whose silence shows that packets are lost.
 const CLOSE: u32 = 4;
+/// Shares of missed beacons, 256ths: from the second one on, each packet is sent twice, until it
+/// falls below the first one.
+const NOISY: [u8; 2] = [3, 25];
 /// Steps after which a robot whose place is not known is forgotten.
 const FORGET: u8 = 6;
 /// The greatest [`Said::waiting`], which takes 12 bits on the air.
@@ -137,6 +140,9 @@ pub struct Negotiator<const N: usize> {
     /// It could not decide in the last step, because it was on its way.
     is_busy: bool,
     is_priced: bool,
+    /// Share of the close robots that it does not hear, 256ths, and whether that is too much.
+    missed: u8,
+    is_noisy: bool,
     area: Area,
     known: Vec<Known, N>,
     /// Reported robots that it does not know: the lowest byte of the number, and the cell.
@@ -168,6 +174,8 @@ impl<const N: usize> Negotiator<N> {
             has_seen: false,
             is_busy: false,
             is_priced: false,
+            missed: 0,
+            is_noisy: false,
             area: Area::new(cell),
             known: Vec::new(),
             strangers: Vec::new(),
@@ -213,6 +221,24 @@ impl<const N: usize> Negotiator<N> {
     #[must_use]
     pub fn nearest(&self) -> Option<u32> {
         self.others().map(|cell| cell.chebyshev(self.own.cell)).min()
+    }
+
+    /// Whether so many packets are lost that each should be sent twice.
+    #[must_use]
+    pub const fn is_noisy(&self) -> bool {
+        self.is_noisy
+    }
+
+    /// Follows the share of packets that are lost: those of the last steps count most. O(N).
+    fn listen(&mut self) {
+        let (close, own) = (&self.known, self.own.cell);
+        let close = close.iter().filter(|other| other.lost <= FORGET && other.said.cell.chebyshev(own) <= CLOSE);
+        let (missed, all) = close.fold((0_u16, 0), |(missed, all), other| (missed + u16::from(other.age > 0), all + 1));
+        if let Some(share) = (255 * missed).checked_div(all) {
+            self.missed = ((7 * u16::from(self.missed) + share) >> 3) as u8;
+            let [least, most] = NOISY;
+            self.is_noisy = self.missed >= if self.is_noisy { least } else { most };
+        }
     }
 
     /// Whether others can use its report: of the way among walls, and of robots, as packets are
@@ -460,6 +486,7 @@ impl<const N: usize> Negotiator<N> {
     pub fn decide(&mut self, sensed: Sensed<'_>) -> Dir {
         self.begin();
         (self.has_begun, self.has_seen, self.is_busy) = (false, false, false);
+        self.listen();
         let own = self.own;
         let (barred, refusals) = self.barred;
         if refusals >= REFUSALS {

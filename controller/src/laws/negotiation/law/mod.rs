@@ -284,6 +284,9 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
             let said = Said { cell, goal: cell, waiting: 1, ..Said::default() };
             return NegotiationPayload { said, by: Dir::Stay, busy: STAYS };
         };
+        if robot.is_noisy() {
+            radio.repeat_beacon();
+        }
         if robot.has_news() {
             radio.broadcast(&robot.report());
         }
