@@ -118,6 +118,16 @@ fn golden_corridor() {
 }
 
 #[test]
+fn golden_office() {
+    check("office", None);
+}
+
+#[test]
+fn golden_crossing() {
+    check("crossing", None);
+}
+
+#[test]
 fn golden_moving_ai_20() {
     check("moving-ai-20", None);
 }

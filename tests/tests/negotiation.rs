@@ -174,3 +174,109 @@ fn a_crowd_arrives_sooner_by_negotiation_than_by_routes() {
         assert!(negotiated.ticks < by_routes.ticks, "seed {seed}: {} and {}", negotiated.ticks, by_routes.ticks);
     }
 }
+
+/// A scene on the grid; `S` costs `swamp`.
+fn on_grid(rows: &str, ends: &[([u8; 2], [u8; 2])], (loss, swamp, seed): (f64, u8, u64), more: &str) -> Scenario {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let rows: Vec<&str> = rows.split_whitespace().collect();
+    let (width, height) = (rows[0].len(), rows.len());
+    let map = format!("type octile\nheight {height}\nwidth {width}\nmap\n{}\n", rows.join("\n"));
+    std::fs::write(folder.path().join("scene.map"), map).expect("a map");
+    let list = ends.iter().map(|(start, goal)| format!("{{ start = {start:?}, goal = {goal:?} }}"));
+    let text = format!(
+        "name = \"scene\"\nticks = 600\n[terrain]\nfile = \"scene.map\"\nload.swamp = {swamp}\n\
+         [robots]\nlist = [{}]\n[radio]\nrange_m = 12\nloss = {loss}\n[grid]\n{LAW}{more}",
+        list.collect::<Vec<_>>().join(", "),
+    );
+    let overrides = Overrides { seed: Some(seed), ticks: None };
+    Scenario::parse(&text, &folder.path().join("s.toml"), &overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A map, its robots, and ticks within which they arrive on flat land with a perfect radio.
+type Scene = (&'static str, &'static str, &'static [([u8; 2], [u8; 2])], u32);
+
+/// Where two robots or more need the same cells in opposite directions. The rule was made without
+/// those of the second half.
+const SCENES: [Scene; 10] = [
+    ("a door between two rooms", "....@....  .........  ....@....", &[([0, 1], [8, 1]), ([8, 1], [0, 1])], 25),
+    (
+        "two from each side through a corridor",
+        "...@@@@@@...  ............  ...@@@@@@...",
+        &[([0, 1], [11, 1]), ([0, 0], [11, 0]), ([11, 1], [0, 1]), ([11, 2], [0, 2])],
+        60,
+    ),
+    (
+        "a corridor with one side cell",
+        "@@@@@.@@@@@  ...........  @@@@@@@@@@@",
+        &[([0, 1], [10, 1]), ([10, 1], [0, 1])],
+        40,
+    ),
+    (
+        "a crossing",
+        "@@@.@@@  @@@.@@@  @@@.@@@  .......  @@@.@@@  @@@.@@@  @@@.@@@",
+        &[([0, 3], [6, 3]), ([6, 3], [0, 3]), ([3, 0], [3, 6]), ([3, 6], [3, 0])],
+        40,
+    ),
+    (
+        "out of a dead end past one that comes in",
+        "@@@@@@....  ..........  @@@@@@....",
+        &[([0, 1], [9, 1]), ([9, 1], [0, 1])],
+        40,
+    ),
+    (
+        "a slow corridor beside a long way around",
+        "..............  .@@@@@@@@@@@@.  .@@@@@@@@@@@@.  SSSSSSSSSSSSSS  ..............",
+        &[([0, 1], [13, 1]), ([13, 1], [0, 1]), ([0, 0], [13, 0]), ([13, 0], [0, 0])],
+        60,
+    ),
+    (
+        "three from each side through a long corridor",
+        "....@@@@@@@@@@@@....  ....................  ....@@@@@@@@@@@@....",
+        &[
+            ([0, 0], [19, 0]),
+            ([0, 1], [19, 1]),
+            ([0, 2], [19, 2]),
+            ([19, 0], [0, 0]),
+            ([19, 1], [0, 1]),
+            ([19, 2], [0, 2]),
+        ],
+        110,
+    ),
+    (
+        "a room that all leave while others enter",
+        "......@....  ......@....  ...........  ......@....  ......@....",
+        &[([1, 0], [9, 0]), ([1, 2], [9, 2]), ([1, 4], [9, 4]), ([9, 1], [1, 1]), ([9, 3], [1, 3])],
+        50,
+    ),
+    (
+        "a robot that stands in the corridor at its goal",
+        "...@@@@@@@...  .............  ...@@@@@@@...",
+        &[([6, 1], [6, 1]), ([0, 1], [12, 1]), ([12, 0], [0, 0])],
+        80,
+    ),
+    (
+        "two corridors in a row with a hall between",
+        "..@@@@....@@@@..  ................  ..@@@@....@@@@..",
+        &[([0, 1], [15, 1]), ([15, 1], [0, 1]), ([0, 0], [15, 0]), ([15, 2], [0, 2])],
+        80,
+    ),
+];
+
+#[test]
+fn robots_pass_each_other_wherever_there_is_room_to_step_aside() {
+    let mut late = Vec::new();
+    for (what, map, ends, most) in SCENES {
+        for (loss, swamp) in [(0.0, 1), (0.3, 1), (0.6, 1), (0.0, 4), (0.3, 9)] {
+            for seed in 1..=3 {
+                let (outcome, _) = run(&on_grid(map, ends, (loss, swamp, seed), ""));
+                let case = format!("{what}: loss {loss}, swamp {swamp}, seed {seed}");
+                assert_eq!(outcome.collisions, 0, "{case}");
+                let is_easy = (loss, swamp) == (0.0, 1);
+                if outcome.arrived < ends.len() || (is_easy && outcome.ticks > most) {
+                    late.push(format!("{case}: {} of {} after {} ticks", outcome.arrived, ends.len(), outcome.ticks));
+                }
+            }
+        }
+    }
+    assert!(late.is_empty(), "{}", late.join("\n"));
+}

@@ -48,7 +48,7 @@ impl<const N: usize> Negotiator<N> {
         let heard = list::collect(blocked.chain(heard).take(REPORTED));
         let is_known = !self.is_priced && self.distances.goal() == self.own.goal;
         let way = if is_known { Nearby::new(self.own.cell, &self.distances) } else { Nearby::UNKNOWN };
-        Report { cell: low(self.own.cell), sight: self.sight, way, heard }
+        Report { cell: Report::low(self.own.cell), sight: self.sight, way, heard }
     }
 
     /// Hears what another robot reports in this step. `is_there`: it did not move since. O(N) for
@@ -116,12 +116,16 @@ fn unpacked(offset: u8) -> Cell {
     Cell::new((offset & 15).into(), (offset >> 4).into()) - Cell::new(NEAR + 1, NEAR + 1)
 }
 
-const fn low(cell: Cell) -> [u8; 2] {
-    [cell.x as u8, cell.y as u8]
+impl Report {
+    /// A cell as [`Self::cell`] tells it.
+    #[must_use]
+    pub const fn low(cell: Cell) -> [u8; 2] {
+        [cell.x as u8, cell.y as u8]
+    }
 }
 
 /// The cell with these lowest bytes that is nearest to `own`.
 fn nearest([x, y]: [u8; 2], own: Cell) -> Cell {
-    let [own_x, own_y] = low(own);
+    let [own_x, own_y] = Report::low(own);
     own + Cell::new(i16::from(x.wrapping_sub(own_x) as i8), i16::from(y.wrapping_sub(own_y) as i8))
 }
