@@ -478,7 +478,7 @@ impl<S: Scalar, const N: usize, W: Wire, Q: Protocol> Link<S, N, W, Q> {
 /// Adds the bytes from `start` on once more, if they fit.
 fn repeat(start: usize, outbox: &mut heapless::Vec<u8, OUTBOX>) {
     let end = outbox.len();
-    if 2 * end - start <= OUTBOX {
+    if end.saturating_sub(start).saturating_add(end) <= OUTBOX {
         for at in start..end {
             let _ = outbox.get(at).copied().map(|byte| outbox.push(byte));
         }

@@ -45,10 +45,11 @@ impl Sight {
 
     /// The closed cells relative to its robot. O(16 + cells).
     pub fn closed(&self) -> impl Iterator<Item = Cell> + '_ {
-        let side = 2 * SIGHT + 1;
-        (0_i16..).step_by(8).zip(self.0).filter(|&(_, byte)| byte != 0).flat_map(move |(first, byte)| {
-            let bits = (0_i16..8).filter(move |bit| byte >> bit & 1 == 1).map(move |bit| first.saturating_add(bit));
-            bits.map(move |at| Cell::new(at % side - SIGHT, at / side - SIGHT))
+        const ROW: i16 = 2 * SIGHT + 1;
+        let bytes = (0_i16..16).zip(self.0).filter(|&(_, byte)| byte != 0);
+        bytes.flat_map(|(index, byte)| {
+            let bits = (0_i16..8).filter(move |bit| byte >> bit & 1 == 1).map(move |bit| index << 3 | bit);
+            bits.map(|at| Cell::new(at % ROW - SIGHT, at / ROW - SIGHT))
         })
     }
 }

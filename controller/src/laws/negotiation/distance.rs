@@ -157,10 +157,10 @@ impl Nearby {
     pub fn new(center: Cell, distances: &Distances) -> Self {
         let mut nearby = Self::UNKNOWN;
         let cells = (-2..=2).flat_map(|y| (-2..=2).map(move |x| Cell::new(x, y)));
-        for (at, offset) in (0_usize..).step_by(2).zip(cells) {
+        for (index, offset) in (0_usize..25).zip(cells) {
             let remainder = distances.remainder(center + offset);
-            if let Some(byte) = nearby.0.get_mut(at >> 3) {
-                *byte &= !((3 ^ remainder) << (at & 7));
+            if let Some(byte) = nearby.0.get_mut(index >> 2) {
+                *byte &= !((3 ^ remainder) << ((index & 3) << 1));
             }
         }
         nearby
@@ -174,8 +174,8 @@ impl Nearby {
             if x.abs() > 2 || y.abs() > 2 {
                 return 3;
             }
-            let at = ((y + 2) * 5 + x + 2) as usize * 2;
-            self.0.get(at >> 3).map_or(3, |byte| byte >> (at & 7) & 3)
+            let index = ((y + 2) * 5 + x + 2) as usize;
+            self.0.get(index >> 2).map_or(3, |byte| byte >> ((index & 3) << 1) & 3)
         };
         order(remainder(a), remainder(b))
     }

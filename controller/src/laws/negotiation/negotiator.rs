@@ -234,8 +234,8 @@ impl<const N: usize> Negotiator<N> {
         let (close, own) = (&self.known, self.own.cell);
         let close = close.iter().filter(|other| other.lost <= FORGET && other.said.cell.chebyshev(own) <= CLOSE);
         let (missed, all) = close.fold((0_u16, 0), |(missed, all), other| (missed + u16::from(other.age > 0), all + 1));
-        if let Some(share) = (255 * missed).checked_div(all) {
-            self.missed = ((7 * u16::from(self.missed) + share) >> 3) as u8;
+        if let Some(share) = missed.saturating_mul(255).checked_div(all) {
+            self.missed = (u16::from(self.missed).saturating_mul(7).saturating_add(share) >> 3) as u8;
             let [least, most] = NOISY;
             self.is_noisy = self.missed >= if self.is_noisy { least } else { most };
         }
@@ -566,7 +566,7 @@ impl<const N: usize> Negotiator<N> {
 /// The first member, and those that steps of at most `link` cells from robot to robot link with it:
 /// no other one can be in its way, nor in the way of these. O(N^2).
 fn linked<const N: usize>(members: &Vec<Member, N>, link: u32) -> Vec<Member, N> {
-    let mut is_linked: Vec<bool, N> = members.iter().map(|_| false).collect();
+    let mut is_linked: Vec<bool, N> = list::collect(members.iter().map(|_| false));
     let mut open: Vec<Cell, N> = Vec::new();
     let mut take = |index: usize, open: &mut Vec<Cell, N>| {
         if let (Some(flag @ false), Some(member)) = (is_linked.get_mut(index), members.get(index)) {

@@ -99,8 +99,8 @@ impl Content for NegotiationPayload {}
 impl Content for Report {}
 impl InAny for Negotiation {}
 
-/// Robots that pass each other on the grid, with or without a map: at most `N` plan together. Cells cost the same, walls apart. Robots of other laws are not seen. On
-/// a 32-bit part it takes at most 4636 + 80 `N` bytes.
+/// Robots that pass each other on the grid, with or without a map: at most `N` plan together. Robots
+/// of other laws are not seen. On a 32-bit part it takes at most 4636 + 96 `N` bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NegotiationGuidance<const N: usize = 16> {
     moves: Moves,
@@ -138,7 +138,7 @@ impl Heard {
 #[cfg(target_pointer_width = "32")]
 const _: () = {
     const fn fits<const N: usize>() -> bool {
-        size_of::<NegotiationGuidance<N>>() <= 4636 + 80 * N
+        size_of::<NegotiationGuidance<N>>() <= 4636 + 96 * N
     }
     assert!(fits::<8>() && fits::<16>() && fits::<64>());
 };
