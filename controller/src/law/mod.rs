@@ -128,8 +128,8 @@ pub trait Law<S: Scalar>: Sized {
         Default::default()
     }
 
-    /// Receives the payload of a new beacon, sent at `sent`, of a robot whose law has this protocol:
-    /// also of one for which the table of neighbours has no room.
+    /// Receives the payload of a new beacon, sent at `sent`, from a robot with this protocol: also
+    /// from one for which the table of neighbours has no room.
     fn receive_payload(&mut self, _from: RobotId, _payload: &PayloadOf<Self, S>, _sent: Instant) {}
 
     /// Receives a message of another robot. Returns whether the law takes it: then it is

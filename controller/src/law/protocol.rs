@@ -107,8 +107,8 @@ impl<'t, P> Radio<'t, P> {
         self.outgoing.decides_at_once = true;
     }
 
-    /// Sends the beacon of this step twice, and what follows it, for a law whose robots have to hear
-    /// each other in each step, on a bad radio. The second ones are left out if they do not fit.
+    /// Sends the beacon of this step twice, and the broadcast behind it: for a bad radio and a law
+    /// whose robots have to hear each other in each step. What does not fit is not sent again.
     pub const fn repeat_beacon(&mut self) {
         self.outgoing.repeats_beacon = true;
     }

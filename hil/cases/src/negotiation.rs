@@ -94,7 +94,8 @@ fn hear(step: u32, inbox: &mut Inbox) {
             say(Message::Beacon(Beacon { mode: Mode::Cruise, protocol, payload, ..Beacon::default() }));
         }
         let center = open_cell(&mut rng, [15, 30]);
-        let mut report = Report { cell: Report::low(center), sight: Sight::new(center, is_closed), ..Report::default() };
+        let mut report =
+            Report { cell: Report::low(center), sight: Sight::new(center, is_closed), ..Report::default() };
         for number in 1..=8 {
             let _ = report.heard.push((number, rng.below(256) as u8));
         }

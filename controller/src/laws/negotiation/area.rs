@@ -43,13 +43,13 @@ impl Sight {
         sight
     }
 
-    /// The closed cells relative to its robot. O(16 + cells).
-    pub fn closed(&self) -> impl Iterator<Item = Cell> + '_ {
-        const ROW: i16 = 2 * SIGHT + 1;
-        let bytes = (0_i16..16).zip(self.0).filter(|&(_, byte)| byte != 0);
-        bytes.flat_map(|(index, byte)| {
-            let bits = (0_i16..8).filter(move |bit| byte >> bit & 1 == 1).map(move |bit| index << 3 | bit);
-            bits.map(|at| Cell::new(at % ROW - SIGHT, at / ROW - SIGHT))
+    /// The closed cells relative to its robot. O(11 + 11 for each row with such cells).
+    pub fn closed(&self) -> impl Iterator<Item = Cell> + use<> {
+        let bits = u128::from_le_bytes(self.0);
+        let rows = (0..=10_i16).zip(-SIGHT..=SIGHT).map(move |(row, y)| (bits >> (11 * row) & 0x7FF, y));
+        rows.filter(|&(row, _)| row != 0).flat_map(|(row, y)| {
+            let columns = (0..=10_u32).zip(-SIGHT..=SIGHT).filter(move |&(column, _)| row >> column & 1 == 1);
+            columns.map(move |(_, x)| Cell::new(x, y))
         })
     }
 }

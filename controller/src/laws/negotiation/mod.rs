@@ -5,6 +5,7 @@ mod area;
 mod distance;
 #[cfg(feature = "agent")]
 mod law;
+mod moves;
 mod negotiator;
 mod plan;
 mod wish;
@@ -13,8 +14,9 @@ pub use area::{Area, SIDE, SIGHT, Sight};
 pub use distance::{Distances, Nearby};
 #[cfg(feature = "agent")]
 pub use law::{Beat, InStep, InStepPayload, Negotiation, NegotiationGuidance, NegotiationInPlane, NegotiationPayload};
+pub use moves::Moves;
 pub use negotiator::{MOST_WAITING, Negotiator, RANGE, REPORTED, Report, Said, Sensed};
-pub use plan::{Member, Moves, Plan};
+pub use plan::{Member, Plan};
 pub use wish::{Manners, Wish};
 
 #[cfg(all(test, feature = "wire"))]

@@ -5,7 +5,8 @@ mod sensed;
 
 use super::area::{Area, Sight};
 use super::distance::{Distances, Nearby};
-use super::plan::{Member, Moves, Plan};
+use super::moves::Moves;
+use super::plan::{Member, Plan};
 use super::wish::{Manners, Wish};
 use crate::fixint;
 use crate::grid::{Cell, Dir};
@@ -64,7 +65,7 @@ pub struct Said {
 struct Known {
     id: RobotId,
     said: Said,
-    /// What it told of the way to its goal, and where.
+    /// The way to its goal, as last told, and the cell in which it told that.
     way: (Cell, Nearby),
     /// It is not in the cell whose wish it told, and makes this move next, if that is known.
     strayed: Option<Dir>,
@@ -91,7 +92,7 @@ impl Known {
         }
     }
 
-    /// Its wish: as told, by what it told of its way, or by its goal.
+    /// Its wish: as told, by its way as last told, or by its goal.
     fn wish(&self, area: &Area, moves: Moves) -> Wish {
         let Said { cell, goal, wish, .. } = self.said;
         let Some(then) = self.strayed else { return wish };
@@ -223,7 +224,7 @@ impl<const N: usize> Negotiator<N> {
         self.others().map(|cell| cell.chebyshev(self.own.cell)).min()
     }
 
-    /// Whether so many packets are lost that each should be sent twice.
+    /// Whether each packet should be sent twice, because many are lost.
     #[must_use]
     pub const fn is_noisy(&self) -> bool {
         self.is_noisy
@@ -398,7 +399,8 @@ impl<const N: usize> Negotiator<N> {
 
     fn note(&mut self, id: RobotId, said: &Said) {
         let way = (said.cell, Nearby::UNKNOWN);
-        let known = Known { id, said: *said, way, strayed: None, age: 0, lost: 0, holds: false, busy: 0, leaves_by: None };
+        let known =
+            Known { id, said: *said, way, strayed: None, age: 0, lost: 0, holds: false, busy: 0, leaves_by: None };
         match self.known.iter_mut().find(|other| other.id == id) {
             Some(other) => *other = Known { way: other.way, ..known },
             None => {

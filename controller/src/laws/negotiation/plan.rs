@@ -1,6 +1,7 @@
 //! The moves of all robots that one robot knows of, by one deterministic rule.
 
 use super::area::Area;
+use super::moves::Moves;
 use super::wish::{Manners, Wish};
 use crate::grid::{Cell, Dir};
 use crate::list;
@@ -8,29 +9,6 @@ use crate::rand::Rng;
 use crate::robot::RobotId;
 use core::cmp::Reverse;
 use heapless::Vec;
-use serde::{Deserialize, Serialize};
-
-/// The moves between cells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Moves {
-    /// To all eight neighbours, not only to the east, north, west and south.
-    pub diagonals: bool,
-    /// Three or more robots may move in a circle, each into the cell of the next one.
-    pub circles: bool,
-}
-
-impl Moves {
-    /// Four neighbours, all robots at once.
-    pub const FOUR: Self = Self { diagonals: false, circles: true };
-    /// Eight neighbours, and only into cells that are free.
-    pub const EIGHT: Self = Self { diagonals: true, circles: false };
-
-    /// The moves, without staying.
-    #[must_use]
-    pub const fn dirs(self) -> &'static [Dir] {
-        if self.diagonals { &Dir::MOVES } else { &[Dir::East, Dir::North, Dir::West, Dir::South] }
-    }
-}
 
 /// A robot in a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -341,7 +319,7 @@ impl<'a, const N: usize> Plan<'a, N> {
     }
 
     /// Whether `pusher`, on its way from `from` over `to`, only comes past `pulled` by exchanging
-    /// places. Decided by their wishes and goals alone, because along a corridor a robot goes on
+    /// places. Decided by their wishes and goals alone, because along a corridor a robot continues
     /// until its goal.
     fn must_swap(&self, pusher: u8, pulled: u8, mut from: Cell, mut to: Cell) -> bool {
         let (front, back) = (self.member(pusher), self.member(pulled));

@@ -64,7 +64,7 @@ impl World {
         let dirs: Vec<Dir> = self.robots.iter_mut().map(|robot| robot.decide(Sensed::Nothing)).collect();
         let mut next: Vec<Cell> = before.iter().zip(&dirs).map(|(&cell, dir)| cell + dir.offset()).collect();
         next[..dead].copy_from_slice(&before[..dead]);
-        // Until nobody has to stay any more.
+        // Until no robot has to stay any more.
         while let Some(stays) = (0..count).find(|&index| {
             let meets = |other: usize| {
                 next[other] == next[index] || (next[other] == before[index] && next[index] == before[other])
@@ -318,7 +318,7 @@ fn corridor(robots: &[(i16, i16, Dir, u8)]) -> Vec<(Cell, bool)> {
 fn a_robot_that_meets_another_in_a_corridor_pulls_it_back_to_the_fork_behind() {
     let at = |x| Cell::new(x, 1);
     assert_eq!(corridor(&[(4, 8, Dir::East, 0), (5, -9, Dir::West, 0)]), [(at(3), true), (at(4), true)]);
-    // Behind a robot with the same way it goes on.
+    // Behind a robot with the same way it continues.
     assert_eq!(corridor(&[(4, 8, Dir::East, 0), (5, 9, Dir::East, 0)]), [(at(5), true), (at(6), true)]);
     // The goal of the other one lies behind it in the corridor: no robot has to pass.
     assert_eq!(corridor(&[(4, 4, Dir::Stay, 0), (5, 7, Dir::East, 0)])[1], (at(6), true));

@@ -1,7 +1,7 @@
 //! A robot's view of the cells around it, and its part in ending a stalemate.
 
 use super::area::Area;
-use super::plan::Moves;
+use super::moves::Moves;
 use crate::fixint;
 use crate::grid::{Cell, Dir, Norm};
 use core::cmp::Ordering;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// The time that a robot loses by each move around it against its best one, four bits a move, and
 /// its move after the best one. Together with the goal this is all that others need to plan for it:
-/// along a corridor a robot goes on until its goal.
+/// along a corridor a robot continues until its goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Wish {
     /// Ticks that each move loses, in the order of [`Dir::MOVES`], the first in the lowest bits:
@@ -58,9 +58,8 @@ impl Wish {
         }
         if let Some(best) = wish.best() {
             let at = cell + best.offset();
-            let goes_on = |&dir: &Dir| {
-                at + dir.offset() != cell && area.opens(at, dir) && along(at, dir) == Some(Ordering::Less)
-            };
+            let goes_on =
+                |&dir: &Dir| at + dir.offset() != cell && area.opens(at, dir) && along(at, dir) == Some(Ordering::Less);
             wish.then = moves.dirs().iter().copied().find(goes_on).unwrap_or_default();
         }
         wish

@@ -1,4 +1,4 @@
-//! Wishes by what the land costs, from the search of a route.
+//! Wishes by the costs of land, from the search of a route.
 
 use super::Wish;
 use crate::cost::{Cost, EXCLUDED, TICK, Weights};
@@ -6,7 +6,7 @@ use crate::grid::{BLOCKED, Cell, Dir, Window};
 use crate::laws::cells::GridWorkspace;
 use crate::route::{RouteParams, Router};
 
-/// What a robot needs to price its moves.
+/// The tools of a robot that prices its moves.
 pub(super) struct Costs<'a, const CELLS: usize, const M: usize, const L: usize> {
     pub params: &'a RouteParams,
     pub router: &'a mut Router<M, L>,

@@ -42,7 +42,7 @@ pub struct NegotiationPayload {
     pub said: Said,
     /// The move by which it goes there.
     pub by: Dir,
-    /// Steps from the next one on in which it cannot leave that cell; [`STAYS`]: it stays there.
+    /// Steps from the next one on in which it cannot leave that cell; 63: it stays there.
     pub busy: u8,
 }
 
@@ -99,8 +99,8 @@ impl Content for NegotiationPayload {}
 impl Content for Report {}
 impl InAny for Negotiation {}
 
-/// Robots that pass each other on the grid, with or without a map: at most `N` plan together. Robots
-/// of other laws are not seen. On a 32-bit part it takes at most 4636 + 96 `N` bytes.
+/// Robots that pass each other on the grid, with or without a map: at most `N` plan together.
+/// Robots of other laws are not seen. On a 32-bit part it takes at most 4636 + 96 `N` bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NegotiationGuidance<const N: usize = 16> {
     moves: Moves,
@@ -200,8 +200,8 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
         let has_walls = window.cells().contains(&BLOCKED);
         let heard = self.heard.iter().map(|heard| heard.payload.said.cell.chebyshev(cell));
         let nearest = heard.chain(robot.nearest()).min();
-        let is_among = has_walls
-            && nearest.is_some_and(|cells| cells <= CROWD && is_dense(&window) || self.router.idle() > 0);
+        let is_among =
+            has_walls && nearest.is_some_and(|cells| cells <= CROWD && is_dense(&window) || self.router.idle() > 0);
         let is_priced = self.moves.diagonals && !robot.is_beside_goal() && !is_among;
         robot.set_priced(is_priced);
         look(robot, cell, &window, !is_priced || nearest.is_some_and(|cells| cells <= LINK));
@@ -233,7 +233,7 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
         let nearest = robot.nearest().unwrap_or(u32::MAX);
         let mut moves = Vec::new();
         if is_priced && nearest > LINK {
-            // Nobody can be in its way.
+            // No robot can be in its way.
             let weights = weights.unwrap_or(Weights::CLOSED);
             moves = MoveHistory::order(&weights, Sharpness::Greedy, 8, tools.rng);
             robot.go(moves.first().copied().unwrap_or_default());
@@ -365,7 +365,7 @@ fn look<const N: usize>(robot: &mut Negotiator<N>, cell: Cell, window: &Window<'
     }
 }
 
-/// Whether walls are so many that they decide the ways: a sixteenth of the cells in sight.
+/// Whether the walls are dense enough to decide the ways: a sixteenth of the cells in sight.
 fn is_dense(window: &Window<'_>) -> bool {
     let cells = window.cells();
     cells.iter().filter(|&&class| class == BLOCKED).count() > cells.len() >> 4

@@ -1,4 +1,4 @@
-//! What robots tell each other of the land and of third robots.
+//! Reports of robots on the land and on third robots.
 
 use super::{Known, Nearby, Sight};
 use super::{Negotiator, RANGE, moves};
