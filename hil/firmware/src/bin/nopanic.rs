@@ -32,9 +32,11 @@ mod program {
     #[cfg(not(part = "nrf51"))]
     fn swarms() {
         use staya_cases::{Case, WorstCase, packets_over};
+        use staya_controller::scalar::Q16;
         use staya_mavlink::wire::Mavlink;
         for &case in black_box(Case::ALL) {
             black_box(case.run::<f32, _>(&mut Opaque));
+            black_box(case.run::<Q16, _>(&mut Opaque));
         }
         black_box(packets_over::<f32, _, _>(black_box(Mavlink), &mut Opaque));
         for &case in black_box(WorstCase::ALL) {

@@ -1,5 +1,5 @@
 //! Links only if no panic is reachable from optional parts of a firmware: an operator who takes
-//! over a robot, parameter changes at runtime, every number format, MAVLink messages of any kind.
+//! over a robot, parameter changes at runtime, number formats, MAVLink messages of any kind.
 //! Works like `nopanic`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -16,7 +16,7 @@ mod program {
         use core::hint::black_box;
         use staya_cases::{Case, Opaque, Probe};
         use staya_controller::agent::{Agent, Guided, Inputs, Law, Outputs, Safety, Wish};
-        use staya_controller::scalar::{Fast32, Q16, Scalar};
+        use staya_controller::scalar::{Fast32, Scalar};
         use staya_controller::time::Instant;
         use staya_controller::wire::Wire;
 
@@ -57,7 +57,6 @@ mod program {
                 black_box(case.run::<f32, _>(&mut Operator));
                 black_box(case.run::<f64, _>(&mut Opaque));
                 black_box(case.run::<Fast32, _>(&mut Opaque));
-                black_box(case.run::<Q16, _>(&mut Opaque));
             }
         }
     }
