@@ -19,6 +19,9 @@ struct Teller {
     peers: usize,
 }
 
+/// A law that says this sends its beacons twice.
+const TWICE: u8 = 77;
+
 #[derive(Clone, Debug)]
 struct Tells;
 
@@ -49,7 +52,10 @@ impl Law<f32> for Teller {
         Ok(Decision::default())
     }
 
-    fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, _: &mut Radio<'_, Tells>) -> Told {
+    fn payload(&mut self, _: &InPlane<'_, f32>, _: Dir, radio: &mut Radio<'_, Tells>) -> Told {
+        if self.own.0 == TWICE {
+            radio.repeat_beacon();
+        }
         self.own
     }
 }
@@ -91,6 +97,19 @@ fn a_beacon_carries_the_payload_and_it_is_stored_with_the_neighbour() {
     let _ = step(&mut two, 0, &out.outbox);
     assert_eq!(two.neighbors().iter().map(|other| other.payload).collect::<Vec<_>>(), [Some(OWN)]);
     assert_eq!((&two.law().heard[..], two.law().peers), (&[(1, Some(OWN))][..], 1));
+}
+
+#[test]
+fn a_repeated_beacon_replaces_a_lost_one_and_counts_once() {
+    let own = Told(TWICE, 1, 0.0);
+    let out = step(&mut teller(1, law(own), Postcard), 0, &[]);
+    let (first, second) = out.outbox.split_at(out.outbox.len() / 2);
+    assert_eq!(first, second);
+    for inbox in [first, &out.outbox] {
+        let mut two = teller(2, law(OWN), Postcard);
+        let heard = step(&mut two, 0, inbox);
+        assert_eq!((heard.received, two.neighbors().len(), two.neighbors()[0].payload), (1, 1, Some(own)));
+    }
 }
 
 #[test]

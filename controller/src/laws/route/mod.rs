@@ -82,6 +82,20 @@ pub struct RouteParams {
     pub a3: Gain,
 }
 
+impl RouteParams {
+    /// The default.
+    pub const DEFAULT: Self = Self {
+        radius: 5,
+        exit: ExitRule::Best,
+        norm: Norm::Euclidean,
+        corner_cutting: false,
+        a0: Gain::ONE,
+        a1: Gain::from_int(2),
+        a2: Gain::from_int(3),
+        a3: Gain::from_int(3),
+    };
+}
+
 impl Default for RouteParams {
     /// r = 5, best exit, Euclidean, no corner cutting, a = (1, 2, 3, 3).
     ///
@@ -89,16 +103,7 @@ impl Default for RouteParams {
     /// (`staya experiment route --axis grid.route.a3=1,2,3`); a1 and a2 hardly matter there unless
     /// they are 0.
     fn default() -> Self {
-        Self {
-            radius: 5,
-            exit: ExitRule::Best,
-            norm: Norm::Euclidean,
-            corner_cutting: false,
-            a0: Gain::ONE,
-            a1: Gain::from_int(2),
-            a2: Gain::from_int(3),
-            a3: Gain::from_int(3),
-        }
+        Self::DEFAULT
     }
 }
 

@@ -5,13 +5,13 @@ mod in_plane;
 
 use super::negotiator::LINK;
 use super::{MOST_WAITING, Manners, Moves, Negotiator, Report, SIGHT, Said, Sensed, Sight, Wish};
-use crate::cost::{Gain, Weights};
+use crate::cost::Weights;
 use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::law::{self, Action, BadInput, CellState, Decision, Law, OnGrid, Progress, Protocol, Radio, Tools, View};
 use crate::laws::any_protocol::InAny;
 use crate::laws::cells::{GridOrder, GridWorkspace, MoveHistory};
 use crate::robot::RobotId;
-use crate::route::{ExitRule, RouteParams, Router};
+use crate::route::{RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use crate::time::{Duration, Instant};
@@ -50,16 +50,6 @@ pub struct NegotiationPayload {
 const CROWD: u32 = 4;
 /// The same in the next step but one, when others use what it says now.
 const MEETS: u32 = 6;
-const ROUTE: RouteParams = RouteParams {
-    radius: 5,
-    exit: ExitRule::Best,
-    norm: Norm::Euclidean,
-    corner_cutting: false,
-    a0: Gain::ONE,
-    a1: Gain::from_int(2),
-    a2: Gain::from_int(3),
-    a3: Gain::from_int(3),
-};
 /// Of a robot without a goal, or that an operator stopped.
 pub const STAYS: u8 = 63;
 
@@ -154,7 +144,7 @@ impl<const N: usize> NegotiationGuidance<N> {
             decided: Instant::from_micros(0),
             crossed: Instant::from_micros(0),
             tick: Duration::ZERO,
-            params: ROUTE,
+            params: RouteParams::DEFAULT,
             router: Router::new(),
             next: None,
             heard: Vec::new(),
@@ -356,7 +346,7 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
 
 /// Sees the land if it `needs` it and there are walls, of the map or around it.
 fn look<const N: usize>(robot: &mut Negotiator<N>, cell: Cell, window: &Window<'_>, needs: bool) {
-    let whole = 2 * usize::from(ROUTE.radius) + 1;
+    let whole = 2 * SIGHT as usize + 1;
     let is_open = || window.cells().len() == whole * whole && !window.cells().contains(&BLOCKED);
     if !needs || is_open() {
         robot.pass(cell);
