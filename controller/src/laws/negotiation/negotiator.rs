@@ -345,12 +345,16 @@ impl<const N: usize> Negotiator<N> {
     /// Hears another robot in this step. If it knows too many, it forgets the robot lost for
     /// longest, and of those lost for equally long the farthest.
     pub fn hear(&mut self, id: RobotId, said: &Said) {
+        self.hear_from(id, said, said.cell);
+    }
+
+    /// Hears a robot that goes from `start` to the cell that it says, and may not get that.
+    pub fn hear_from(&mut self, id: RobotId, said: &Said, start: Cell) {
         self.begin();
-        if id == self.id || said.cell.chebyshev(self.own.cell) > RANGE {
-            return;
+        if id != self.id && said.cell.chebyshev(self.own.cell) <= RANGE {
+            self.free(start);
+            self.note(id, said);
         }
-        self.free(said.cell);
-        self.note(id, said);
     }
 
     fn note(&mut self, id: RobotId, said: &Said) {

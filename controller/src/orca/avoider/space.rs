@@ -265,9 +265,10 @@ fn flat_obstacles(walls: usize) -> impl Strategy<Value = StdVec<Obstacle<f64>>> 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
-    /// If the plane's velocity violates nothing, space gives the same one. If robots alone forbid
-    /// all velocities of a body without inertia, the least penetration is the same. Contradictory
-    /// obstacles differ: space shares them, the plane obeys the nearest.
+    /// If the plane's velocity violates nothing, neither does that in space, and it is the same one
+    /// unless rounding leaves no velocity at all. If robots alone forbid all velocities of a body
+    /// without inertia, the least penetration is the same. Contradictory obstacles differ: space
+    /// shares them, the plane obeys the nearest.
     #[test]
     fn space_agrees_with_the_plane_at_one_height(
         own in flat(0.4),
@@ -287,7 +288,8 @@ proptest! {
             let space = space.velocity(body, wish, Some(V::ZERO), nearby, obstacles, &mut rng_of(1, 1));
             if plane.penetration_mps < 1e-9 {
                 let apart = (space.velocity_mps - plane.velocity_mps.extend(0.0)).norm();
-                prop_assert!(apart < 1e-6, "{plane:?} {space:?}");
+                let is_rounded = plane.penetration_mps > 0.0 || space.penetration_mps > 0.0;
+                prop_assert!(space.penetration_mps < 1e-9 && (is_rounded || apart < 1e-6), "{plane:?} {space:?}");
             } else if obstacles.is_empty() && body.max_acceleration_mps2 == f64::MAX {
                 let apart = (space.penetration_mps - plane.penetration_mps).abs();
                 prop_assert!(apart < 1e-6, "{plane:?} {space:?}");

@@ -203,8 +203,7 @@ impl<S: Scalar, const N: usize> Law<S> for NegotiationGuidance<N> {
             } else if failed.contains(&id) {
                 robot.hear_at(id, &said, heard.start());
             } else {
-                robot.free(heard.start());
-                robot.hear(id, &said);
+                robot.hear_from(id, &said, heard.start());
             }
             // It counted from its next step.
             let age = view.now.since(sent).as_micros().max(0).checked_div(view.tick.as_micros()).unwrap_or(0);
